@@ -234,6 +234,7 @@ class SurveyedConversion {
     if (aim->has_rungs() && !state.decided) state = decided_by(outlook_of(request, stores_.rows));
     if (aim->near_rungs && state.near != NearBlocks::none && !state.built) state.built = state.rebuilt = true;
     request.packed.window = state.window();
+    if (state.short_of_preview && request.packed.preview == Preview::automatic) request.packed.preview = Preview::off;
     MissingLadders missing;
     missing.all = state.rebuilt;
     missing.filled = !aim->background && !aim->keeps_non_finite && survey_.missing + survey_.non_finite > 0;

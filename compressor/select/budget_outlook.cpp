@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "compressor/packed/ladder_builder.h"
 #include "compressor/select/fixed_bytes.h"
 #include "compressor/select/step_keys.h"
+#include "format/layout/nanovdb_layout.h"
 #include "format/leaf/bounds.h"
 
 namespace weir {
@@ -57,18 +59,22 @@ class SampledSteps {
     return {bought.near(), bought.all > bytes ? window_at(cut) : std::nullopt};
   }
 
-  /// Of what must be bought so that no more than that error is left.
-  BudgetOutlook within_error(double squared_error) const {
+  struct OfError {
+    BudgetOutlook outlook;
+    double bytes;      ///< of what is bought
+    double least_key;  ///< that it has, about
+  };
+  /// Of what must be bought so that no more than that error is left; nullopt where nothing must.
+  std::optional<OfError> within_error(double squared_error) const {
     double left = 0;
-    BoughtBytes bought;
-    std::optional<std::size_t> cut;
-    for (std::size_t i = 0; i < buckets_.size(); ++i) {
-      left += buckets_[i].gain;
+    for (std::size_t cut = 0; cut < buckets_.size(); ++cut) {
+      left += buckets_[cut].gain;
       if (left <= squared_error) continue;
-      if (!cut) cut = i;
-      bought.add(buckets_[i].bytes);
+      BoughtBytes bought;
+      for (std::size_t i = cut; i < buckets_.size(); ++i) bought.add(buckets_[i].bytes);
+      return OfError{{bought.near(), window_at(cut)}, bought.all, key_of(cut)};
     }
-    return {bought.near(), cut ? window_at(*cut) : std::nullopt};
+    return std::nullopt;
   }
 
  private:
@@ -78,12 +84,44 @@ class SampledSteps {
   };
   static constexpr int kDropped = 48;  // bits of a key: 16 to an octave remain
 
-  std::optional<KeyWindow> window_at(std::size_t bucket) const {
-    return KeyWindow::about(std::bit_cast<double>(static_cast<std::uint64_t>(bucket) << kDropped), width_);
+  static double key_of(std::size_t bucket) {
+    return std::bit_cast<double>(static_cast<std::uint64_t>(bucket) << kDropped);
   }
+  std::optional<KeyWindow> window_at(std::size_t bucket) const { return KeyWindow::about(key_of(bucket), width_); }
 
   float width_;
   std::vector<Bucket> buckets_ = std::vector<Bucket>(std::size_t{1} << (64 - kDropped));
+};
+
+/// The regions that sampled blocks lie in, and which of them a budget opens.
+class SampledRegions {
+ public:
+  explicit SampledRegions(const NodeLattice& leaves)
+      : leaves_(leaves), regions_(make_lattice(leaves.domain, kLowerDim)) {
+    for (const Box& box : BlockSample(leaves).rows()) {
+      for (std::int64_t i = 0; i < box.voxels(); ++i) highest_[region_of(box.lo + index_at(i, box.extent()))] = 0;
+    }
+  }
+  /// The first step of the leaf at that linear index has that key.
+  void add(std::int64_t leaf, double key) {
+    double& highest = highest_[region_of(leaves_.position(leaf))];
+    highest = std::max(highest, key);
+  }
+  /// How many regions of the volume have a step of that key or a higher one, by the share of the sampled ones.
+  double open(double key) const {
+    const auto open =
+        std::count_if(highest_.begin(), highest_.end(), [&](const auto& region) { return region.second >= key; });
+    return static_cast<double>(regions_.size()) * static_cast<double>(open) / static_cast<double>(highest_.size());
+  }
+
+ private:
+  std::int64_t region_of(const Index3& leaf) const {
+    return regions_.linear(floor_div(leaves_.first + leaf, kLowerLeaves) - regions_.first);
+  }
+
+  const NodeLattice& leaves_;
+  NodeLattice regions_;
+  std::map<std::int64_t, double> highest_;  // key, by region
 };
 
 /// The sampled blocks whose values are all finite.
@@ -127,6 +165,7 @@ BudgetOutlook judge(const FileRequest& request, const RowStore& rows) {
   rule.packed = PackedRule{false, coarsest_step(range.low, range.high)};
   const StreamLengths lengths(range, *rule.packed);
   SampledSteps steps(range.high - range.low);
+  SampledRegions regions(rows.leaves());
   RegionGains gains;
   for (const Sample::Leaf& sampled : sample.leaves) {
     PackedLadder ladder;
@@ -141,21 +180,31 @@ BudgetOutlook judge(const FileRequest& request, const RowStore& rows) {
     rule.add_packed_steps(ladder, region, lengths, sampled.row, sampled.voxels,
                           rule.visibility == nullptr ? nullptr : &reach, leaf, gains);
     for (const LeafStep& step : leaf.all_steps()) steps.add(sampled.row, ladder, step);
+    if (leaf.step_count > 0) regions.add(sampled.linear, leaf.steps->key);  // keys fall from step to step
   }
+  const double share = static_cast<double>(sample.count) / static_cast<double>(rows.leaves().size());
   const Budget& budget = request.budget;
   BudgetOutlook outlook;
   if (budget.kind == Budget::Kind::psnr) {
     const double width = static_cast<double>(range.high) - static_cast<double>(range.low);
-    outlook = steps.within_error(width * width * static_cast<double>(sample.voxels) / std::pow(10, budget.target / 10));
+    const double error = width * width * static_cast<double>(sample.voxels) / std::pow(10, budget.target / 10);
+    if (const auto bought = steps.within_error(error)) {
+      constexpr double kClearly = 2;
+      const double preview = regions.open(bought->least_key) * static_cast<double>(nvdb::kLowerBytes);
+      outlook = bought->outlook;
+      outlook.short_of_preview = kClearly * bought->bytes / share < kLeastOfPreview * preview;
+    }
   } else {
-    const double share = static_cast<double>(sample.count) / static_cast<double>(rows.leaves().size());
     const auto dense = static_cast<std::uint64_t>(request.domain.voxels()) * sizeof(float);
     const std::uint64_t asked = asked_bytes(budget, dense);
     const std::uint64_t fixed =
         fixed_bytes(request.domain, Encoding::packed, request.packed.preview, asked, region_count(request.domain));
     outlook = steps.within_bytes(std::max(0.0, static_cast<double>(asked) - static_cast<double>(fixed)) * share);
   }
-  if (rule.visibility != nullptr || rows.leaves().size() < kLeastForecastBlocks) outlook.window.reset();
+  if (rule.visibility != nullptr || rows.leaves().size() < kLeastForecastBlocks) {
+    outlook.window.reset();
+    outlook.short_of_preview = false;
+  }
   return outlook;
 }
 

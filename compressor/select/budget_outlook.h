@@ -1,5 +1,6 @@
 // What a budget will buy of a packed volume, as far as a sample of its blocks (compressor/packed/block_sample.h) tells:
-// which ladders are worth building for all of them.
+// which ladders are worth building for all of them, and
+// whether a file can be long enough for a preview.
 #pragma once
 
 #include <optional>
@@ -16,6 +17,9 @@ struct BudgetOutlook {
   NearBlocks near{};
   /// Where the cut of the selection lies, about. None: unknown, or all can be bought, or a scene weighs.
   std::optional<KeyWindow> window{};
+  /// Of an error to be met: whether the file that does it is so short that it gets no preview unless one is asked for.
+  /// Only where that is clear: else its plan decides.
+  bool short_of_preview = false;
 };
 
 /// What that decides.
@@ -25,6 +29,7 @@ inline LadderState decided_by(const BudgetOutlook& outlook) {
     state.centre = outlook.window->centre();
     state.width = outlook.window->width();
   }
+  state.short_of_preview = outlook.short_of_preview;
   return state;
 }
 

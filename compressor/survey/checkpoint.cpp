@@ -14,7 +14,7 @@ namespace {
 using Json = nlohmann::json;
 
 /// Raised whenever what a checkpoint or one of its files means changes.
-constexpr std::string_view kFormat = "weir checkpoint 6 ";
+constexpr std::string_view kFormat = "weir checkpoint 7 ";
 
 // JSON has no infinity, and not every reader tells -0.0 from 0.0.
 Json bits(float value) { return std::bit_cast<std::uint32_t>(value); }
@@ -107,6 +107,7 @@ Checkpoint checkpoint_of(const Json& json) {
     c.ladders.centre = double_of(ladders["centre"]);
     c.ladders.width = float_of(ladders.at("width"));
   }
+  ladders.at("short_of_preview").get_to(c.ladders.short_of_preview);
   ladders.at("built").get_to(c.ladders.built);
   ladders.at("rebuilt").get_to(c.ladders.rebuilt);
   ladders.at("moves").get_to(c.ladders.moves);
@@ -132,6 +133,7 @@ std::string to_text(const Checkpoint& c) {
             {"ladders",
              {{"decided", c.ladders.decided},
               {"near", static_cast<int>(c.ladders.near)},
+              {"short_of_preview", c.ladders.short_of_preview},
               {"built", c.ladders.built},
               {"rebuilt", c.ladders.rebuilt},
               {"moves", c.ladders.moves}}},

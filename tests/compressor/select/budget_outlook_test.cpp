@@ -1,4 +1,4 @@
-// Which blocks a budget will buy near rungs for: judged by a sample, which is all of these small volumes.
+// What a budget will buy, judged by a sample, which is all of the small volumes.
 #include "compressor/select/budget_outlook.h"
 
 #include <gtest/gtest.h>
@@ -14,9 +14,8 @@
 namespace weir::budget_outlook_test {
 namespace {
 
-// Of a volume of 96^3 voxels, for a PSNR.
-NearBlocks bought_at(const char* kind, double psnr) {
-  const auto source = open_synthetic(kind, {{96, 96, 96}, 1});
+BudgetOutlook outlook_at(const char* kind, double psnr, std::int64_t edge) {
+  const auto source = open_synthetic(kind, {{edge, edge, edge}, 1});
   test::MemoryVolume volume(*source);
   const BlockPlan plan = plan_blocks(volume.info().domain(), volume.access(), std::uint64_t{1} << 30U);
   test::CrashFileSystem files;
@@ -29,8 +28,9 @@ NearBlocks bought_at(const char* kind, double psnr) {
   request.budget.kind = Budget::Kind::psnr;
   request.budget.target = psnr;
   request.domain = volume.info().domain();
-  return outlook_of(request, rows).near;
+  return outlook_of(request, rows);
 }
+NearBlocks bought_at(const char* kind, double psnr) { return outlook_at(kind, psnr, 96).near; }
 
 TEST(BudgetOutlook, NearRungsOfASparseCloudAreForItsSparseBlocksUntilNearlyAllIsKept) {
   EXPECT_EQ(bought_at("cloud", 60), NearBlocks::sparse);
@@ -40,6 +40,12 @@ TEST(BudgetOutlook, NearRungsOfASparseCloudAreForItsSparseBlocksUntilNearlyAllIs
 TEST(BudgetOutlook, DenseTurbulenceHasThemWhereNearlyAllIsKeptAlone) {
   EXPECT_EQ(bought_at("turbulence", 60), NearBlocks::none);
   EXPECT_EQ(bought_at("turbulence", 140), NearBlocks::all);
+}
+
+// Of 256^3 voxels all eight regions have something: their preview takes 0.27 MB, ten times that is the least of a file.
+TEST(BudgetOutlook, FilesThatAreClearlyShorterThanTenPreviewsAreKnown) {
+  EXPECT_TRUE(outlook_at("turbulence", 40, 256).short_of_preview);
+  EXPECT_FALSE(outlook_at("turbulence", 100, 256).short_of_preview);
 }
 
 TEST(BudgetOutlook, SparseBlocksAreThoseThatAreMostlyZero) {
