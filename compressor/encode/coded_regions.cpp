@@ -57,13 +57,13 @@ void CodedBatch::add(const EncodeTarget& target, const Box& leaf_box, std::int64
   const Box box = intersect(target.tree.leaf_box(region), leaf_box);
   CodedRegion coded(box, asks_, made_);
   const StreamPlaces& streams = *places.streams;
-  for (std::int64_t i = 0; i < box.voxels(); ++i) {
-    const Index3 leaf = box.lo + index_at(i, box.extent());
+  // In the order of the streams in the file, so that those of a layer lie together.
+  for_each_in_file_order(box, [&](const Index3& leaf) {
     const std::size_t position = target.tree.mask_position(leaf);
     const std::int16_t step = streams.plan().steps[position];
-    if (!streams.kept(position) || !asks_for(target, leaf)) continue;
+    if (!streams.kept(position) || !asks_for(target, leaf)) return;
     const std::optional<StreamAskKind> kind = kind_of(*target.packed, step, streams.bytes(position));
-    if (!kind) continue;
+    if (!kind) return;
     const bool rounded = *kind == StreamAskKind::rounded;
     const std::uint32_t offset = asks_.empty() ? 0 : asks_.back().offset + asks_.back().bytes;
     coded.set(leaf, asks_.size());
@@ -71,7 +71,7 @@ void CodedBatch::add(const EncodeTarget& target, const Box& leaf_box, std::int64
                      static_cast<std::uint32_t>(linear_index(leaf - leaf_box.lo, leaf_box.extent())), offset,
                      static_cast<std::uint16_t>(streams.bytes(position)),
                      rounded ? static_cast<std::int16_t>(step - PlannedStreams::kNearStep) : step, *kind});
-  }
+  });
   regions_.push_back({region, std::move(places), box, std::move(coded)});
 }
 

@@ -104,9 +104,18 @@ EncodedFile encode_once(const EncodeJob& job, FileRequest& request) {
                      bounded ? std::optional(request.budget.target) : std::nullopt, job.coder});
   }
   const Fit fit = request.budget.kind == Budget::Kind::max_error ? Fit::largest : Fit::squares;
-  const EncodeTarget target{
-      *file.tree,          *file.choices,    file.plan.layout, file.fill,        grid_type_of(file.encoding), fit,
-      job.output.volume(), *encoded.records, job.rows,         job.stream.trace, encoded.packed.get()};
+  const EncodeTarget target{*file.tree,
+                            *file.choices,
+                            file.plan.layout,
+                            file.fill,
+                            grid_type_of(file.encoding),
+                            fit,
+                            job.output.volume(),
+                            *encoded.records,
+                            job.rows,
+                            job.stream.trace,
+                            encoded.packed.get(),
+                            job.journal != nullptr};
   if (job.journal != nullptr) check_written(job, target, *records);
   if (job.planned) job.planned(file.size.bytes);
   if (!job.output.reserve(file.size.bytes) && job.notice) {

@@ -46,6 +46,7 @@ struct EncodeTarget {
   const RowStore& rows;  ///< of the survey; each rank of its team encodes the leaves of its own regions
   Trace* trace = nullptr;
   const PackedTarget* packed = nullptr;  ///< where blocks are packed; then `type` and `fit` mean nothing
+  bool sums = true;                      ///< whether LayerEncoder::sums() is asked for, as a journal does
 };
 
 /// Whether a leaf is the first or the last of a volume: a preview keeps these two as they are.
@@ -76,7 +77,7 @@ class LayerEncoder {
   /// Writes what is still held; call before the thread turns to another block.
   virtual void finish() = 0;
 
-  /// Checksums of all that it has written, after finish().
+  /// Checksums of all that it has written, after finish(). Only where the target says that they are asked for.
   virtual EncodedSums sums() const = 0;
 };
 

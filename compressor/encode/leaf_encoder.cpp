@@ -80,6 +80,7 @@ class LeafEncoder final : public LayerEncoder {
   };
 
   void add_sums() {
+    if (!target_.sums) return;
     std::size_t at = 0;
     for (std::size_t i = 0; i < leaves_.size(); ++i) {
       const std::size_t size = leaf_bytes(leaves_[i].width);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <utility>
 #include <vector>
 
 #include "compressor/encode/coded_regions.h"
@@ -28,7 +29,7 @@ namespace {
 class PackedEncoder final : public PackedLayerEncoder {
  public:
   explicit PackedEncoder(const EncodeTarget& target)
-      : target_(target), packed_(*target.packed), records_(target.records) {
+      : target_(target), packed_(*target.packed), records_(target.records, target.sums) {
     stream_.resize(4096);
   }
 
@@ -60,7 +61,7 @@ class PackedEncoder final : public PackedLayerEncoder {
     for_each_kept(region_index, *of_region.streams, box, x, [&](const Index3& leaf, const KeptPlace& place) {
       if (const std::optional<CodedStream> known = coded.find(leaf)) {
         surveyed.check(leaf, known->record->source);
-        append(place.offset, known->bytes);
+        append_coded(place.offset, known->bytes);
         return records_.add(place.ordinal, known->record->record);
       }
       begin_leaf(leaf);
@@ -73,6 +74,7 @@ class PackedEncoder final : public PackedLayerEncoder {
   }
 
   void finish() override {
+    append_run();
     flush_bytes();
     records_.flush();
   }
@@ -173,7 +175,7 @@ class PackedEncoder final : public PackedLayerEncoder {
     encode_float_leaf(decoded_, node_, inside_, leaf_statistics(decoded_, node_, inside_), image);
     const std::uint64_t offset = corner_offset(target_, leaf);
     target_.out.write_at(offset, image);
-    volume_sum_ += placed_checksum(offset, image);
+    if (target_.sums) volume_sum_ += placed_checksum(offset, image);
   }
 
   DecodedErrors loss() const {
@@ -195,11 +197,33 @@ class PackedEncoder final : public PackedLayerEncoder {
             difference.different == 0 && difference.nonfinite_different == 0, difference.zeros_lost};
   }
 
+  // Streams that follow each other in the file and in memory, which stays until finish(), are appended together.
+  void append_coded(std::uint64_t offset, std::span<const std::byte> bytes) {
+    const bool follows =
+        !run_.empty() && run_.data() + run_.size() == bytes.data() && run_offset_ + run_.size() == offset;
+    if (follows) {
+      run_ = {run_.data(), run_.size() + bytes.size()};
+      return;
+    }
+    append_run();
+    run_ = bytes;
+    run_offset_ = offset;
+  }
+
+  void append_run() {
+    if (!run_.empty()) hold(run_offset_, std::exchange(run_, {}));
+  }
+
   void append(std::uint64_t offset, std::span<const std::byte> bytes) {
+    append_run();
+    hold(offset, bytes);
+  }
+
+  void hold(std::uint64_t offset, std::span<const std::byte> bytes) {
     if (!bytes_.empty() && offset != first_byte_ + bytes_.size()) flush_bytes();
     if (bytes_.empty()) first_byte_ = offset;
     bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
-    volume_sum_ += placed_checksum(offset, bytes);
+    if (target_.sums) volume_sum_ += placed_checksum(offset, bytes);
     if (bytes_.size() >= kHeldBytes) flush_bytes();
   }
 
@@ -230,6 +254,8 @@ class PackedEncoder final : public PackedLayerEncoder {
   bool shortened_ = false;  // the stream has fewer coefficients, or a larger quantum, than planned
   std::vector<std::byte> stream_;
   std::vector<std::byte> exact_;
+  std::span<const std::byte> run_;  // of streams that a coder has made, to be appended at run_offset_
+  std::uint64_t run_offset_ = 0;
   std::uint64_t first_byte_ = 0;
   std::vector<std::byte> bytes_;  // to be written from first_byte_ on
   std::uint64_t volume_sum_ = 0;  // of the checksums of what was appended, and of corners

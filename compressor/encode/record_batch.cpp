@@ -28,7 +28,7 @@ void RecordBatch::flush() {
   compute();
   if (held_.empty()) return;
   records_.write(first_, held_);
-  for (std::size_t i = 0; i < held_.size(); ++i) sum_ += record_checksum(first_ + i, held_[i]);
+  for (std::size_t i = 0; sums_ && i < held_.size(); ++i) sum_ += record_checksum(first_ + i, held_[i]);
   held_.clear();
 }
 

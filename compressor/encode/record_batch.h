@@ -15,7 +15,8 @@ namespace weir {
 /// One per thread.
 class RecordBatch {
  public:
-  explicit RecordBatch(RecordStore& records) : records_(records) {}
+  /// `sums`: whether sum() is asked for.
+  explicit RecordBatch(RecordStore& records, bool sums = true) : records_(records), sums_(sums) {}
 
   void add(std::uint64_t ordinal, const LeafValues& decoded, const Box& node, const Box& inside,
            const DecodedErrors& loss);
@@ -32,6 +33,7 @@ class RecordBatch {
   void compute();
 
   RecordStore& records_;
+  bool sums_;
   std::size_t count_ = 0;  // leaves whose statistics are not yet computed
   std::array<LeafValues, kLeafBatch> values_{};
   std::array<Box, kLeafBatch> nodes_{};

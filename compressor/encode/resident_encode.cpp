@@ -90,10 +90,9 @@ class ResidentEncode {
       part.batch = std::make_unique<CodedBatch>(target_, part.box, part.region);
     }
     const StreamPlaces& places = *places_of(part).streams;
-    for (std::int64_t i = 0; i < part.box.voxels(); ++i) {
-      const Index3 leaf = part.box.lo + index_at(i, part.box.extent());
+    for_each_in_file_order(part.box, [&](const Index3& leaf) {
       if (places.kept(target_.tree.mask_position(leaf)) && !coded_of(part).find(leaf)) part.left.add(leaf);
-    }
+    });
     const std::vector<Index3>& left = part.left.leaves();
     if (left.empty()) return;
     part.left.values().resize(kLeafVoxels * left.size());

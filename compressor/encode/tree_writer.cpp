@@ -142,7 +142,7 @@ class LowerWriter {
     write_directory(parts_.layout, tree.regions.size(), index, region, places, out_);
     const std::vector<LeafRecord> records = parts_.records.read(region.first_leaf, region.leaves);
     MinMax decoded = kNoBounds;
-    for_each_in_mask_order(rows.leaf_box(), [&](const Index3& leaf) {
+    for_each_in_file_order(rows.leaf_box(), [&](const Index3& leaf) {
       const std::size_t position = tree.mask_position(leaf);
       if (places.kept(position)) {
         const LeafRecord& record = records[places.ordinal(position)];
@@ -166,7 +166,7 @@ class LowerWriter {
     NodeImage& image = images_.local();
     image.reset();
     TableStatistics table;
-    for_each_in_mask_order(rows.leaf_box(), [&](const Index3& leaf) {
+    for_each_in_file_order(rows.leaf_box(), [&](const Index3& leaf) {
       const std::size_t position = tree.mask_position(leaf);
       const auto bits = static_cast<std::int64_t>(position);
       const Index3 entry{bits >> 8, bits >> 4 & 15, bits & 15};
@@ -194,15 +194,6 @@ class LowerWriter {
   void widen_decoded(const MinMax& bounds) {
     const std::lock_guard lock(mutex_);
     widen(decoded_, bounds);
-  }
-
-  template <typename Visit>
-  static void for_each_in_mask_order(const Box& box, const Visit& visit) {
-    for (std::int64_t x = box.lo.x; x < box.hi.x; ++x) {
-      for (std::int64_t y = box.lo.y; y < box.hi.y; ++y) {
-        for (std::int64_t z = box.lo.z; z < box.hi.z; ++z) visit(Index3{x, y, z});
-      }
-    }
   }
 
   const TreeParts& parts_;

@@ -39,6 +39,17 @@ inline float tile_value(const Fill& fill, const TileSums& sums) {
   return fill.mode == FillMode::background || sums.finite == 0 ? fill.background : sums.mean;
 }
 
+/// Calls visit(position) for the lattice positions of a box in the order of NanoVDB, which sorts nodes and the entries
+/// of their tables by x first, z fastest.
+template <typename Visit>
+void for_each_in_file_order(const Box& box, const Visit& visit) {
+  for (std::int64_t x = box.lo.x; x < box.hi.x; ++x) {
+    for (std::int64_t y = box.lo.y; y < box.hi.y; ++y) {
+      for (std::int64_t z = box.lo.z; z < box.hi.z; ++z) visit(Index3{x, y, z});
+    }
+  }
+}
+
 struct Region {
   TileSums sums;
   double key = 0;                ///< error saved per byte by opening the region; +inf where it must be
@@ -89,26 +100,17 @@ struct TreeRegions {
   /// Calls visit(upper index) in file order: by x, then y, then z.
   template <typename Visit>
   void for_each_upper(Visit&& visit) const {
-    for_each_in_file_order({{0, 0, 0}, upper_lattice.count}, upper_lattice, visit);
+    for_each_in_file_order({{0, 0, 0}, upper_lattice.count},
+                           [&](const Index3& at) { visit(upper_lattice.linear(at)); });
   }
   /// Calls visit(region index) for the regions of one upper node in file order.
   template <typename Visit>
   void for_each_region_of(std::int64_t upper, Visit&& visit) const {
-    for_each_in_file_order(region_box(upper), region_lattice, visit);
+    for_each_in_file_order(region_box(upper), [&](const Index3& at) { visit(region_lattice.linear(at)); });
   }
 
  private:
   Box region_box(std::int64_t upper) const;
-
-  // NanoVDB sorts nodes and table entries by x first, z fastest.
-  template <typename Visit>
-  static void for_each_in_file_order(const Box& box, const NodeLattice& lattice, Visit&& visit) {
-    for (std::int64_t x = box.lo.x; x < box.hi.x; ++x) {
-      for (std::int64_t y = box.lo.y; y < box.hi.y; ++y) {
-        for (std::int64_t z = box.lo.z; z < box.hi.z; ++z) visit(lattice.linear({x, y, z}));
-      }
-    }
-  }
 };
 
 /// Sums of several parts (leaves or regions), added in a fixed order. Two passes: all parts must be

@@ -328,7 +328,7 @@ bool BlockSurvey::take(const SurveyedBlocks& found, FoundLeaves& leaves, std::si
 
 void BlockSurvey::take(const SurveyedBlocks& found, FoundLeaves& leaves) {
   std::vector<std::uint8_t> taken(leaves.rows.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, taken.size(), 64), [&](const auto& range) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, taken.size(), 256), [&](const auto& range) {
     const TraceSpan span(trace_, "survey");
     for (std::size_t at = range.begin(); at < range.end(); ++at) taken[at] = take(found, leaves, at) ? 1 : 0;
   });

@@ -2,6 +2,7 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_group.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,12 +15,15 @@
 
 #include "compressor/packed/block_values.h"
 #include "compressor/survey/one_ahead.h"
+#include "format/base/process_memory.h"
 
 namespace weir {
 namespace {
 
-// Blocks that the device looks at together, in rows along x: what it finds of them is at most 5 MiB.
-constexpr std::int64_t kMostBlocks = 4096;
+// Blocks that the device looks at together, in rows along x: what it finds of them is at most 6 MiB.
+constexpr std::int64_t kMostBlocks = 8192;
+// Of those that it leaves to the host, so many have their values copied together.
+constexpr std::size_t kMostLeft = 4096;
 
 // Boxes of lattice positions that cover all of it: rows, or parts of one.
 std::vector<Box> leaf_boxes(const Index3& count) {
@@ -66,8 +70,7 @@ class ResidentSurvey {
   struct Begun {
     BlockSurvey::FoundLeaves leaves{};
     std::unique_ptr<ResidentBlocks> blocks{};  // null: to be read
-    std::span<const float> left{};             // values of the leaves that are left
-    std::vector<float> read{};                 // where the device does not give them
+    std::vector<float> read{};                 // values of leaves that the device does not give
   };
 
   void begin(const Box& box, Begun& begun) {
@@ -81,8 +84,10 @@ class ResidentSurvey {
     const Box& box = begun.leaves.leaf_box;
     if (const auto found = begun.blocks ? begun.blocks->end_survey() : std::nullopt) {
       survey_.take(*found, begun.leaves);
-      get_left(begun);
-      survey_left(begun);
+      const std::span<const std::uint32_t> left(begun.leaves.left);
+      for (std::size_t at = 0; at < left.size(); at += kMostLeft) {
+        survey_left(begun, left.subspan(at, std::min(kMostLeft, left.size() - at)));
+      }
       survey_.write(begun.leaves);
     } else {
       survey_read(box);
@@ -93,29 +98,24 @@ class ResidentSurvey {
     if (options_.progress) options_.progress(done_, leaves_.domain.voxels());
   }
 
-  void survey_left(Begun& begun) {
-    const std::vector<std::uint32_t>& left = begun.leaves.left;
+  void survey_left(Begun& begun, std::span<const std::uint32_t> left) {
+    const std::span<const float> values = values_of(begun, left);
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, left.size(), 16), [&](const auto& range) {
       const TraceSpan span(options_.trace, "survey");
       for (std::size_t k = range.begin(); k < range.end(); ++k) {
-        survey_.survey_left(begun.leaves, left[k], begun.left.data() + kLeafVoxels * k);
+        survey_.survey_left(begun.leaves, left[k], values.data() + kLeafVoxels * k);
       }
     });
   }
 
-  void get_left(Begun& begun) {
-    const std::vector<std::uint32_t>& left = begun.leaves.left;
-    if (left.empty()) return;
+  std::span<const float> values_of(Begun& begun, std::span<const std::uint32_t> left) {
     const TraceSpan span(options_.trace, "read", kLeafVoxels * sizeof(float) * left.size());
-    if (const auto values = begun.blocks->values(left)) {
-      begun.left = *values;
-      return;
-    }
+    if (const auto values = begun.blocks->values(left)) return *values;
     begun.read.resize(kLeafVoxels * left.size());
     std::vector<Index3> leaves;
     for (const std::uint32_t at : left) leaves.push_back(begun.leaves.leaf(at));
     read_blocks(source_, leaves_, begun.leaves.leaf_box, leaves, begun.read);
-    begun.left = begun.read;
+    return begun.read;
   }
 
   void survey_read(const Box& leaf_box) {
@@ -161,6 +161,18 @@ class ResidentSurvey {
   std::int64_t done_ = 0;
 };
 
+// Makes the pages of the rows, where these lie in memory: a sample has rows in nearly every one, and would wait for
+// each.
+void make_pages_of(RowStore& rows, tbb::task_group& tasks) {
+  for (File* const file : {&rows.file(), &rows.ladders()->file()}) {
+    const std::span<const std::byte> all = file->memory();
+    constexpr std::size_t kPiece = std::size_t{16} << 20U;
+    for (std::size_t at = 0; at < all.size(); at += kPiece) {
+      tasks.run([part = all.subspan(at, std::min(kPiece, all.size() - at))] { make_pages(part); });
+    }
+  }
+}
+
 }  // namespace
 
 Survey survey_resident(ResidentVolume& resident, VolumeSource& source, RowStore& rows, const LadderAim& ladders,
@@ -172,7 +184,15 @@ void survey_resident_sample(ResidentVolume& resident, VolumeSource& source, RowS
                             std::span<const Box> boxes, const StreamOptions& options) {
   RungAsk ask = ladders.rung_ask();
   if (ladders.near_rungs) ask.near.blocks = NearBlocks::all;
-  ResidentSurvey(resident, source, rows, ladders, ask, options).add(boxes);
+  tbb::task_group pages;
+  make_pages_of(rows, pages);
+  try {
+    ResidentSurvey(resident, source, rows, ladders, ask, options).add(boxes);
+  } catch (...) {
+    pages.wait();
+    throw;
+  }
+  pages.wait();
 }
 
 }  // namespace weir

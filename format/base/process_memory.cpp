@@ -1,6 +1,9 @@
 #include "format/base/process_memory.h"
 
+#include <sys/mman.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <limits>
 
 #include "format/base/group_memory.h"
@@ -16,6 +19,12 @@ std::uint64_t available_bytes() {
   const std::uint64_t kibibytes = number_in_table("/proc/meminfo", "MemAvailable:");  // 0: not there
   const std::uint64_t system = kibibytes == 0 ? std::numeric_limits<std::uint64_t>::max() : 1024 * kibibytes;
   return std::min(system, group_room());
+}
+
+void make_pages(std::span<const std::byte> memory) {
+  while (::madvise(const_cast<std::byte*>(memory.data()), memory.size(), MADV_POPULATE_WRITE) != 0) {
+    if (errno != EINTR && errno != EAGAIN) return;  // whoever needs a page waits for it
+  }
 }
 
 }  // namespace weir

@@ -1,7 +1,9 @@
 // The process's resident memory, and what is left, as the kernel counts it.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
 namespace weir {
 
@@ -14,5 +16,10 @@ std::uint64_t peak_resident_bytes();
 /// Bytes that this process can still take: the system's MemAvailable, or what the limits of its control groups leave
 /// (group_memory.h) where that is less; the largest number where neither says any.
 std::uint64_t available_bytes();
+
+/// Makes the pages of memory that begins at a page and that the caller may write, where it has none yet, so that several
+/// threads can do it before others need them. Bytes stay as they are, whoever writes them meanwhile. Does nothing on a
+/// Linux before 5.14.
+void make_pages(std::span<const std::byte> memory);
 
 }  // namespace weir

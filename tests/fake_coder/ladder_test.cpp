@@ -12,6 +12,7 @@
 #include "compressor/packed/ladder_builder.h"
 #include "format/base/error.h"
 #include "gpu/cuda/encode/device_coder.h"
+#include "tests/fake_coder/support.h"
 #include "tests/fake_cuda/fake_runtime.h"
 #include "tests/support/block_volumes.h"
 
@@ -24,12 +25,12 @@ using test::FakeRuntime;
 class FoundLadders : public testing::Test {
  protected:
   FoundLadders() {
-    FakeRuntime::instance().reset();
+    reset_device();
     coder_ = make_device_coder(0, [](const Error& error) { ADD_FAILURE() << error.what(); });
   }
   ~FoundLadders() override {
     coder_.reset();
-    FakeRuntime::instance().reset();
+    reset_device();
   }
 
   // Compares each ladder; returns for how many blocks what was found was enough.

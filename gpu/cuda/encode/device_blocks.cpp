@@ -35,33 +35,39 @@ class Parts {
 
 class DeviceStreams final : public PendingStreams {
  public:
-  /// `place` of resident blocks, whose decoded values stay on the device.
+  /// `place` of resident blocks, whose decoded values stay on the device. What comes back lies in `pinned`, or where
+  /// that is null in memory of its own.
   DeviceStreams(std::shared_ptr<CoderState> coder, const BlockBox& box, const std::optional<BlockPlace>& place,
-                std::span<const StreamAsk> asks, const BlockConstants& constants)
+                std::span<const StreamAsk> asks, const BlockConstants& constants, GrowingPinned* pinned)
       : coder_(std::move(coder)), memory_(coder_->streams, coder_->streams.take()) {
     const std::size_t count = asks.size();
     const std::size_t bytes = std::size_t{asks.back().offset} + asks.back().bytes;
+    // Resident blocks come by regions, of which one has more streams than the next: room for most, so that it seldom
+    // grows.
+    const std::size_t most = place ? std::max(count, kRegionBlocks) : count;
+    const std::size_t most_bytes = place ? std::max(bytes, kOftenEnough) : bytes;
     EncodeCall call;
     call.box = box;
     call.constants = constants;
     call.constants.tables = nullptr;
     call.tables = coder_->costs.data();
     call.codes = coder_->codes.data();
-    StreamAsk* const asked = memory_->asks.at_least(count);
+    StreamAsk* const asked = memory_->asks.at_least(most);
     call.asks = asked;
     call.count = static_cast<std::uint32_t>(count);
     call.on_lattices = std::any_of(asks.begin(), asks.end(),
                                    [](const StreamAsk& ask) { return ask.kind != StreamAskKind::transform; });
-    call.states = memory_->states.at_least(count);
-    call.coded = memory_->coded.at_least(512 * count);
-    call.words = memory_->words.at_least(bytes / 2 + count + 1);
-    call.decoded = memory_->decoded.at_least(512 * count);
-    call.out = memory_->out.at_least(bytes);
-    call.made = memory_->made.at_least(count);
+    call.states = memory_->states.at_least(most);
+    call.coded = memory_->coded.at_least(512 * most);
+    call.words = memory_->words.at_least(most_bytes / 2 + most + 1);
+    call.decoded = memory_->decoded.at_least(512 * most);
+    call.out = memory_->out.at_least(most_bytes);
+    call.made = memory_->made.at_least(most);
     const std::size_t of_host = place ? 0 : 512 * count;  // decoded values
     const std::size_t recorded = place ? count : 0;
-    Parts parts(memory_->pinned.at_least(Parts::bytes<float>(of_host) + Parts::bytes<MadeRecord>(recorded) +
-                                         Parts::bytes<std::uint8_t>(count) + Parts::bytes<std::byte>(bytes)));
+    if (pinned == nullptr) pinned = &memory_->pinned;
+    Parts parts(pinned->at_least(Parts::bytes<float>(of_host) + Parts::bytes<MadeRecord>(recorded) +
+                                 Parts::bytes<std::uint8_t>(count) + Parts::bytes<std::byte>(bytes)));
     const auto decoded = parts.next<float>(of_host);
     const auto records = parts.next<MadeRecord>(recorded);
     const auto made = parts.next<std::uint8_t>(count);
@@ -72,7 +78,7 @@ class DeviceStreams final : public PendingStreams {
     launch_encode(call, stream);
     const char* const what = "encoding on the device";
     if (place) {
-      MadeRecord* const found = memory_->records.at_least(count);
+      MadeRecord* const found = memory_->records.at_least(most);
       launch_records({box, *place, coder_->digests.data(), asked, call.count, call.decoded, found}, stream);
       copy_back(records, found, stream, what);
     } else {
@@ -91,6 +97,9 @@ class DeviceStreams final : public PendingStreams {
   }
 
  private:
+  static constexpr std::size_t kRegionBlocks = 4096;
+  static constexpr std::size_t kOftenEnough = std::size_t{2} << 20U;  // four bits a voxel
+
   std::shared_ptr<CoderState> coder_;
   Lent<StreamMemory> memory_;
   MadeStreams found_;
@@ -179,7 +188,9 @@ std::optional<SurveyedBlocks> DeviceBlocks::end_survey() {
 
 std::unique_ptr<PendingStreams> DeviceBlocks::encode(std::span<const StreamAsk> asks, const BlockConstants& constants) {
   return coder_->attempt([&]() -> std::unique_ptr<PendingStreams> {
-    return std::make_unique<DeviceStreams>(coder_, box_, place_, asks, constants);
+    // Of resident blocks a box has one region's streams, after the survey.
+    GrowingPinned* const pinned = place_ ? &memory_->pinned : nullptr;
+    return std::make_unique<DeviceStreams>(coder_, box_, place_, asks, constants, pinned);
   });
 }
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <bit>
 #include <cstddef>
 #include <limits>
 #include <memory>
@@ -13,7 +12,7 @@
 #include <vector>
 
 #include "format/base/error.h"
-#include "gpu/cuda/load/pinned_memory.h"
+#include "gpu/cuda/encode/pinned_pool.h"
 #include "gpu/cuda/runtime/device_array.h"
 
 namespace weir {
@@ -40,23 +39,32 @@ class GrowingPinned {
   /// Pages are locked a few MiB a millisecond: seldom, then.
   static constexpr std::size_t kLeastPinned = std::size_t{1} << 21U;
 
+  GrowingPinned() = default;
+  ~GrowingPinned() { give_back(); }
+  GrowingPinned(const GrowingPinned&) = delete;
+  GrowingPinned& operator=(const GrowingPinned&) = delete;
+
   /// As GrowingArray::at_least.
   std::byte* at_least(std::size_t bytes) {
-    if (bytes > bytes_) {
-      memory_.reset();
-      bytes_ = 0;
+    if (!piece_ || bytes > piece_->bytes) {
+      give_back();
       std::string refusal;
-      const std::size_t wanted = std::max(kLeastPinned, std::bit_ceil(bytes));
-      memory_ = PinnedMemory::make(wanted, refusal);
-      if (!memory_) throw Error(ErrorKind::io, refusal);
-      bytes_ = wanted;
+      const std::size_t wanted = std::max(kLeastPinned, (bytes + bytes / 8 + kMebibyte - 1) / kMebibyte * kMebibyte);
+      piece_ = PinnedPool::of_process().take(wanted, refusal);
+      if (!piece_) throw Error(ErrorKind::io, refusal);
     }
-    return memory_->data();
+    return piece_->memory.data();
   }
 
  private:
-  std::optional<PinnedMemory> memory_;
-  std::size_t bytes_ = 0;
+  static constexpr std::size_t kMebibyte = std::size_t{1} << 20U;
+
+  void give_back() {
+    if (piece_) PinnedPool::of_process().give_back(std::move(*piece_));
+    piece_.reset();
+  }
+
+  std::optional<PinnedPool::Piece> piece_;
 };
 
 /// Memories that are lent, `most` of them at a time, and kept for the next. Thread-safe.

@@ -1,0 +1,43 @@
+// Page-locked memory that has served, for whoever needs some next: a system locks a few MiB a millisecond, and a
+// simulation saves one step after the other.
+#pragma once
+
+#include <cstddef>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gpu/cuda/load/pinned_memory.h"
+
+namespace weir {
+
+/// Thread-safe.
+class PinnedPool {
+ public:
+  struct Piece {
+    PinnedMemory memory;
+    std::size_t bytes;
+  };
+  /// What it holds at most; what is given back beyond that is freed.
+  static constexpr std::size_t kMostHeld = std::size_t{96} << 20U;
+
+  /// The process's. It stays until the process ends, and with it what it holds.
+  static PinnedPool& of_process();
+
+  /// The smallest piece held that has so many bytes, or a new one; otherwise as PinnedMemory::make.
+  std::optional<Piece> take(std::size_t bytes, std::string& refusal);
+  void give_back(Piece piece);
+  /// Frees what it holds.
+  void clear();
+  std::size_t held_bytes() const;
+
+ private:
+  std::optional<Piece> take_held(std::size_t bytes);
+
+  mutable std::mutex mutex_;
+  std::vector<Piece> pieces_;
+  std::size_t bytes_ = 0;  // of all
+};
+
+}  // namespace weir
