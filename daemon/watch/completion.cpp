@@ -1,6 +1,7 @@
 #include "daemon/watch/completion.h"
 
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -10,6 +11,7 @@
 #include <string_view>
 
 #include "daemon/store/file_identity.h"
+#include "daemon/watch/file_writers.h"
 #include "daemon/watch/source_identity.h"
 #include "format/base/error.h"
 #include "format/base/scalar_type.h"
@@ -76,6 +78,10 @@ CompletionRules completion_rules(const WatchConfig& watch, const std::string& pa
   rules.settle = std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(watch.settle_s));
   rules.expected_bytes = expected_bytes(watch, path);
   rules.marker = watch.marker;
+  if (rules.policy == Completion::rename) {
+    // What may not be read is for the job to say.
+    rules.has_writer = [path] { return ::access(path.c_str(), R_OK) == 0 && FileWriters(path).some(); };
+  }
   if (is_plotfile_head(path)) rules.unwritten = [path] { return unwritten_part(path); };
   if (is_store_head(path) && rules.policy != Completion::marker) {
     rules.store = std::make_shared<StoreQuiet>(std::string(named_by_head(path)), rules.settle, StoreTurn(turns, path));
@@ -145,9 +151,12 @@ CompletionAnswer FileCompletion::look(const FileSample& sample, Time now) {
   if (!rules_.unwritten) return answer;
   std::string rest = rules_.unwritten();
   if (rest.empty()) return answer;
+  return {State::waiting, asked_again(now), std::move(rest)};
+}
+
+FileCompletion::Time FileCompletion::asked_again(Time now) const {
   constexpr std::chrono::nanoseconds kLeast = std::chrono::milliseconds(100);  // settle may be 0
-  return {State::waiting, now + std::chrono::duration_cast<Time::duration>(std::max(rules_.settle, kLeast)),
-          std::move(rest)};
+  return now + std::chrono::duration_cast<Time::duration>(std::max(rules_.settle, kLeast));
 }
 
 CompletionAnswer FileCompletion::by_policy(const FileSample& sample, Time now) {
@@ -163,7 +172,11 @@ CompletionAnswer FileCompletion::by_policy(const FileSample& sample, Time now) {
       return writer_ == Writer::closed ? whole() : when_unchanged(rules_.settle, now);
     case Completion::rename:
       if (writer_ == Writer::renamed) return whole();
-      if (writer_ == Writer::unknown) return when_unchanged({}, now);  // it was there already
+      if (writer_ == Writer::unknown) {  // it was there already
+        CompletionAnswer answer = when_unchanged({}, now);
+        if (answer.state != State::complete || !rules_.has_writer || !rules_.has_writer()) return answer;
+        return {State::waiting, asked_again(now), its_close.reason};
+      }
       return {State::waiting, Time::max(), "it has not got its name by a rename"};
     case Completion::marker:
       if (!sample.marked) return {State::waiting, Time::max(), cat("its marker *", rules_.marker, " is not there")};

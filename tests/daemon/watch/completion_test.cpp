@@ -163,6 +163,34 @@ TEST_F(CompletionTest, Rename_FileThatWasCreated_WaitsForItsRename) {
   EXPECT_EQ(at(7, Kind::found).state, State::complete) << "after a restart, say";
 }
 
+TEST_F(CompletionTest, Rename_FileThatWasFoundWithAWriter_WaitsForItsEnd) {
+  rules.policy = Completion::rename;
+  bool open = true;
+  rules.has_writer = [&] { return open; };
+  const CompletionAnswer answer = at(0, Kind::found);
+  EXPECT_DOUBLE_EQ(again(answer), 2);
+  EXPECT_EQ(answer.reason, kOpen);
+  expect_event_is_awaited(at(1, Kind::closed), "it has not got its name by a rename");
+  EXPECT_DOUBLE_EQ(again(at(2, Kind::found)), 4) << "events were lost, say";
+  open = false;
+  EXPECT_EQ(at(4).state, State::complete);
+}
+
+// A program that creates a directory, and a file in it at once, does so before anybody watches the directory.
+TEST_F(CompletionTest, Rename_RulesOfAFileKnowItsWriter) {
+  const TemporaryDirectory directory;
+  const std::string path = directory / "a_4x4x4_uint8.raw";
+  WatchConfig watch;
+  EXPECT_FALSE(completion_rules(watch, path).has_writer);
+  watch.complete = Completion::rename;
+  const CompletionRules found = completion_rules(watch, path);
+  std::ofstream writer(path);
+  writer << "some of it" << std::flush;
+  EXPECT_TRUE(found.has_writer());
+  writer.close();
+  EXPECT_FALSE(found.has_writer());
+}
+
 TEST_F(CompletionTest, Rename_EmptyFileThatWasFound_IsAwaited) {
   rules.policy = Completion::rename;
   sample.identity.bytes = 0;
