@@ -93,35 +93,58 @@ class SampledSteps {
   std::vector<Bucket> buckets_ = std::vector<Bucket>(std::size_t{1} << (64 - kDropped));
 };
 
-/// The regions that sampled blocks lie in, and which of them a budget opens.
+/// The steps of sampled blocks by the regions that these lie in: which regions have a lower node.
 class SampledRegions {
  public:
   explicit SampledRegions(const NodeLattice& leaves)
-      : leaves_(leaves), regions_(make_lattice(leaves.domain, kLowerDim)) {
+      : leaves_(leaves), lattice_(make_lattice(leaves.domain, kLowerDim)) {
     for (const Box& box : BlockSample(leaves).rows()) {
-      for (std::int64_t i = 0; i < box.voxels(); ++i) highest_[region_of(box.lo + index_at(i, box.extent()))] = 0;
+      for (std::int64_t i = 0; i < box.voxels(); ++i) ++regions_[region_of(box.lo + index_at(i, box.extent()))].sampled;
     }
   }
-  /// The first step of the leaf at that linear index has that key.
-  void add(std::int64_t leaf, double key) {
-    double& highest = highest_[region_of(leaves_.position(leaf))];
-    highest = std::max(highest, key);
+  /// `leaf` is a linear index.
+  void add(std::int64_t leaf, const LeafStep& step) {
+    steps_.push_back({region_of(leaves_.position(leaf)), step.key, step.gain, static_cast<double>(step.bytes)});
   }
-  /// How many regions of the volume have a step of that key or a higher one, by the share of the sampled ones.
-  double open(double key) const {
-    const auto open =
-        std::count_if(highest_.begin(), highest_.end(), [&](const auto& region) { return region.second >= key; });
-    return static_cast<double>(regions_.size()) * static_cast<double>(open) / static_cast<double>(highest_.size());
+  /// How many regions of the volume pay for a node of `node_bytes` by their steps of `key` or a higher one, as far as
+  /// their samples tell, by the share of those that were sampled.
+  double open(double key, double node_bytes) const {
+    std::map<std::int64_t, Sums> sums = regions_;
+    for (const Step& step : steps_) {
+      if (!(step.key >= key)) continue;
+      Sums& of_region = sums[step.region];
+      of_region.gain += step.gain;
+      of_region.bytes += step.bytes;
+    }
+    std::size_t open = 0;
+    for (const auto& [region, found] : sums) {
+      const double blocks = static_cast<double>(lattice_.voxels(lattice_.position(region)).voxels()) / kLeafVoxels;
+      const double scale = blocks / static_cast<double>(found.sampled);
+      if (found.gain * scale >= key * (node_bytes + found.bytes * scale) && found.gain > 0) ++open;
+    }
+    return static_cast<double>(lattice_.size()) * static_cast<double>(open) / static_cast<double>(sums.size());
   }
 
  private:
+  struct Sums {
+    std::int64_t sampled = 0;
+    double gain = 0;
+    double bytes = 0;
+  };
+  struct Step {
+    std::int64_t region;
+    double key;
+    double gain;
+    double bytes;
+  };
   std::int64_t region_of(const Index3& leaf) const {
-    return regions_.linear(floor_div(leaves_.first + leaf, kLowerLeaves) - regions_.first);
+    return lattice_.linear(floor_div(leaves_.first + leaf, kLowerLeaves) - lattice_.first);
   }
 
   const NodeLattice& leaves_;
-  NodeLattice regions_;
-  std::map<std::int64_t, double> highest_;  // key, by region
+  NodeLattice lattice_;
+  std::map<std::int64_t, Sums> regions_;
+  std::vector<Step> steps_;
 };
 
 /// The sampled blocks whose values are all finite.
@@ -179,8 +202,10 @@ BudgetOutlook judge(const FileRequest& request, const RowStore& rows) {
     gains.begin(leaf);
     rule.add_packed_steps(ladder, region, lengths, sampled.row, sampled.voxels,
                           rule.visibility == nullptr ? nullptr : &reach, leaf, gains);
-    for (const LeafStep& step : leaf.all_steps()) steps.add(sampled.row, ladder, step);
-    if (leaf.step_count > 0) regions.add(sampled.linear, leaf.steps->key);  // keys fall from step to step
+    for (const LeafStep& step : leaf.all_steps()) {
+      steps.add(sampled.row, ladder, step);
+      regions.add(sampled.linear, step);
+    }
   }
   const double share = static_cast<double>(sample.count) / static_cast<double>(rows.leaves().size());
   const Budget& budget = request.budget;
@@ -190,7 +215,8 @@ BudgetOutlook judge(const FileRequest& request, const RowStore& rows) {
     const double error = width * width * static_cast<double>(sample.voxels) / std::pow(10, budget.target / 10);
     if (const auto bought = steps.within_error(error)) {
       constexpr double kClearly = 2;
-      const double preview = regions.open(bought->least_key) * static_cast<double>(nvdb::kLowerBytes);
+      constexpr auto kNodeBytes = static_cast<double>(nvdb::kLowerBytes);
+      const double preview = regions.open(bought->least_key, kNodeBytes) * kNodeBytes;
       outlook = bought->outlook;
       outlook.short_of_preview = kClearly * bought->bytes / share < kLeastOfPreview * preview;
     }

@@ -1,6 +1,5 @@
 // What a budget will buy of a packed volume, as far as a sample of its blocks (compressor/packed/block_sample.h) tells:
-// which ladders are worth building for all of them, and
-// whether a file can be long enough for a preview.
+// which ladders are worth building for all of them, and whether the file can be long enough for a preview.
 #pragma once
 
 #include <optional>

@@ -66,6 +66,20 @@ class Candidate {
 
   /// The chosen file; for a PSNR, where blocks are kept without loss, one that meets it.
   FilePlan plan_chosen() {
+    FilePlan file = plan_until_met();
+    selection_.release_steps();  // another candidate may need their memory
+    return file;
+  }
+
+  FilePlan plan(const FileSize& size) {
+    selection_.choose(size.bytes);
+    FilePlan file = planned(size);
+    selection_.release_steps();
+    return file;
+  }
+
+ private:
+  FilePlan plan_until_met() {
     FilePlan file = planned(size_);
     if (request_.budget.kind != Budget::Kind::psnr || !ends_exact()) return file;
     // The plan's error can come as near to nothing as is asked. Sums round.
@@ -78,12 +92,6 @@ class Candidate {
     return file;
   }
 
-  FilePlan plan(const FileSize& size) {
-    selection_.choose(size.bytes);
-    return planned(size);
-  }
-
- private:
   // Whether every step that can be bought leads to no error.
   bool ends_exact() const { return encoding_ == Encoding::float32 || encoding_ == Encoding::packed; }
   // Of a plan for a PSNR.
@@ -101,7 +109,6 @@ class Candidate {
       file.streams = std::make_unique<PlannedStreamsStore>(work_.spill_records(), tree_->region_lattice.size());
     }
     file.plan = plan_tree(selection_, rows_, *tree_, *file.choices, file.streams.get());
-    selection_.release_steps();
     file.size = size;
     if (size.bytes == 0) file.size.bytes = file.plan.layout.file_bytes;
     file.plan.layout = padded_to(file.plan.layout, file.size.bytes);

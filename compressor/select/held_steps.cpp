@@ -7,11 +7,9 @@ namespace weir {
 
 // The kernel takes a tenth of a second for a GB of pages, unless several threads give them back.
 HeldSteps::~HeldSteps() {
-  std::vector<PageBuffer> all;
   for (Part& part : parts_) {
-    for (PageBuffer& chunk : part.chunks_) all.push_back(std::move(chunk));
+    tbb::parallel_for(std::size_t{0}, part.chunks_.size(), [&](std::size_t i) { part.chunks_[i] = PageBuffer(0); });
   }
-  tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) { all[i] = PageBuffer(0); });
 }
 
 bool HeldSteps::Part::grow() {

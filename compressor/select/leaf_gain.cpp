@@ -55,6 +55,7 @@ template <typename ErrorAt>
 void add_hull(const ErrorAt& error_at, LeafWidth from, double error, LeafWidth last, LeafGain& leaf, RegionGains& out) {
   std::array<double, 5> errors{};
   for (unsigned log2 = 0; log2 <= bits_log2_of(last); ++log2) errors[log2] = error_at(width_of(log2));
+  double most = std::numeric_limits<double>::max();
   while (from != last) {
     LeafStep best{};
     for (auto log2 = static_cast<unsigned>(from); log2 <= bits_log2_of(last); ++log2) {
@@ -64,6 +65,7 @@ void add_hull(const ErrorAt& error_at, LeafWidth from, double error, LeafWidth l
     if (best.level == 0) return;
     error -= best.gain;
     from = static_cast<LeafWidth>(best.level);
+    most = best.key = std::min(best.key, most);  // where three errors lie on a line, quotients round up, too
     out.add(leaf, best);
   }
 }

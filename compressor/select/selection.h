@@ -114,9 +114,10 @@ class Selection {
   SelectionBytes bytes_;
   std::uint64_t required_bytes_ = 0;  // of what is bought whatever the goal
   std::unique_ptr<HeldSteps> held_;
-  std::vector<HeldRegion> held_regions_;  // of all, where the held steps and these levels tell what is chosen
-  std::unique_ptr<PageBuffer> levels_;    // by region and position: the last step above those held; null: there is none
-  std::unique_ptr<KeyCounts> counts_;     // of steps that are too many to be held
+  std::vector<HeldRegion> held_regions_;  // empty: what is chosen is found by the rows
+  // By region and position: a leaf's last step whose key is above the range of the held ones. Null: there are none.
+  std::unique_ptr<PageBuffer> levels_;
+  std::unique_ptr<KeyCounts> counts_;  // of steps that are too many to be held
   Cut cut_;
   std::optional<std::uint64_t> most_bytes_;  // of the chosen file
 };

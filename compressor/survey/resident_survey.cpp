@@ -186,12 +186,7 @@ void survey_resident_sample(ResidentVolume& resident, VolumeSource& source, RowS
   if (ladders.near_rungs) ask.near.blocks = NearBlocks::all;
   tbb::task_group pages;
   make_pages_of(rows, pages);
-  try {
-    ResidentSurvey(resident, source, rows, ladders, ask, options).add(boxes);
-  } catch (...) {
-    pages.wait();
-    throw;
-  }
+  ResidentSurvey(resident, source, rows, ladders, ask, options).add(boxes);
   pages.wait();
 }
 

@@ -27,6 +27,8 @@ namespace {
 
 using State = CompletionAnswer::State;
 
+constexpr const char* kHasWriter = "a program has it open for writing";
+
 std::optional<Index3> extent_of(std::string_view dims) {
   const std::vector<std::string> parts = split(dims, dims.find('x') == std::string_view::npos ? ',' : 'x');
   if (parts.size() != 3) return std::nullopt;
@@ -110,6 +112,8 @@ FileSample sample_file(const std::string& path, const std::string& marker,
 }
 
 void FileCompletion::happened(FileEventKind kind, Time now) {
+  const bool of_writer = kind == FileEventKind::written || kind == FileEventKind::closed;
+  found_open_ = found_open_ && (of_writer || kind == FileEventKind::found);
   switch (kind) {
     case FileEventKind::found:
       writer_ = Writer::unknown;
@@ -165,19 +169,13 @@ CompletionAnswer FileCompletion::by_policy(const FileSample& sample, Time now) {
     seen_ = sample.identity;
     unchanged_since_ = now;
   }
-  CompletionAnswer its_close{State::waiting, Time::max(), "a program has it open for writing"};
+  CompletionAnswer its_close{State::waiting, Time::max(), kHasWriter};
   switch (rules_.policy) {
     case Completion::close:
       if (writer_ == Writer::open) return its_close;
       return writer_ == Writer::closed ? whole() : when_unchanged(rules_.settle, now);
     case Completion::rename:
-      if (writer_ == Writer::renamed) return whole();
-      if (writer_ == Writer::unknown) {  // it was there already
-        CompletionAnswer answer = when_unchanged({}, now);
-        if (answer.state != State::complete || !rules_.has_writer || !rules_.has_writer()) return answer;
-        return {State::waiting, asked_again(now), its_close.reason};
-      }
-      return {State::waiting, Time::max(), "it has not got its name by a rename"};
+      return when_renamed(now);
     case Completion::marker:
       if (!sample.marked) return {State::waiting, Time::max(), cat("its marker *", rules_.marker, " is not there")};
       return when_unchanged(kCloseSettle, now);
@@ -209,6 +207,19 @@ CompletionAnswer FileCompletion::by_policy(const FileSample& sample, Time now) {
       break;
   }
   return when_unchanged(rules_.settle, now);
+}
+
+CompletionAnswer FileCompletion::when_renamed(Time now) {
+  if (writer_ == Writer::renamed) return whole();
+  if (writer_ != Writer::unknown && !found_open_) {
+    return {State::waiting, Time::max(), "it has not got its name by a rename"};
+  }
+  // It was there already.
+  if (rules_.has_writer && rules_.has_writer()) {
+    found_open_ = true;
+    return {State::waiting, asked_again(now), kHasWriter};
+  }
+  return when_unchanged(found_open_ ? rules_.settle : std::chrono::nanoseconds(0), now);
 }
 
 CompletionAnswer FileCompletion::when_unchanged(std::chrono::nanoseconds settle, Time now) const {

@@ -4,8 +4,10 @@
 //
 // Policies (WatchConfig::complete), each also without a change for kCloseSettle or `settle` where it says so:
 //   close   a writer closed it; found without its writer: unchanged for settle
-//   rename  it has its name by a rename; found without its writer: at once, unless a program has it open for writing,
-//           which may have begun before its directory was watched; created or linked: not before a rename
+//   rename  it has its name by a rename; found without its writer: at once, but where a program has it open for
+//   writing,
+//           which may have begun before its directory was watched, when none has, and it is unchanged for settle;
+//           created or linked: not before a rename
 //   marker  NAME.done is beside it, unchanged for kCloseSettle
 //   size    it has its expected size, unchanged for kCloseSettle; shorter and closed: unchanged for settle; of a
 //           directory, which has none: as stable
@@ -46,7 +48,7 @@ struct CompletionRules {
   std::string marker;                           ///< of the policy marker, for messages
   /// Of a source in several files, asked once its own is whole: what is not written yet, in words; empty where all is.
   std::function<std::string()> unwritten;
-  /// With the policy rename: whether a program has the file open for writing. Asked of one that was found.
+  /// With the policy rename, of a file that was found: whether a program has it open for writing.
   std::function<bool()> has_writer;
   /// Of a source in files that nothing lists, asked like that.
   std::shared_ptr<StoreQuiet> store;
@@ -104,11 +106,13 @@ class FileCompletion {
   CompletionAnswer by_policy(const FileSample& sample, Time now);
   // When to ask again what no event will tell.
   Time asked_again(Time now) const;
+  CompletionAnswer when_renamed(Time now);
   CompletionAnswer when_unchanged(std::chrono::nanoseconds settle, Time now) const;
   CompletionAnswer whole() const;
 
   CompletionRules rules_;
   Writer writer_ = Writer::unknown;
+  bool found_open_ = false;  // it was found, with a writer; events of that one say nothing about its name
   std::optional<FileIdentity> seen_;
   Time unchanged_since_{};
 };

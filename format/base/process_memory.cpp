@@ -11,6 +11,10 @@
 
 namespace weir {
 
+#ifndef MADV_POPULATE_WRITE
+constexpr int MADV_POPULATE_WRITE = 23;  // Linux 5.14; unknown to older C libraries
+#endif
+
 std::uint64_t resident_bytes() { return 1024 * number_in_table("/proc/self/status", "VmRSS:"); }
 
 std::uint64_t peak_resident_bytes() { return 1024 * number_in_table("/proc/self/status", "VmHWM:"); }
@@ -23,7 +27,7 @@ std::uint64_t available_bytes() {
 
 void make_pages(std::span<const std::byte> memory) {
   while (::madvise(const_cast<std::byte*>(memory.data()), memory.size(), MADV_POPULATE_WRITE) != 0) {
-    if (errno != EINTR && errno != EAGAIN) return;  // whoever needs a page waits for it
+    if (errno != EINTR) return;  // whoever needs a page waits for it
   }
 }
 

@@ -27,8 +27,8 @@ using test::MemoryVolume;
 
 class FakeCoder : public testing::Test {
  protected:
-  FakeCoder() { reset_device(); }
-  ~FakeCoder() override { reset_device(); }
+  FakeCoder() { runtime().reset(); }
+  ~FakeCoder() override { runtime().reset(); }
 
   static FakeRuntime& runtime() { return FakeRuntime::instance(); }
 
@@ -164,7 +164,7 @@ TEST_F(FakeCoder, WhereTheDeviceFailsTheCpuGoesOnAndSaysItOnce) {
         Fault{"cudaMemcpyAsync", 0, cudaErrorIllegalAddress, "cudaErrorIllegalAddress", true},
         Fault{"cudaMemcpyAsync", 5, cudaErrorIllegalAddress, "cudaErrorIllegalAddress", false}}) {
     SCOPED_TRACE(std::string(fault.function) + ", call " + std::to_string(fault.nth));
-    reset_device();
+    runtime().reset();
     std::vector<std::string> said;
     const std::unique_ptr<BlockCoder> device =
         choose_coder(CoderChoice::cuda, true, 0, [&](const Message& line) { said.push_back(line.text()); });

@@ -66,8 +66,8 @@ struct Both {
 
 class DeviceArraySource : public testing::Test {
  protected:
-  DeviceArraySource() { reset_device(); }
-  ~DeviceArraySource() override { reset_device(); }
+  DeviceArraySource() { runtime().reset(); }
+  ~DeviceArraySource() override { runtime().reset(); }
   static FakeRuntime& runtime() { return FakeRuntime::instance(); }
 
   static void expect_same_boxes(const Both& both) {
@@ -159,7 +159,7 @@ TEST_F(DeviceArraySource, AFailedCopyEndsTheConversionAndLeavesNothing) {
   EXPECT_EQ(message_of_error(ErrorKind::io, [&] { convert_volume(*source, options, {}, files); }),
             "copying a box from the device: cudaErrorIllegalAddress, pretended");
   EXPECT_TRUE(files.names().empty());
-  reset_device();
+  runtime().reset();
 }
 
 }  // namespace

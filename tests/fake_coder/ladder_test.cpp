@@ -12,7 +12,6 @@
 #include "compressor/packed/ladder_builder.h"
 #include "format/base/error.h"
 #include "gpu/cuda/encode/device_coder.h"
-#include "tests/fake_coder/support.h"
 #include "tests/fake_cuda/fake_runtime.h"
 #include "tests/support/block_volumes.h"
 
@@ -25,12 +24,12 @@ using test::FakeRuntime;
 class FoundLadders : public testing::Test {
  protected:
   FoundLadders() {
-    reset_device();
+    FakeRuntime::instance().reset();
     coder_ = make_device_coder(0, [](const Error& error) { ADD_FAILURE() << error.what(); });
   }
   ~FoundLadders() override {
     coder_.reset();
-    reset_device();
+    FakeRuntime::instance().reset();
   }
 
   // Compares each ladder; returns for how many blocks what was found was enough.

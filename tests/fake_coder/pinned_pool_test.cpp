@@ -1,15 +1,16 @@
 // Page-locked memory that is kept for the next conversion, on the pretended CUDA runtime.
 #include "gpu/cuda/encode/pinned_pool.h"
 
+#include <cuda_runtime_api.h>
 #include <gtest/gtest.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
-#include "tests/fake_coder/support.h"
 #include "tests/fake_cuda/fake_runtime.h"
 
 namespace weir::fake_coder_test {
@@ -21,19 +22,20 @@ constexpr std::size_t kMiB = std::size_t{1} << 20U;
 
 class PinnedPoolTest : public testing::Test {
  protected:
-  PinnedPoolTest() { reset_device(); }
+  PinnedPoolTest() { runtime().reset(); }
   ~PinnedPoolTest() override {
     pool_.clear();
-    EXPECT_EQ(FakeRuntime::instance().allocated_bytes(), 0U);
+    EXPECT_EQ(runtime().allocated_bytes(), 0U);
   }
 
+  static FakeRuntime& runtime() { return FakeRuntime::instance(); }
   PinnedPool::Piece take(std::size_t bytes) {
     std::string refusal;
     std::optional<PinnedPool::Piece> piece = pool_.take(bytes, refusal);
     if (!piece) throw std::runtime_error(refusal);
     return std::move(*piece);
   }
-  static std::uint64_t locked() { return FakeRuntime::instance().calls("cudaHostAlloc"); }
+  static std::uint64_t locked() { return runtime().calls("cudaHostAlloc"); }
 
   PinnedPool pool_;
 };
@@ -48,25 +50,43 @@ TEST_F(PinnedPoolTest, GivesTheSmallestPieceThatDoes) {
   EXPECT_EQ(take(kMiB).memory.data(), at);
   EXPECT_EQ(locked(), 2U);
   EXPECT_EQ(pool_.held_bytes(), 3 * kMiB);
-  EXPECT_EQ(take(4 * kMiB).bytes, 4 * kMiB);
-  EXPECT_EQ(locked(), 3U);
 }
 
-TEST_F(PinnedPoolTest, HoldsNoMoreThanItMay) {
-  PinnedPool::Piece first = take(PinnedPool::kMostHeld);
-  PinnedPool::Piece second = take(kMiB);
-  pool_.give_back(std::move(first));
-  pool_.give_back(std::move(second));
-  EXPECT_EQ(pool_.held_bytes(), PinnedPool::kMostHeld);
-  EXPECT_EQ(FakeRuntime::instance().allocated_bytes(), PinnedPool::kMostHeld) << "the second is freed";
+TEST_F(PinnedPoolTest, APieceMoreThanFourTimesAsLargeIsLeftToOthers) {
+  pool_.give_back(take(9 * kMiB));
+  pool_.give_back(take(8 * kMiB));
+  EXPECT_EQ(take(2 * kMiB).bytes, 8 * kMiB);
+  EXPECT_EQ(pool_.held_bytes(), 9 * kMiB);
+  EXPECT_EQ(take(2 * kMiB).bytes, 2 * kMiB);
+  EXPECT_EQ(pool_.held_bytes(), 0U) << "a new one takes the place of one that is held";
 }
 
-TEST_F(PinnedPoolTest, DoesNotGiveWhatADeviceThatWasResetHasNoMore) {
+TEST_F(PinnedPoolTest, WhatCameBackFirstMakesRoomForWhatComesBackLater) {
   pool_.give_back(take(kMiB));
-  FakeRuntime::instance().reset();
-  const PinnedPool::Piece piece = take(kMiB);
-  EXPECT_EQ(locked(), 1U);
-  EXPECT_EQ(pool_.held_bytes(), 0U);
+  PinnedPool::Piece large = take(PinnedPool::kMostHeld - kMiB);
+  PinnedPool::Piece later = take(2 * kMiB);
+  pool_.give_back(std::move(large));
+  pool_.give_back(std::move(later));
+  EXPECT_EQ(pool_.held_bytes(), 2 * kMiB);
+  EXPECT_EQ(runtime().allocated_bytes(), 2 * kMiB);
+  pool_.give_back(take(PinnedPool::kMostHeld + kMiB));
+  EXPECT_EQ(runtime().allocated_bytes(), 0U) << "too large to be held";
+}
+
+// A program may reset its device, and lock memory of its own at the same address.
+TEST_F(PinnedPoolTest, WhatADeviceThatWasResetHasNoMore_IsNeitherGivenNorFreed) {
+  pool_.give_back(take(kMiB));
+  runtime().reset();
+  void* others = nullptr;
+  ASSERT_EQ(cudaHostAlloc(&others, kMiB, 0), cudaSuccess);
+  {
+    const PinnedPool::Piece piece = take(kMiB);
+    EXPECT_NE(piece.memory.data(), others);
+    EXPECT_EQ(locked(), 2U);
+  }
+  pool_.clear();
+  EXPECT_EQ(runtime().allocated_bytes(), kMiB) << "the program's";
+  cudaFreeHost(others);
 }
 
 }  // namespace

@@ -35,8 +35,8 @@ std::string message_of(const Action& action) {
 
 class Resident : public testing::Test {
  protected:
-  Resident() { reset_device(); }
-  ~Resident() override { reset_device(); }
+  Resident() { runtime().reset(); }
+  ~Resident() override { runtime().reset(); }
 
   static FakeRuntime& runtime() { return FakeRuntime::instance(); }
 
@@ -137,7 +137,7 @@ TEST_F(Resident, WhereTheDeviceHasNoRoomTheHostDoesItsWorkAndSaysItOnce) {
     int failures = 0;
     for (const int nth : {0, 1, 3, 6, 9, 12}) {
       SCOPED_TRACE(std::string(function) + ", call " + std::to_string(nth));
-      reset_device();
+      runtime().reset();
       std::vector<std::string> said;
       const std::unique_ptr<VolumeSource> source =
           on_device(volume, [&](const Error& error) { said.emplace_back(error.what()); });
@@ -157,7 +157,7 @@ TEST_F(Resident, ADeviceThatIsGoneEndsTheConversionAndLeavesNothing) {
   MemoryVolume volume = turbulence();
   for (const int nth : {0, 2, 5}) {
     SCOPED_TRACE(nth);
-    reset_device();
+    runtime().reset();
     std::vector<std::string> said;
     const std::unique_ptr<VolumeSource> source =
         on_device(volume, [&](const Error& error) { said.emplace_back(error.what()); });

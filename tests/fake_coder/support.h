@@ -9,18 +9,10 @@
 #include <vector>
 
 #include "compressor/conversion.h"
-#include "gpu/cuda/encode/pinned_pool.h"
 #include "tests/compressor/support/crash_file_system.h"
 #include "tests/compressor/support/memory_volume.h"
-#include "tests/fake_cuda/fake_runtime.h"
 
 namespace weir::fake_coder_test {
-
-/// The pretended device as at the start of a process.
-inline void reset_device() {
-  PinnedPool::of_process().clear();
-  test::FakeRuntime::instance().reset();
-}
 
 inline double waves(const Index3& i, int octaves) {
   const auto x = static_cast<double>(i.x), y = static_cast<double>(i.y), z = static_cast<double>(i.z);

@@ -30,6 +30,19 @@ cudaError_t release(void* memory) {
   return cudaSuccess;
 }
 
+// The driver's cuCtxGetId.
+int context_id(void*, unsigned long long* id) {
+  *id = runtime().context();
+  return 0;
+}
+
+cudaError_t entry_point(const char* symbol, void** function, cudaDriverEntryPointQueryResult* result) {
+  const bool known = std::strcmp(symbol, "cuCtxGetId") == 0;
+  *function = known ? reinterpret_cast<void*>(&context_id) : nullptr;
+  *result = known ? cudaDriverEntryPointSuccess : cudaDriverEntryPointSymbolNotFound;
+  return cudaSuccess;
+}
+
 }  // namespace
 
 #define WEIR_ENTER(function) \
@@ -183,6 +196,17 @@ cudaError_t cudaPointerGetAttributes(cudaPointerAttributes* attributes, const vo
   attributes->type = runtime().holds(number(address)) ? cudaMemoryTypeDevice : cudaMemoryTypeUnregistered;
   return cudaSuccess;
 }
+#if CUDART_VERSION >= 12050
+cudaError_t cudaGetDriverEntryPointByVersion(const char* symbol, void** function, unsigned, unsigned long long,
+                                             cudaDriverEntryPointQueryResult* result) {
+  return entry_point(symbol, function, result);
+}
+#else
+cudaError_t cudaGetDriverEntryPoint(const char* symbol, void** function, unsigned long long,
+                                    cudaDriverEntryPointQueryResult* result) {
+  return entry_point(symbol, function, result);
+}
+#endif
 cudaError_t cudaDeviceSynchronize() {
   WEIR_ENTER("cudaDeviceSynchronize");
   return cudaSuccess;

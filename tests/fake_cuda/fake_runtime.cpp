@@ -39,6 +39,12 @@ void FakeRuntime::reset() {
   most_registered_ = 0;
   capacity_ = std::uint64_t{1} << 32U;
   sticky_ = last_ = cudaSuccess;
+  ++context_;
+}
+
+std::uint64_t FakeRuntime::context() {
+  const std::lock_guard lock(mutex_);
+  return context_;
 }
 
 void FakeRuntime::fail(const std::string& function, int nth, cudaError_t code, bool sticky) {

@@ -16,7 +16,9 @@ namespace weir::test {
 class FakeRuntime {
  public:
   static FakeRuntime& instance();
+  /// The device has another context afterwards.
   void reset();
+  std::uint64_t context();
 
   /// The `nth` call (0: the next) of `function` fails with `code`; a sticky one makes all later calls fail too.
   void fail(const std::string& function, int nth, cudaError_t code, bool sticky = false);
@@ -68,6 +70,7 @@ class FakeRuntime {
   std::map<std::uintptr_t, std::uint64_t> allocated_;
   std::uint64_t most_registered_ = 0;
   std::uint64_t capacity_ = 0;
+  std::uint64_t context_ = 0;
   cudaError_t sticky_ = cudaSuccess;
   cudaError_t last_ = cudaSuccess;
 };

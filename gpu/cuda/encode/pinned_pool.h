@@ -3,10 +3,11 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <deque>
 #include <mutex>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "gpu/cuda/load/pinned_memory.h"
 
@@ -18,26 +19,34 @@ class PinnedPool {
   struct Piece {
     PinnedMemory memory;
     std::size_t bytes;
+    int device;
+    std::uint64_t context;  ///< device_context() when it was locked
   };
-  /// What it holds at most; what is given back beyond that is freed.
+  /// What it holds at most: what came back first is freed.
   static constexpr std::size_t kMostHeld = std::size_t{96} << 20U;
 
   /// The process's. It stays until the process ends, and with it what it holds.
   static PinnedPool& of_process();
 
-  /// The smallest piece held that has so many bytes, or a new one; otherwise as PinnedMemory::make.
+  /// The smallest piece held that has so many bytes, and at most four times as many, or a new one, in place of one that
+  /// is held; otherwise as PinnedMemory::make.
   std::optional<Piece> take(std::size_t bytes, std::string& refusal);
-  void give_back(Piece piece);
+  void give_back(Piece piece) noexcept;
   /// Frees what it holds.
   void clear();
   std::size_t held_bytes() const;
 
  private:
-  std::optional<Piece> take_held(std::size_t bytes);
+  std::optional<Piece> take_held(std::size_t bytes, std::uint64_t context);
+  void free_oldest();
 
   mutable std::mutex mutex_;
-  std::vector<Piece> pieces_;
-  std::size_t bytes_ = 0;  // of all
+  std::deque<Piece> pieces_;  // the oldest first
+  std::size_t bytes_ = 0;     // of all
 };
+
+/// Which context of which device the calling thread works in: a device that is reset has another one afterwards, and
+/// what was locked before is not. 0 where the driver does not tell (before CUDA 12).
+std::uint64_t device_context();
 
 }  // namespace weir

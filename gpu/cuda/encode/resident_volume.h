@@ -18,12 +18,12 @@ namespace weir {
 /// does.
 inline constexpr std::size_t kMostResidentBoxes = 16;
 /// What it takes of the process's memory, at most. Of a box: what a survey finds of 8,192 blocks, or the streams of
-/// 4,096, and the values of as many that the host asks for.
-inline constexpr std::uint64_t kResidentHostBytes = kMostResidentBoxes * (std::uint64_t{20} << 20U);
+/// 4,096, and the values of as many that the host asks for, which half of the boxes have twice.
+inline constexpr std::uint64_t kResidentHostBytes = kMostResidentBoxes * (std::uint64_t{24} << 20U);
 
 /// `values`, over `voxels`, x fastest and without gaps, lie on `device`, and stay there unchanged for as long as the
-/// object lives; what computes them has ended. It takes, besides, half a GB of the device's memory, or 1 GB where streams
-/// are as long as values: sixteen regions of 128^3 voxels are encoded at a time. Page-locked memory goes back to the
+/// object lives; what computes them has ended. It takes, besides, 0.5 to 1 GB of the device's memory, the most where
+/// streams are as long as values: sixteen regions of 128^3 voxels are encoded at a time. Page-locked memory goes back to the
 /// process's PinnedPool. What goes wrong, room that there is not among it, ends its work and is said to `failed`, once.
 /// None of its axes is longer than kLongestAxis. Throws Error as use_device() does, and Error(io) where there is no room
 /// for its tables.

@@ -23,15 +23,6 @@ std::optional<PinnedMemory> PinnedMemory::make(std::uint64_t bytes, std::string&
   return std::nullopt;
 }
 
-bool PinnedMemory::is_locked() const {
-  cudaPointerAttributes attributes{};
-  if (cudaPointerGetAttributes(&attributes, memory_.get()) == cudaSuccess) {
-    return attributes.type != cudaMemoryTypeUnregistered;
-  }
-  cudaGetLastError();
-  return false;
-}
-
 const std::byte* PinnedMemory::device_address() const {
   void* device = nullptr;
   check_cuda(cudaHostGetDevicePointer(&device, memory_.get(), 0), "asking for the device's address of host memory");

@@ -16,8 +16,8 @@ class PinnedMemory {
   static std::optional<PinnedMemory> make(std::uint64_t bytes, std::string& refusal);
 
   std::byte* data() const { return memory_.get(); }
-  /// Whether it still is: a device that was reset has none.
-  bool is_locked() const;
+  /// It is not freed: a device that was reset has none.
+  void forget() { static_cast<void>(memory_.release()); }
   /// Where the device sees it. Throws Error(io).
   const std::byte* device_address() const;
 

@@ -3,11 +3,17 @@
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "compressor/packed/ladder_builder.h"
+#include "compressor/select/region_rows.h"
 #include "ingest/synthetic/synthetic.h"
+#include "tests/compressor/support/crash_file_system.h"
 #include "tests/compressor/support/surveyed.h"
 
 namespace weir::held_steps_test {
@@ -129,6 +135,87 @@ TEST(HeldSteps, SelectionChoosesTheSameWithAndWithoutThem) {
           EXPECT_EQ(chosen.kept, expected.kept) << kind << ", " << bytes << " bytes";
           EXPECT_EQ(chosen.region, expected.region);
           EXPECT_EQ(chosen.plan.layout.content_end, expected.plan.layout.content_end);
+        }
+      }
+    }
+  }
+}
+
+// How each leaf of each region is kept.
+std::vector<std::vector<KeptLevel>> levels_of(const Selection& selection, const TreeRegions& tree,
+                                              const RowStore& rows) {
+  std::vector<std::vector<KeptLevel>> levels;
+  RegionGains gains;
+  RowBuffers buffers;
+  for (std::size_t i = 0; i < tree.regions.size(); ++i) {
+    const auto region = static_cast<std::int64_t>(i);
+    const LeafChoices choices = selection.choices(region, read_region(rows, tree.leaf_box(region), buffers), gains);
+    std::vector<KeptLevel>& of_region = levels.emplace_back();
+    for (std::size_t position = 0; position < LeafChoices::kLeaves; ++position) {
+      of_region.push_back(choices.level(position));
+    }
+  }
+  return levels;
+}
+
+// Packed blocks, the widths of FpN, and the paper's bricks; by a size and by an error.
+TEST(HeldSteps, TellHowEachLeafIsKept) {
+  for (const std::string kind : {"cloud", "turbulence", "label"}) {
+    const auto source = open_synthetic(kind == "label" ? "noise" : kind, {{150, 140, 260}, 3});
+    test::MemoryVolume whole(*source);
+    // Of few values, many steps have the same key.
+    test::MemoryVolume volume(whole.info().domain(), [&](const Index3& i) {
+      const float v = whole.values()[static_cast<std::size_t>(linear_index(i, whole.info().domain().extent()))];
+      return kind == "label" ? std::floor(v * 4) : v;
+    });
+    const BlockPlan plan = plan_blocks(volume.info().domain(), volume.access(), std::uint64_t{1} << 30U);
+    test::CrashFileSystem files;
+    RowStore with(files.create_unnamed("rows"), plan.lattice, {64, 64 * kMiB});
+    with.set_ladders(std::make_unique<LeafStore<PackedLadder>>(files.create_unnamed("ladders"), plan.lattice));
+    const Survey survey = survey_volume(volume, plan, with, {}, {.widths = true, .ladders = LadderAim{}});
+    for (const bool packed : {true, false}) {
+      for (const Metric metric : {Metric::sse, Metric::farthest}) {
+        if (packed && metric != Metric::sse) continue;
+        GainRule rule{metric, 2, {FillMode::mean, 0.25F, NonFinitePolicy::background}};
+        rule.encoding = packed ? Encoding::packed : metric == Metric::sse ? Encoding::fpn : Encoding::float32;
+        if (packed) rule.packed = PackedRule{false, coarsest_step(survey.min, survey.max)};
+        TreeRegions tree(volume.info().domain());
+        Selection bounds(rule, with, tree, Selection::Search::no);
+        const std::uint64_t least = bounds.bytes().minimum.file_bytes;
+        const std::uint64_t most = bounds.bytes().full.file_bytes;
+        const auto compare = [&](Selection::Search search, const auto& choose) {
+          Selection held(rule, with, tree, search);
+          choose(held);
+          const auto known = levels_of(held, tree, with);
+          held.release_steps();
+          EXPECT_EQ(known == levels_of(held, tree, with), true) << kind << (packed ? ", packed" : "");
+          std::size_t kept = 0;
+          for (const auto& region : known) kept += region.size() - std::ranges::count(region, KeptLevel{0});
+          return kept;
+        };
+        std::size_t last = 0;
+        for (int k = 1; k < 8; ++k) {
+          const std::uint64_t bytes = least + (most - least) / 8 * static_cast<unsigned>(k);
+          const std::size_t kept = compare(Selection::Search::of_bytes, [&](Selection& s) { s.choose(bytes); });
+          EXPECT_GE(kept, last);
+          last = kept;
+        }
+        EXPECT_GT(last, 0U);
+        if (metric != Metric::sse) continue;
+        double error = 0;
+        for (const Upper& upper : tree.uppers) error += upper.tile_error;
+        for (const double share : {0.5, 1e-2, 1e-4}) {
+          compare(Selection::Search::of_error, [&](Selection& s) { s.choose_error(share * error); });
+        }
+        if (!packed) continue;
+        // Steps of a window alone are held: the cut lies in it, and where the size is another one, beside it.
+        TreeRegions other(volume.info().domain());
+        Selection first(rule, with, other);
+        first.choose(least + (most - least) / 2);
+        ASSERT_TRUE(first.cut_key());
+        rule.packed->window = KeyWindow::about(*first.cut_key(), survey.max - survey.min);
+        for (const unsigned eighths : {1U, 4U, 7U}) {
+          compare(Selection::Search::of_bytes, [&](Selection& s) { s.choose(least + (most - least) / 8 * eighths); });
         }
       }
     }

@@ -76,6 +76,21 @@ TEST(PackedWindow, BytesAreTheSameWithALookAheadAndWithout) {
   expect_same_every_way(volume, packed(Budget::Kind::psnr, 130), "130 dB");
 }
 
+// What the sample says of the preview is what the plan would, and is the same whoever surveys.
+TEST(PackedWindow, AFileThatIsFarTooShortHasNoPreviewHoweverItIsMade) {
+  MemoryVolume volume(kDomain, waves);
+  ConversionOptions options = packed(Budget::Kind::psnr, 30);
+  options.preview = Preview::automatic;
+  expect_same_every_way(volume, options, "30 dB");
+  const Converted made = test::convert(volume, options);
+  EXPECT_FALSE(made.sidecar.packed->preview);
+  options.preview = Preview::off;
+  EXPECT_TRUE(test::convert(volume, options).file == made.file);
+  options.preview = Preview::automatic;
+  options.budget.target = 140;
+  EXPECT_TRUE(test::convert(volume, options).sidecar.packed->preview);
+}
+
 TEST(PackedWindow, ASampleThatMisleadsCostsTimeAlone) {
   for (const bool flat : {false, true}) {
     MemoryVolume volume(kDomain, [&](const Index3& i) { return misleading(i, flat); });

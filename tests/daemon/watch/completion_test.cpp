@@ -163,17 +163,22 @@ TEST_F(CompletionTest, Rename_FileThatWasCreated_WaitsForItsRename) {
   EXPECT_EQ(at(7, Kind::found).state, State::complete) << "after a restart, say";
 }
 
-TEST_F(CompletionTest, Rename_FileThatWasFoundWithAWriter_WaitsForItsEnd) {
+TEST_F(CompletionTest, Rename_FileThatWasFoundWithAWriter_IsCompleteWhenItHasNoneAndIsUnchanged) {
   rules.policy = Completion::rename;
   bool open = true;
   rules.has_writer = [&] { return open; };
   const CompletionAnswer answer = at(0, Kind::found);
   EXPECT_DOUBLE_EQ(again(answer), 2);
   EXPECT_EQ(answer.reason, kOpen);
-  expect_event_is_awaited(at(1, Kind::closed), "it has not got its name by a rename");
-  EXPECT_DOUBLE_EQ(again(at(2, Kind::found)), 4) << "events were lost, say";
+  grow(200);
+  EXPECT_DOUBLE_EQ(again(at(1, Kind::written)), 3);
   open = false;
+  EXPECT_DOUBLE_EQ(again(at(2, Kind::closed)), 4) << "unchanged since 2";
   EXPECT_EQ(at(4).state, State::complete);
+  open = true;
+  EXPECT_EQ(again(at(5, Kind::found)), 7) << "events were lost, say";
+  EXPECT_EQ(at(6, Kind::moved_in).state, State::complete);
+  expect_event_is_awaited(at(7, Kind::created), "it has not got its name by a rename");
 }
 
 // A program that creates a directory, and a file in it at once, does so before anybody watches the directory.
