@@ -53,8 +53,10 @@ TEST_F(PinnedPoolTest, GivesTheSmallestPieceThatDoes) {
 }
 
 TEST_F(PinnedPoolTest, APieceMoreThanFourTimesAsLargeIsLeftToOthers) {
-  pool_.give_back(take(9 * kMiB));
-  pool_.give_back(take(8 * kMiB));
+  PinnedPool::Piece nine = take(9 * kMiB);
+  PinnedPool::Piece eight = take(8 * kMiB);
+  pool_.give_back(std::move(nine));
+  pool_.give_back(std::move(eight));
   EXPECT_EQ(take(2 * kMiB).bytes, 8 * kMiB);
   EXPECT_EQ(pool_.held_bytes(), 9 * kMiB);
   EXPECT_EQ(take(2 * kMiB).bytes, 2 * kMiB);
