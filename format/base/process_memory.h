@@ -17,8 +17,8 @@ std::uint64_t peak_resident_bytes();
 /// (group_memory.h) where that is less; the largest number where neither says any.
 std::uint64_t available_bytes();
 
-/// Gives memory its pages where it has none yet, so that several threads do it before others need them. The memory begins
-/// at a page, and the caller may write to it; its bytes stay as they are. Does nothing on a Linux before 5.14.
+/// Gives memory its pages where it has none yet, so that several threads do it before others need them. The memory
+/// begins at a page, and the caller may write to it; its bytes stay as they are. Does nothing on a Linux before 5.14.
 void make_pages(std::span<const std::byte> memory);
 
 }  // namespace weir

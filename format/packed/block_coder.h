@@ -193,8 +193,8 @@ class BlockCoder {
   virtual std::uint64_t host_bytes() const = 0;
 };
 
-/// Blocks of a resident volume. Streams are encoded once, after the survey: what end_survey() gave is gone then. What is
-/// given of the streams stays as long as the blocks.
+/// Blocks of a resident volume. Streams are encoded once, after the survey: what end_survey() gave is gone then. What
+/// is given of the streams stays as long as the blocks.
 class ResidentBlocks : public LoadedBlocks {
  public:
   /// The values of some of them, 512 of each in the order of a leaf; outside the volume those of the nearest voxel

@@ -23,10 +23,10 @@ inline constexpr std::uint64_t kResidentHostBytes = kMostResidentBoxes * (std::u
 
 /// `values`, over `voxels`, x fastest and without gaps, lie on `device`, and stay there unchanged for as long as the
 /// object lives; what computes them has ended. It takes, besides, 0.5 to 1 GB of the device's memory, the most where
-/// streams are as long as values: sixteen regions of 128^3 voxels are encoded at a time. Page-locked memory goes back to the
-/// process's PinnedPool. What goes wrong, room that there is not among it, ends its work and is said to `failed`, once.
-/// None of its axes is longer than kLongestAxis. Throws Error as use_device() does, and Error(io) where there is no room
-/// for its tables.
+/// streams are as long as values: sixteen regions of 128^3 voxels are encoded at a time. Page-locked memory goes back
+/// to the process's PinnedPool. What goes wrong, room that there is not among it, ends its work and is said to
+/// `failed`, once. None of its axes is longer than kLongestAxis. Throws Error as use_device() does, and Error(io) where
+/// there is no room for its tables.
 std::unique_ptr<ResidentVolume> make_resident_volume(int device, const float* values, const Box& voxels,
                                                      std::function<void(const Error&)> failed);
 
