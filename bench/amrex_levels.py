@@ -5,7 +5,8 @@
 
 Writes DIRECTORY/plt00001, as many cells on each level, the finer ones in the middle, and converts it to one file and to
 one for each level, beside it. With --wide it is DIRECTORY/plt00002, whose finest level has a quarter of the volume, and the
-one before 42 %: seven times as many bytes of the same grid. The files are put out of the page cache before each is timed (posix_fadvise).
+one before 42 %: seven times as many bytes of the same grid. The files are put out of the page cache before each is timed
+(posix_fadvise).
 """
 import argparse
 import itertools

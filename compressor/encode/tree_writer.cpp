@@ -89,39 +89,33 @@ class LowerWriter {
     const LeafChoices choices = parts_.choices.read(index);
     const std::vector<LeafRecord> records = parts_.records.read(region.first_leaf, region.leaves);
     const std::uint64_t node = parts_.layout.lower_offset(region.node);
-    const Box box = rows.leaf_box();
     NodeImage& image = images_.local();
     image.reset();
     TableStatistics table;
     std::size_t next = 0;
     std::uint64_t offset = parts_.layout.leaves + region.first_byte;
-    for (std::int64_t x = box.lo.x; x < box.hi.x; ++x) {
-      for (std::int64_t y = box.lo.y; y < box.hi.y; ++y) {
-        for (std::int64_t z = box.lo.z; z < box.hi.z; ++z) {
-          const Index3 leaf{x, y, z};
-          const std::size_t position = tree.mask_position(leaf);
-          const auto bits = static_cast<std::int64_t>(position);
-          const Index3 entry{bits >> 8, bits >> 4 & 15, bits & 15};
-          const Box voxels = tree.leaves.voxels(leaf);
-          const Box leaf_node = tree.leaves.node_box(leaf);
-          const LeafWidth width = choices.width(position);
-          if (width == LeafWidth::tile) {
-            const LeafRow& row = rows.at(leaf);
-            const float value = parts_.fill.leaf_value(row);
-            const bool active = parts_.fill.active(row.valued()) && voxels == leaf_node;
-            image.set_tile(entry, value, active);
-            if (active) table.add_tile(value, kLeafDim, leaf_node.lo);
-            cells.add_tile(voxels, value);
-            continue;
-          }
-          const LeafRecord& record = records[next++];
-          image.set_child(entry, offset - node);
-          offset += leaf_bytes(width);
-          table.add_child(active_statistics(record, leaf_node, voxels));
-          cells.add_leaf(leaf_node, record);
-        }
+    for_each_in_file_order(rows.leaf_box(), [&](const Index3& leaf) {
+      const std::size_t position = tree.mask_position(leaf);
+      const auto bits = static_cast<std::int64_t>(position);
+      const Index3 entry{bits >> 8, bits >> 4 & 15, bits & 15};
+      const Box voxels = tree.leaves.voxels(leaf);
+      const Box leaf_node = tree.leaves.node_box(leaf);
+      const LeafWidth width = choices.width(position);
+      if (width == LeafWidth::tile) {
+        const LeafRow& row = rows.at(leaf);
+        const float value = parts_.fill.leaf_value(row);
+        const bool active = parts_.fill.active(row.valued()) && voxels == leaf_node;
+        image.set_tile(entry, value, active);
+        if (active) table.add_tile(value, kLeafDim, leaf_node.lo);
+        cells.add_tile(voxels, value);
+        return;
       }
-    }
+      const LeafRecord& record = records[next++];
+      image.set_child(entry, offset - node);
+      offset += leaf_bytes(width);
+      table.add_child(active_statistics(record, leaf_node, voxels));
+      cells.add_leaf(leaf_node, record);
+    });
     const NodeStatistics total = table.total();
     image.set_statistics(total);
     out_.write_at(node, image.bytes());

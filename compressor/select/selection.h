@@ -96,7 +96,7 @@ class Selection {
   };
   // Where the steps of a region are held.
   struct HeldRegion {
-    const HeldSteps::Part* part = nullptr;  // null: they are not
+    const HeldSteps::Part* part = nullptr;
     std::size_t first = 0;
     std::size_t count = 0;
   };

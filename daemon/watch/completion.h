@@ -5,9 +5,8 @@
 // Policies (WatchConfig::complete), each also without a change for kCloseSettle or `settle` where it says so:
 //   close   a writer closed it; found without its writer: unchanged for settle
 //   rename  it has its name by a rename; found without its writer: at once, but where a program has it open for
-//   writing,
-//           which may have begun before its directory was watched, when none has, and it is unchanged for settle;
-//           created or linked: not before a rename
+//           writing, which may have begun before its directory was watched, when none has, and it is unchanged for
+//           settle; created or linked: not before a rename
 //   marker  NAME.done is beside it, unchanged for kCloseSettle
 //   size    it has its expected size, unchanged for kCloseSettle; shorter and closed: unchanged for settle; of a
 //           directory, which has none: as stable

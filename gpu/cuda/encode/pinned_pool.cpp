@@ -5,6 +5,8 @@
 #include <exception>
 #include <utility>
 
+#include "gpu/cuda/runtime/current_device.h"
+
 namespace weir {
 namespace {
 
@@ -31,11 +33,9 @@ int current_device() {
 
 // Whether what was locked in a context of a device is not any more.
 bool is_gone(int device, std::uint64_t context) {
-  const int current = current_device();
-  if (device != current) cudaSetDevice(device);
-  const bool gone = device_context() != context;
-  if (device != current) cudaSetDevice(current);
-  return gone;
+  const KeptDevice kept;
+  cudaSetDevice(device);
+  return device_context() != context;
 }
 
 }  // namespace
