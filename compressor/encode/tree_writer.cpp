@@ -96,22 +96,15 @@ class LowerWriter {
     std::uint64_t offset = parts_.layout.leaves + region.first_byte;
     for_each_in_file_order(rows.leaf_box(), [&](const Index3& leaf) {
       const std::size_t position = tree.mask_position(leaf);
-      const auto bits = static_cast<std::int64_t>(position);
-      const Index3 entry{bits >> 8, bits >> 4 & 15, bits & 15};
       const Box voxels = tree.leaves.voxels(leaf);
-      const Box leaf_node = tree.leaves.node_box(leaf);
       const LeafWidth width = choices.width(position);
       if (width == LeafWidth::tile) {
-        const LeafRow& row = rows.at(leaf);
-        const float value = parts_.fill.leaf_value(row);
-        const bool active = parts_.fill.active(row.valued()) && voxels == leaf_node;
-        image.set_tile(entry, value, active);
-        if (active) table.add_tile(value, kLeafDim, leaf_node.lo);
-        cells.add_tile(voxels, value);
+        cells.add_tile(voxels, set_tile(position, leaf, rows, image, table));
         return;
       }
+      const Box leaf_node = tree.leaves.node_box(leaf);
       const LeafRecord& record = records[next++];
-      image.set_child(entry, offset - node);
+      image.set_child(entry_of(position), offset - node);
       offset += leaf_bytes(width);
       table.add_child(active_statistics(record, leaf_node, voxels));
       cells.add_leaf(leaf_node, record);
@@ -162,27 +155,39 @@ class LowerWriter {
     TableStatistics table;
     for_each_in_file_order(rows.leaf_box(), [&](const Index3& leaf) {
       const std::size_t position = tree.mask_position(leaf);
-      const auto bits = static_cast<std::int64_t>(position);
-      const Index3 entry{bits >> 8, bits >> 4 & 15, bits & 15};
-      const Box voxels = tree.leaves.voxels(leaf);
-      const Box leaf_node = tree.leaves.node_box(leaf);
-      if (leaf == Index3{0, 0, 0} || leaf == last) {
-        const std::uint64_t ordinal = leaf == Index3{0, 0, 0} ? 0 : 1;
-        image.set_child(entry, parts_.layout.leaves + ordinal * nvdb::kFloatLeafBytes - node);
-        table.add_child(active_statistics(records[places.ordinal(position)], leaf_node, voxels));
+      if (leaf != Index3{0, 0, 0} && leaf != last) {
+        set_tile(position, leaf, rows, image, table);
         return;
       }
-      const LeafRow& row = rows.at(leaf);
-      const float value = parts_.fill.leaf_value(row);
-      const bool active = voxels == leaf_node && parts_.fill.active(row.valued());
-      image.set_tile(entry, value, active);
-      if (active) table.add_tile(value, kLeafDim, leaf_node.lo);
+      const std::uint64_t ordinal = leaf == Index3{0, 0, 0} ? 0 : 1;
+      image.set_child(entry_of(position), parts_.layout.leaves + ordinal * nvdb::kFloatLeafBytes - node);
+      table.add_child(
+          active_statistics(records[places.ordinal(position)], tree.leaves.node_box(leaf), tree.leaves.voxels(leaf)));
     });
     const NodeStatistics total = table.total();
     image.set_statistics(total);
     out_.write_at(node, image.bytes());
     statistics[static_cast<std::size_t>(index)] = total;
     active_tiles_ += table.active_tiles();
+  }
+
+  // Of a leaf in the table of its lower node.
+  static Index3 entry_of(std::size_t position) {
+    const auto bits = static_cast<std::int64_t>(position);
+    return {bits >> 8, bits >> 4 & 15, bits & 15};
+  }
+
+  // Makes a leaf a tile of its lower node; returns the tile's value.
+  float set_tile(std::size_t position, const Index3& leaf, const RegionRows& rows, NodeImage& image,
+                 TableStatistics& table) const {
+    const NodeLattice& leaves = parts_.tree.leaves;
+    const Box node = leaves.node_box(leaf);
+    const LeafRow& row = rows.at(leaf);
+    const float value = parts_.fill.leaf_value(row);
+    const bool active = parts_.fill.active(row.valued()) && leaves.voxels(leaf) == node;
+    image.set_tile(entry_of(position), value, active);
+    if (active) table.add_tile(value, kLeafDim, node.lo);
+    return value;
   }
 
   void widen_decoded(const MinMax& bounds) {
