@@ -6,7 +6,7 @@
 #include <cstring>
 #include <limits>
 
-#include "format/base/simd.h"
+#include "format/base/doubles8.h"
 
 namespace weir {
 namespace {
@@ -57,11 +57,10 @@ template <bool AllFinite>
         lanes.nonfinite_decoded -= s_finite & ~d_finite;
         lanes.nonfinite_different -= differs & ~s_finite;
       }
-      const Doubles8 difference =
-          __builtin_convertvector(s_counted, Doubles8) - __builtin_convertvector(d_counted, Doubles8);
-      const Doubles8 magnitude = difference < 0 ? -difference : difference;
+      const Doubles8 difference = Doubles8(s_counted) - Doubles8(d_counted);
+      const Doubles8 magnitude = select(difference < 0.0, -difference, difference);
       lanes.squared_error += difference * difference;
-      lanes.max_abs = magnitude > lanes.max_abs ? magnitude : lanes.max_abs;
+      lanes.max_abs = select(magnitude > lanes.max_abs, magnitude, lanes.max_abs);
       lanes.min = s < lanes.min && s_finite ? s : lanes.min;
       lanes.max = s > lanes.max && s_finite ? s : lanes.max;
       lanes.different -= differs & s_finite;
@@ -108,7 +107,9 @@ LeafDifference difference_of(const LeafValues& source, const LeafValues& decoded
     accumulate(source.data(), decoded.data(), halves.data());
   }
 
-  Doubles8 squared_error = halves[0].squared_error + halves[1].squared_error;
+  const Doubles8 sums = halves[0].squared_error + halves[1].squared_error;
+  std::array<double, kLanes> squared_error;
+  std::memcpy(squared_error.data(), &sums, sizeof sums);
   for (unsigned half = kLanes / 2; half > 0; half /= 2) {
     for (unsigned l = 0; l < half; ++l) squared_error[l] += squared_error[l + half];
   }

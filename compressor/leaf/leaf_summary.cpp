@@ -8,8 +8,8 @@
 
 #include "compressor/leaf/leaf_lattice.h"
 #include "compressor/leaf/leaf_quantiser.h"
+#include "format/base/doubles8.h"
 #include "format/base/index.h"
-#include "format/base/simd.h"
 
 namespace weir {
 namespace {
@@ -80,8 +80,8 @@ WEIR_SIMD Moments first_moments(const float* values, std::size_t count) {
     low = b < low ? b : low;
     high = a > high ? a : high;
     high = b > high ? b : high;
-    total.low += __builtin_convertvector(a, Doubles8);
-    total.high += __builtin_convertvector(b, Doubles8);
+    total.low += Doubles8(a);
+    total.high += Doubles8(b);
   }
   float min = low[0];
   float max = high[0];
@@ -110,7 +110,7 @@ WEIR_SIMD Moments twin_moments(const float* values, std::size_t planes) {
       std::memcpy(&a, values + z + kTwinStep * k, sizeof a);
       low = a < low ? a : low;
       high = a > high ? a : high;
-      terms[k] = __builtin_convertvector(a, Doubles8);
+      terms[k] = Doubles8(a);
     }
     for (std::size_t n = 0; n < planes; ++n) {
       for (std::size_t k = 0; k < kTwins; ++k) total.low += terms[k];
@@ -141,8 +141,8 @@ WEIR_SIMD Deviation deviations(const float* values, std::size_t count, float mea
     Floats8 b;
     std::memcpy(&a, values + i, sizeof a);
     std::memcpy(&b, values + i + kSummaryLanes / 2, sizeof b);
-    const Doubles8 da = __builtin_convertvector(a, Doubles8) - centre;
-    const Doubles8 db = __builtin_convertvector(b, Doubles8) - centre;
+    const Doubles8 da = Doubles8(a) - centre;
+    const Doubles8 db = Doubles8(b) - centre;
     total.low += da;
     total.high += db;
     squares.low += da * da;
@@ -169,7 +169,7 @@ WEIR_SIMD Deviation twin_deviations(const float* values, std::size_t planes, flo
     for (std::size_t k = 0; k < kTwins; ++k) {
       Floats8 a;
       std::memcpy(&a, values + z + kTwinStep * k, sizeof a);
-      terms[k] = __builtin_convertvector(a, Doubles8) - centre;
+      terms[k] = Doubles8(a) - centre;
       squared[k] = terms[k] * terms[k];
     }
     for (std::size_t n = 0; n < planes; ++n) {

@@ -9,7 +9,7 @@
 #include "compressor/leaf/leaf_difference.h"
 #include "compressor/leaf/leaf_lattice.h"
 #include "compressor/leaf/leaf_summary.h"
-#include "format/base/simd.h"
+#include "format/base/doubles8.h"
 
 namespace weir {
 namespace {
@@ -105,10 +105,10 @@ WEIR_SIMD void measure_lanes(const float* source, const float* decoded, std::arr
       Floats8 d;
       std::memcpy(&s, source + i + 8 * half, sizeof s);
       std::memcpy(&d, decoded + i + 8 * half, sizeof d);
-      const Doubles8 error = __builtin_convertvector(s, Doubles8) - __builtin_convertvector(d, Doubles8);
-      const Doubles8 magnitude = error < 0.0 ? -error : error;
+      const Doubles8 error = Doubles8(s) - Doubles8(d);
+      const Doubles8 magnitude = select(error < 0.0, -error, error);
       sum[half] += error * error;
-      most[half] = magnitude > most[half] ? magnitude : most[half];
+      most[half] = select(magnitude > most[half], magnitude, most[half]);
       Ints8 s_bits;
       Ints8 d_bits;
       std::memcpy(&s_bits, &s, sizeof s);

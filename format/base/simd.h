@@ -22,6 +22,18 @@ using Floats8 = float __attribute__((vector_size(32)));
 using Ints16 = std::int32_t __attribute__((vector_size(64)));
 using Ints8 = std::int32_t __attribute__((vector_size(32)));
 using Words8 = std::uint32_t __attribute__((vector_size(32)));
-using Doubles8 = double __attribute__((vector_size(64)));
+
+/// A vector from values that lie one after the other, of whatever type, and back. Copies of bytes GCC 12 makes in
+/// pieces of 16, and waits for them where the whole is read next.
+template <typename Lanes, typename T>
+[[gnu::always_inline]] inline void load_lanes(const T* at, Lanes& v) {
+  using Stored [[gnu::aligned(alignof(T)), gnu::may_alias]] = Lanes;
+  v = *reinterpret_cast<const Stored*>(at);
+}
+template <typename Lanes, typename T>
+[[gnu::always_inline]] inline void store_lanes(const Lanes& v, T* at) {
+  using Stored [[gnu::aligned(alignof(T)), gnu::may_alias]] = Lanes;
+  *reinterpret_cast<Stored*>(at) = v;
+}
 
 }  // namespace weir

@@ -40,7 +40,7 @@ WEIR_SIMD void add_side_by_side(const float* values, BatchStatistics& batch) {
     Floats8 next[kLeafBatch / 8][8];
     for (std::size_t v = 0; v < kLeafBatch / 8; ++v) {
       for (std::size_t l = 0; l < 8; ++l) {
-        std::memcpy(&next[v][l], values + (8 * v + l) * kLeafVoxels + first, sizeof(Floats8));
+        load_lanes(values + (8 * v + l) * kLeafVoxels + first, next[v][l]);
       }
       transpose_8(next[v]);  // a lane for each leaf
     }
@@ -60,10 +60,10 @@ WEIR_SIMD void add_side_by_side(const float* values, BatchStatistics& batch) {
 WEIR_SIMD void transpose(const float* from, std::int64_t stride, float* to) {
   Floats8 rows[8];
   for (std::size_t i = 0; i < 8; ++i) {
-    std::memcpy(&rows[i], from + static_cast<std::int64_t>(i) * stride, sizeof rows[i]);
+    load_lanes(from + static_cast<std::int64_t>(i) * stride, rows[i]);
   }
   transpose_8(rows);
-  for (std::size_t i = 0; i < 8; ++i) std::memcpy(to + 64 * i, &rows[i], sizeof rows[i]);
+  for (std::size_t i = 0; i < 8; ++i) store_lanes(rows[i], to + 64 * i);
 }
 
 }  // namespace

@@ -16,22 +16,22 @@ WEIR_SIMD void transform_in_lanes(float* values, unsigned planes, float mean, fl
   const Floats8 none{};
   for (unsigned x = 0; x < planes; ++x) {
     Floats8 rows[8];
-    for (unsigned y = 0; y < 8; ++y) std::memcpy(&rows[y], values + 64 * x + 8 * y, sizeof rows[y]);
+    for (unsigned y = 0; y < 8; ++y) load_lanes(values + 64 * x + 8 * y, rows[y]);
     transpose_8(rows);
     inverse_transform_8(rows);  // along z, of eight y at once
     transpose_8(rows);
     inverse_transform_8(rows);  // along y
-    for (unsigned y = 0; y < 8; ++y) std::memcpy(values + 64 * x + 8 * y, &rows[y], sizeof rows[y]);
+    for (unsigned y = 0; y < 8; ++y) store_lanes(rows[y], values + 64 * x + 8 * y);
   }
   for (unsigned y = 0; y < 8; ++y) {
     Floats8 rows[8];
-    for (unsigned x = 0; x < 8; ++x) std::memcpy(&rows[x], values + 64 * x + 8 * y, sizeof rows[x]);
+    for (unsigned x = 0; x < 8; ++x) load_lanes(values + 64 * x + 8 * y, rows[x]);
     inverse_transform_8(rows);  // along x
     for (unsigned x = 0; x < 8; ++x) {
       Floats8 v = (mean - none) + rows[x];
       v = v >= minimum ? v : minimum - none;
       v = v <= maximum ? v : maximum - none;
-      std::memcpy(values + 64 * x + 8 * y, &v, sizeof v);
+      store_lanes(v, values + 64 * x + 8 * y);
     }
   }
 }

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <numeric>
 
-#include "format/base/simd.h"
+#include "format/base/doubles8.h"
 #include "format/base/transpose_lanes.h"
 #include "format/packed/block_decode.h"
 #include "format/packed/coefficient_values.h"
@@ -31,7 +31,7 @@ WEIR_SIMD BlockRange range_of(const float* values) {
     std::memcpy(&v, values + 8 * row, sizeof v);
     low = v < low ? v : low;
     high = v > high ? v : high;
-    sum += __builtin_convertvector(v, Doubles8);
+    sum += Doubles8(v);
   }
   BlockRange range{low[0], high[0], 0};
   for (int l = 0; l < 8; ++l) {
@@ -52,18 +52,18 @@ struct TwoSlabs {
 
 // Slabs from `at` on, as eight vectors of their rows, and back.
 [[gnu::always_inline]] inline void load_slabs(const float* at, Floats8 (&rows)[8]) {
-  std::memcpy(rows, at, sizeof rows);
+  for (unsigned i = 0; i < 8; ++i) load_lanes(at + 8 * i, rows[i]);
 }
 [[gnu::always_inline]] inline void store_slabs(const Floats8 (&rows)[8], float* at) {
-  std::memcpy(at, rows, sizeof rows);
+  for (unsigned i = 0; i < 8; ++i) store_lanes(rows[i], at + 8 * i);
 }
 #ifdef WEIR_SIMD_PATHS
 [[gnu::always_inline]] inline void load_slabs(const float* at, Floats16 (&rows)[8]) {
   for (unsigned i = 0; i < 8; ++i) {
     Floats8 first;
     Floats8 second;
-    std::memcpy(&first, at + 8 * i, sizeof first);
-    std::memcpy(&second, at + 64 + 8 * i, sizeof second);
+    load_lanes(at + 8 * i, first);
+    load_lanes(at + 64 + 8 * i, second);
     rows[i] = __builtin_shufflevector(first, second, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
   }
 }
@@ -71,8 +71,8 @@ struct TwoSlabs {
   for (unsigned i = 0; i < 8; ++i) {
     const Floats8 first = __builtin_shufflevector(rows[i], rows[i], 0, 1, 2, 3, 4, 5, 6, 7);
     const Floats8 second = __builtin_shufflevector(rows[i], rows[i], 8, 9, 10, 11, 12, 13, 14, 15);
-    std::memcpy(at + 8 * i, &first, sizeof first);
-    std::memcpy(at + 64 + 8 * i, &second, sizeof second);
+    store_lanes(first, at + 8 * i);
+    store_lanes(second, at + 64 + 8 * i);
   }
 }
 #endif
@@ -96,28 +96,29 @@ template <typename Slabs>
   }
   for (unsigned zy = 0; zy < 64; zy += kLanes) {
     Lanes rows[8];
-    for (unsigned x = 0; x < 8; ++x) std::memcpy(&rows[x], turned + 64 * x + zy, sizeof rows[x]);
+    for (unsigned x = 0; x < 8; ++x) load_lanes(turned + 64 * x + zy, rows[x]);
     forward_transform_8(rows);  // along x
-    for (unsigned x = 0; x < 8; ++x) std::memcpy(turned + 64 * x + zy, &rows[x], sizeof rows[x]);
+    for (unsigned x = 0; x < 8; ++x) store_lanes(rows[x], turned + 64 * x + zy);
   }
   turned[0] = 0;
   Floats8 largest{};
   for (unsigned x = 0; x < 8; ++x) {
     Floats8 rows[8];
-    std::memcpy(rows, turned + 64 * x, sizeof rows);  // a lane for each row
+    load_slabs(turned + 64 * x, rows);  // a lane for each row
     Floats8 most{};
     Doubles8 sum{};
     for (const Floats8& c : rows) {
       const Floats8 size = c < 0 ? -c : c;
       most = size > most ? size : most;
-      const Doubles8 wide = __builtin_convertvector(c, Doubles8);
+      const Doubles8 wide(c);
       sum += wide * wide;
     }
-    std::memcpy(row_largest + 8 * x, &most, sizeof most);
-    std::memcpy(row_energy + 8 * x, &sum, sizeof sum);
+    store_lanes(most, row_largest + 8 * x);
+    store_lanes(sum.low, row_energy + 8 * x);
+    store_lanes(sum.high, row_energy + 8 * x + 4);
     largest = most > largest ? most : largest;
     transpose_8(rows);
-    std::memcpy(coefficients + 64 * x, rows, sizeof rows);
+    store_slabs(rows, coefficients + 64 * x);
   }
   float found = 0;
   for (int l = 0; l < 8; ++l) found = largest[l] > found ? largest[l] : found;
@@ -150,33 +151,49 @@ struct Quantised {
   unsigned last_place;  // that is not zero; 0 where all are
 };
 
+// Bit i set: the largest of row i is not below `least`.
+[[gnu::always_inline]] inline std::uint64_t live_rows(const float* largest, float least) {
+  using Bytes8 = std::uint8_t __attribute__((vector_size(8)));
+  Ints8 columns{};  // bit i of lane l is of row 8 i + l
+  for (unsigned i = 0; i < 8; ++i) {
+    Floats8 of_rows;
+    load_lanes(largest + 8 * i, of_rows);
+    columns |= ~(of_rows < least) & 1 << i;
+  }
+  const Bytes8 bytes = __builtin_convertvector(columns, Bytes8);
+  std::uint64_t bits;
+  std::memcpy(&bits, &bytes, sizeof bits);
+  // Eight by eight bits, transposed: single ones, then squares of two, then of four.
+  std::uint64_t swapped = (bits ^ bits >> 7U) & 0x00AA00AA00AA00AAU;
+  bits ^= swapped ^ swapped << 7U;
+  swapped = (bits ^ bits >> 14U) & 0x0000CCCC0000CCCCU;
+  bits ^= swapped ^ swapped << 14U;
+  swapped = (bits ^ bits >> 28U) & 0x00000000F0F0F0F0U;
+  return bits ^ swapped ^ swapped << 28U;
+}
+
 // Magnitudes at a step by index; rows whose largest coefficient is below the dead zone are zero.
 WEIR_SIMD Quantised quantise_rows(const float* coefficients, const float* largest, const double* energy, float step,
                                   const std::int32_t* places, MagnitudeRows& magnitudes) {
   const float scale = 1.0F / step;
   const float least = least_of_row(step);
   Floats8 sum{};  // in squared steps, each at most a little above a third
-  double dropped = 0;
-  magnitudes.live = 0;
   Ints8 last{};
   const Floats8 none{};
   const Ints8 zero{};
-  for (unsigned row = 0; row < 64; ++row) {
-    std::int32_t* out = magnitudes.row(row);
-    if (largest[row] < least) {
-      dropped += energy[row];
-      std::memcpy(out, &zero, sizeof zero);
-      continue;
-    }
+  const std::uint64_t live = live_rows(largest, least);
+  magnitudes.live = live;
+  // First the ones, then the others: where they take turns, a branch is seldom foreseen.
+  for (std::uint64_t rows = live; rows != 0; rows &= rows - 1) {
+    const auto row = static_cast<unsigned>(std::countr_zero(rows));
     Floats8 c;
-    std::memcpy(&c, coefficients + 8 * row, sizeof c);
+    load_lanes(coefficients + 8 * row, c);
     const Floats8 size = c < 0 ? -c : c;
     const Floats8 scaled = size * scale;
     Ints8 m = __builtin_convertvector(scaled + kRounding, Ints8);
     m = m < 1 ? zero + 1 : m;
     m = scaled < kDeadZone ? zero : m;
-    std::memcpy(out, &m, sizeof m);
-    magnitudes.live |= std::uint64_t{1} << row;
+    store_lanes(m, magnitudes.row(row));
     const Floats8 whole = __builtin_convertvector(m, Floats8);
     const Floats8 below = m == 1 ? kBelowOne - none : kBelowMore - none;
     Floats8 decoded = whole - below;
@@ -184,9 +201,15 @@ WEIR_SIMD Quantised quantise_rows(const float* coefficients, const float* larges
     const Floats8 error = scaled - decoded;
     sum += error * error;
     Ints8 place;
-    std::memcpy(&place, places + 8 * row, sizeof place);
+    load_lanes(places + 8 * row, place);
     place = m == 0 ? zero : place;
     last = place > last ? place : last;
+  }
+  double dropped = 0;
+  for (std::uint64_t rows = ~live; rows != 0; rows &= rows - 1) {
+    const auto row = static_cast<unsigned>(std::countr_zero(rows));
+    store_lanes(zero, magnitudes.row(row));
+    dropped += energy[row];
   }
   double total = 0;
   std::int32_t last_place = 0;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "format/base/simd.h"
+#include "format/base/doubles8.h"
 #include "format/packed/lattice_codes.h"
 
 namespace weir {
@@ -47,13 +47,34 @@ struct CodeRow {
 [[gnu::always_inline]] inline void load_codes(const std::uint32_t* at, Doubles8& row) {
   Ints8 codes;
   load_codes(at, codes);
-  row = __builtin_convertvector(codes, Doubles8);
+  row = Doubles8(codes);
 }
 
 // Lane z has what lane z - 1 had, lane 0 keeps its own.
-template <typename Lanes>
-[[gnu::always_inline]] inline void shift_up(const Lanes& row, Lanes& shifted) {
+[[gnu::always_inline]] inline void shift_up(const Ints8& row, Ints8& shifted) {
   shifted = __builtin_shufflevector(row, row, 0, 0, 1, 2, 3, 4, 5, 6);
+}
+[[gnu::always_inline]] inline void shift_up(const Doubles8& row, Doubles8& shifted) {
+  shifted.high = __builtin_shufflevector(row.low, row.high, 3, 4, 5, 6);
+  shifted.low = __builtin_shufflevector(row.low, row.low, 0, 0, 1, 2);
+}
+
+// Lane 0 of another row in place of its own.
+[[gnu::always_inline]] inline void set_first(const Ints8& other, Ints8& row) {
+  row = __builtin_shufflevector(other, row, 0, 9, 10, 11, 12, 13, 14, 15);
+}
+[[gnu::always_inline]] inline void set_first(const Doubles8& other, Doubles8& row) {
+  row.low = __builtin_shufflevector(other.low, row.low, 0, 5, 6, 7);
+}
+
+// The lesser, or the greater, of each lane and another.
+[[gnu::always_inline]] inline void lower_to(const Ints8& other, Ints8& row) { row = other < row ? other : row; }
+[[gnu::always_inline]] inline void lower_to(const Doubles8& other, Doubles8& row) {
+  row = select(other < row, other, row);
+}
+[[gnu::always_inline]] inline void raise_to(const Ints8& other, Ints8& row) { row = row < other ? other : row; }
+[[gnu::always_inline]] inline void raise_to(const Doubles8& other, Doubles8& row) {
+  row = select(row < other, other, row);
 }
 
 // floor(sum / count) of 2 or 3 codes.
@@ -63,8 +84,10 @@ template <typename Lanes>
 
 [[gnu::always_inline]] inline void floor_mean(const Doubles8& sum, int count, Doubles8& mean) {
   const Doubles8 within = (sum + 0.5) * (1.0 / count);  // a sixth at least from whole numbers
-  mean = __builtin_convertvector(__builtin_convertvector(within, Ints8), Doubles8);
-  mean = mean > within ? mean - 1 : mean;
+  Ints8 whole;
+  narrow(within, whole);
+  mean = Doubles8(whole);
+  mean = select(mean > within, mean - 1.0, mean);
 }
 
 // What is left of codes, modulo 2^32.
@@ -75,9 +98,11 @@ template <typename Lanes>
 [[gnu::always_inline]] inline void take_away(const Doubles8& predicted, Words8& row) {
   constexpr double kWholes = 0x1.8p52;  // the sum's mantissa ends in the whole number
   const Doubles8 sum = predicted + kWholes;
-  std::int64_t __attribute__((vector_size(64))) bits;
+  Longs8 bits;
   __builtin_memcpy(&bits, &sum, sizeof bits);
-  row -= __builtin_convertvector(bits, Words8);
+  Ints8 whole;
+  narrow(bits, whole);
+  take_away(whole, row);
 }
 
 struct PredictMean {
@@ -100,8 +125,8 @@ struct PredictLeast {
   [[gnu::always_inline]] static void predict(const CodeRow<Lanes>& beside, const Lanes& back, bool has_back,
                                              Lanes& least) {
     least = has_back ? back : beside.has_left ? beside.left : beside.up;
-    if (beside.has_left) least = beside.left < least ? beside.left : least;
-    if (beside.has_up) least = beside.up < least ? beside.up : least;
+    if (beside.has_left) lower_to(beside.left, least);
+    if (beside.has_up) lower_to(beside.up, least);
   }
 };
 
@@ -120,10 +145,13 @@ struct PredictMedian {
     if (!has_back) {
       median = beside.has_left && beside.has_up ? a : beside.has_left ? beside.left : beside.up;
     } else if (beside.has_left && beside.has_up) {
-      const Lanes low = a < b ? a : b;
-      const Lanes high = a < b ? b : a;
-      median = c < low ? low : c;
-      median = median > high ? high : median;
+      Lanes low = a;
+      Lanes high = a;
+      lower_to(b, low);
+      raise_to(b, high);
+      median = c;
+      raise_to(low, median);
+      lower_to(high, median);
     } else {
       median = beside.has_left ? b : beside.has_up ? c : back;
     }
@@ -146,10 +174,10 @@ template <typename Predictor, typename Lanes>
     Lanes without;
     Predictor::predict(beside, back, true, with_back);
     Predictor::predict(beside, back, false, without);
-    const Lanes predicted = __builtin_shufflevector(without, with_back, 0, 9, 10, 11, 12, 13, 14, 15);
+    set_first(without, with_back);
     Words8 residual;
     __builtin_memcpy(&residual, codes + i, sizeof residual);
-    take_away(predicted, residual);
+    take_away(with_back, residual);
     __builtin_memcpy(residuals + i, &residual, sizeof residual);
   }
   residuals[0] = 0;

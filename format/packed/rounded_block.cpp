@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "format/base/simd.h"
+#include "format/base/doubles8.h"
 #include "format/packed/block_decode.h"
 #include "format/packed/lattice_block.h"
 #include "format/packed/lattice_codes.h"
@@ -52,7 +52,7 @@ WEIR_SIMD Rounded round_all(const float* values, float scale, std::uint32_t* cod
     const Ints8 m = __builtin_convertvector(scaled + half, Ints8);
     const Ints8 code = m - kLeastMultiple;
     std::memcpy(codes + 8 * row, &code, sizeof code);
-    const Doubles8 error = __builtin_convertvector(scaled - __builtin_convertvector(m, Floats8), Doubles8);
+    const Doubles8 error(scaled - __builtin_convertvector(m, Floats8));
     errors += error * error;
     if (row == 0) low = high = m;
     low = m < low ? m : low;

@@ -19,7 +19,6 @@ namespace {
 
 using packed_detail::Before;
 using packed_detail::kFirstEscape;
-using packed_detail::load_lanes;
 using packed_detail::load_neighbours;
 using packed_detail::OneRow;
 using packed_detail::set_lanes;
@@ -39,7 +38,24 @@ std::uint64_t busy_rows(std::uint64_t live) {
   return live | live << 8U | (live << 1U & ~kFirstOfEight);
 }
 
-// All places but the first four, and only those below `limit`.
+// The sum of the costs that the first `count` pairs of entries name.
+[[gnu::always_inline]] inline std::int32_t costs_of(const RowCosts::Tables& tables,
+                                                    const std::array<std::uint64_t, 512 / 2>& entries, unsigned count) {
+  // Else each lane is taken out of its register, which takes longer.
+  asm volatile("" : : "r"(entries.data()) : "memory");
+  std::int32_t even = 0;
+  std::int32_t odd = 0;
+  for (unsigned first = 0; first < count; first += 4) {
+    for (unsigned i = first; i < first + 4; ++i) {
+      even += tables.cost[entries[i] & 0xFFFFFFFFU];
+      odd += tables.cost[entries[i] >> 32U];
+    }
+  }
+  return even + odd;
+}
+
+// All places but the first four, and only those below `limit`; what is looked up at the end, so that no lookup waits
+// for its lane.
 template <typename Lanes>
 [[gnu::always_inline]] inline void add_lanes(const RowCosts::Tables& tables, const std::int32_t* padded,
                                              std::uint64_t busy, std::int32_t limit, Sums& sums) {
@@ -59,8 +75,8 @@ template <typename Lanes>
   Ints symbols{};
   Ints raw{};
   Ints nonzero{};
-  std::int32_t even = 0;
-  std::int32_t odd = 0;
+  alignas(64) std::array<std::uint64_t, 512 / 2> entries;
+  unsigned count = 0;
   for (unsigned row = 0; row < 64; row += kRows) {
     if (places.first_place[row] >= limit && places.first_place[row + kRows - 1] >= limit) continue;
     Ints place;
@@ -85,13 +101,8 @@ template <typename Lanes>
     const Ints high = m >> extra;
     const Ints symbol = high < first_escape ? high : first_escape;
     const Ints entry = ((first_symbol + 16 * level + symbol) & coded) | (no_cost & ~coded);
-    alignas(64) std::uint64_t entries[kLanes / 2];
-    __builtin_memcpy(entries, &entry, sizeof entries);
-    asm volatile("" : "+m"(entries));  // else each lane is taken out of its register, which takes longer
-    for (const std::uint64_t two : entries) {
-      even += tables.cost[two & 0xFFFFFFFFU];
-      odd += tables.cost[two >> 32U];
-    }
+    store_lanes(entry, entries.data() + count);
+    count += kLanes / 2;
     const Ints escaped = (last_plain - high) >> 31;
     Ints escape;
     contexts.log2_of(one + ((high - first_escape) & escaped), escape);
@@ -103,7 +114,7 @@ template <typename Lanes>
     sums.raw += raw[l];
     sums.nonzero += nonzero[l];
   }
-  sums.symbols += even + odd;
+  sums.symbols += costs_of(tables, entries, count);
 }
 
 #ifdef WEIR_SIMD_PATHS
@@ -119,7 +130,7 @@ template <typename Lanes>
   return lanes;
 }
 
-// add_lanes() of two rows at a time, by masks, and with what it looks up at the end: no lookup waits for its lane.
+// add_lanes() of two rows at a time, by masks.
 [[gnu::target("avx512f")]] void add_rows_512(const RowCosts::Tables& tables, const std::int32_t* padded,
                                              std::uint64_t busy, std::int32_t limit, Sums& sums) {
   constexpr int kBias = 127;                 // of a float's exponent
@@ -186,16 +197,7 @@ template <typename Lanes>
     raw = _mm512_mask_add_epi32(raw, escaped, raw, escape);
     nonzero = _mm512_mask_add_epi32(nonzero, _mm512_mask_test_epi32_mask(coded, m, m), nonzero, one);
   }
-  asm volatile("" : "+m"(entries));  // else each lane is taken out of its register, which takes longer
-  std::int32_t even = 0;
-  std::int32_t odd = 0;
-  for (unsigned first = 0; first < count; first += 8) {
-    for (unsigned i = first; i < first + 8; ++i) {
-      even += tables.cost[entries[i] & 0xFFFFFFFFU];
-      odd += tables.cost[entries[i] >> 32U];
-    }
-  }
-  sums.symbols += even + odd + _mm512_reduce_add_epi32(symbols);
+  sums.symbols += costs_of(tables, entries, count) + _mm512_reduce_add_epi32(symbols);
   sums.raw += _mm512_reduce_add_epi32(raw);
   sums.nonzero += _mm512_reduce_add_epi32(nonzero);
 }

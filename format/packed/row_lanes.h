@@ -136,11 +136,6 @@ class Contexts {
   Ints last_level_, most_extra_, no_extra_, exponent_bias_;
 };
 
-template <typename Ints>
-[[gnu::always_inline]] inline void load_lanes(const std::int32_t* at, Ints& lanes) {
-  __builtin_memcpy(&lanes, at, sizeof lanes);
-}
-
 // Which lanes have a neighbour before them.
 template <typename Lanes>
 struct Before {

@@ -12,7 +12,6 @@ namespace {
 using packed_detail::Before;
 using packed_detail::Contexts;
 using packed_detail::kFirstEscape;
-using packed_detail::load_lanes;
 using packed_detail::load_neighbours;
 using packed_detail::OneRow;
 using packed_detail::TwoRows;
@@ -71,8 +70,8 @@ template <typename Lanes>
     const Ints high = m >> extra;
     const Ints plain = ((high - kFirstEscape) >> 31) & ~(m >> 31);  // all bits where there is no escape
     symbol += 16 * level + ((high & plain) | ((none + kFirstEscape) & ~plain));
-    __builtin_memcpy(coded.symbol + 8 * row, &symbol, sizeof symbol);
-    __builtin_memcpy(coded.extra + 8 * row, &extra, sizeof extra);
+    store_lanes(symbol, coded.symbol + 8 * row);
+    store_lanes(extra, coded.extra + 8 * row);
     with += -extra >> 31;
   }
   for (unsigned l = 0; l < sizeof(Ints) / sizeof(std::int32_t); ++l) coded.with_extra -= with[l];

@@ -37,9 +37,9 @@ class LaneFitter {
   /// `values`: one of each group, x fastest.
   [[gnu::always_inline]] LaneFitter(const Floats8* values, const LaneShape& shape, const LaneRanges& ranges)
       : values_(values), shape_(shape), count_(shape.values()), times_(static_cast<double>(shape.times())), r_(ranges) {
-    least_ = __builtin_convertvector(r_.min, Doubles8);
-    most_value_ = __builtin_convertvector(r_.max, Doubles8);
-    mean_ = __builtin_convertvector(r_.mean, Doubles8);
+    least_ = Doubles8(r_.min);
+    most_value_ = Doubles8(r_.max);
+    mean_ = Doubles8(r_.mean);
     const Floats8 half = r_.max / 2.0F - r_.min / 2.0F;
     for (std::size_t l = 0; l < kLeafLanes; ++l) {  // a normal number: its exponent is in its bits
       const float of_lane = half[static_cast<int>(l)];
@@ -51,9 +51,9 @@ class LaneFitter {
       std::memcpy(&scale, &power, sizeof scale);
       scale_[static_cast<int>(l)] = scale;
     }
-    wide_scale_ = __builtin_convertvector(scale_, Doubles8);
+    wide_scale_ = Doubles8(scale_);
     unscale_ = 1.0 / wide_scale_;  // powers of two
-    deviation_ = __builtin_convertvector(r_.residual, Doubles8) * wide_scale_;
+    deviation_ = Doubles8(r_.residual) * wide_scale_;
     for (std::size_t i = 0; i < count_; ++i) {
       deviations_[i] = (values_[i] - r_.mean) * scale_;
       terms_[i] = deviations_[i] * deviations_[i];
@@ -64,27 +64,29 @@ class LaneFitter {
   /// At the width of codes up to `most`, from levels over `share` of the range: sets the least squared error of so many
   /// rounds, infinite where there is none.
   [[gnu::always_inline]] void start(double share, int rounds, float most, Doubles8& squared_error) {
-    const Doubles8 zero{};
     most_ = most - Floats8{};
-    const Doubles8 wide_most = static_cast<double>(most) - zero;
+    const Doubles8 wide_most(static_cast<double>(most));
     const Doubles8 width = most_value_ - least_;
     const Doubles8 part = width * share;
-    const Doubles8 half = (kWidest < part ? kWidest - zero : part) / 2.0;
+    const Doubles8 half = at_most(part, kWidest) / 2.0;
     const bool all = share == 1;
     const Doubles8 middle = all ? least_ + width / 2.0 : mean_;
     LaneQuantisers q;
-    q.minimum = all ? r_.min : __builtin_convertvector(middle - half, Floats8);
-    q.quantum = __builtin_convertvector(2.0 * half / wide_most, Floats8);
+    q.minimum = r_.min;
+    if (!all) narrow(middle - half, q.minimum);
+    narrow(2.0 * half / wide_most, q.quantum);
     Ints8 outside;
     begins_outside(q.minimum, outside);
-    q.quantum = outside ? __builtin_convertvector((middle + half - least_) / wide_most, Floats8) : q.quantum;
+    Floats8 from_least;
+    narrow((middle + half - least_) / wide_most, from_least);
+    q.quantum = outside ? from_least : q.quantum;
     q.minimum = outside ? r_.min : q.minimum;
     Ints8 to_end;
-    beside_floats(middle + half >= most_value_, to_end);
+    narrow(middle + half >= most_value_, to_end);
     Floats8 ended;
     quantum_up_to(most_, q.minimum, to_end, ended);
     q.quantum = to_end ? ended : q.quantum;
-    best_ = kInfinity - zero;
+    best_ = kInfinity;
     refine(q, rounds);
     squared_error = best_ * unscale_ * unscale_;
   }
@@ -93,9 +95,13 @@ class LaneFitter {
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   static constexpr auto kVoxels = static_cast<double>(kLeafVoxels);
 
+  // `most` in the lanes that have more.
+  [[gnu::always_inline]] static Doubles8 at_most(const Doubles8& v, const Doubles8& most) {
+    return select(most < v, most, v);
+  }
+
   [[gnu::always_inline]] void refine(LaneQuantisers& q, int rounds) {
-    const Doubles8 zero{};
-    Doubles8 last = kInfinity - zero;
+    Doubles8 last = kInfinity;
     Ints8 active = ~Ints8{};
     for (int round = 0;; ++round) {
       Ints8 able;
@@ -105,12 +111,10 @@ class LaneFitter {
       top_inside(q, active);
       LaneCodeSums sums;
       assign(q, active, sums);
-      Longs8 counted;
-      beside_doubles(active, counted);
-      best_ = (counted & (sums.squares < best_)) ? sums.squares : best_;
+      best_ = select(widen(active) & (sums.squares < best_), sums.squares, best_);
       if (round + 1 == rounds) return;
       Ints8 goes_on;
-      beside_floats(sums.squares < last, goes_on);
+      narrow(sums.squares < last, goes_on);
       active &= goes_on;
       last = sums.squares;
       refit(sums, active, q);
@@ -130,12 +134,12 @@ class LaneFitter {
       terms_[i] = code * deviations_[i];
     }
     // Whole numbers below 2^24: exact in any order.
-    sums.codes = __builtin_convertvector(codes, Doubles8) * times_;
-    sums.code_squares = __builtin_convertvector(code_squares, Doubles8) * times_;
+    sums.codes = Doubles8(codes) * times_;
+    sums.code_squares = Doubles8(code_squares) * times_;
     sum_terms(sums.code_values);
     follow(sums, q, sums.squares);
     Ints8 cancelled;
-    beside_floats(~(sums.squares > kCancelled * squares_), cancelled);
+    narrow(~(sums.squares > kCancelled * squares_), cancelled);
     cancelled &= active;
     if (!any_lane(cancelled)) return;
     for (std::size_t i = 0; i < count_; ++i) {
@@ -146,15 +150,13 @@ class LaneFitter {
     }
     Doubles8 measured;
     sum_terms(measured);
-    Longs8 wide;
-    beside_doubles(cancelled, wide);
-    sums.squares = wide ? measured : sums.squares;
+    sums.squares = select(widen(cancelled), measured, sums.squares);
   }
 
   [[gnu::always_inline]] void refit(const LaneCodeSums& sums, Ints8& active, LaneQuantisers& q) const {
     const Doubles8 determinant = kVoxels * sums.code_squares - sums.codes * sums.codes;
     Ints8 several;
-    beside_floats(determinant > 0.0, several);
+    narrow(determinant > 0.0, several);
     active &= several;
     const Doubles8 slope = (kVoxels * sums.code_values - sums.codes * deviation_) / determinant;
     from_mean((deviation_ - slope * sums.codes) / kVoxels, slope, q);
@@ -197,7 +199,7 @@ class LaneFitter {
     follow(sums, ended, of_ended);
     follow(sums, q, of_q);
     Ints8 better;
-    beside_floats(of_ended < of_q + capped, better);
+    narrow(of_ended < of_q + capped, better);
     const Ints8 taken = beyond & (better | (highest == 1.0F));
     q.minimum = taken ? ended.minimum : q.minimum;
     q.quantum = taken ? ended.quantum : q.quantum;
@@ -205,7 +207,7 @@ class LaneFitter {
 
   [[gnu::always_inline]] void end_at_largest(const LaneCodeSums& sums, const Floats8& highest,
                                              LaneQuantisers& q) const {
-    const Doubles8 code = __builtin_convertvector(highest, Doubles8);
+    const Doubles8 code = Doubles8(highest);
     Doubles8 largest;
     scaled(r_.max, largest);
     const Doubles8 steps = code * kVoxels - sums.codes;
@@ -217,11 +219,11 @@ class LaneFitter {
 
   [[gnu::always_inline]] void error_of_largest(const Floats8& code, const LaneQuantisers& q, Doubles8& error) const {
     const Floats8 level = code * q.quantum + q.minimum;
-    error = (most_value_ - __builtin_convertvector(level, Doubles8)) * wide_scale_;
+    error = (most_value_ - Doubles8(level)) * wide_scale_;
   }
 
   [[gnu::always_inline]] void follow(const LaneCodeSums& sums, const LaneQuantisers& q, Doubles8& squares) const {
-    const Doubles8 quantum = __builtin_convertvector(q.quantum, Doubles8) * wide_scale_;
+    const Doubles8 quantum = Doubles8(q.quantum) * wide_scale_;
     Doubles8 minimum;
     scaled(q.minimum, minimum);
     squares = squares_ + quantum * (quantum * sums.code_squares - 2.0 * sums.code_values) +
@@ -246,14 +248,11 @@ class LaneFitter {
   }
 
   [[gnu::always_inline]] void top_inside(LaneQuantisers& q, const Ints8& active) const {
-    const Doubles8 zero{};
-    const Doubles8 width = most_value_ - __builtin_convertvector(q.minimum, Doubles8);
-    const Doubles8 last =
-        (kWidest < width ? kWidest - zero : width) / __builtin_convertvector(q.quantum, Doubles8) + 1.0;
+    const Doubles8 last = at_most(most_value_ - Doubles8(q.minimum), kWidest) / Doubles8(q.quantum) + 1.0;
     code_of_largest(q, q.top);
-    const Doubles8 wide_top = __builtin_convertvector(q.top, Doubles8);
-    const Doubles8 capped = last < wide_top ? last : wide_top;
-    q.top = __builtin_convertvector(__builtin_convertvector(capped, Ints8), Floats8);  // towards zero
+    Ints8 whole;
+    narrow(at_most(Doubles8(q.top), last), whole);
+    q.top = __builtin_convertvector(whole, Floats8);
     for (;;) {
       const Ints8 above = active & (q.top > 0.0F) & ~(q.top * q.quantum + q.minimum <= r_.max);
       if (!any_lane(above)) return;
@@ -264,10 +263,7 @@ class LaneFitter {
   // Where `asked`.
   [[gnu::always_inline]] void quantum_up_to(const Floats8& code, const Floats8& minimum, const Ints8& asked,
                                             Floats8& quantum) const {
-    const Doubles8 zero{};
-    const Doubles8 width = most_value_ - __builtin_convertvector(minimum, Doubles8);
-    quantum = __builtin_convertvector(
-        (kWidest < width ? kWidest - zero : width) / __builtin_convertvector(code, Doubles8), Floats8);
+    narrow(at_most(most_value_ - Doubles8(minimum), kWidest) / Doubles8(code), quantum);
     for (;;) {
       const Ints8 above = asked & (quantum > 0.0F) & (code * quantum + minimum > r_.max);
       if (!any_lane(above)) return;
@@ -289,18 +285,18 @@ class LaneFitter {
   }
 
   [[gnu::always_inline]] void scaled(const Floats8& value, Doubles8& deviation) const {
-    deviation = (__builtin_convertvector(value, Doubles8) - mean_) * wide_scale_;
+    deviation = (Doubles8(value) - mean_) * wide_scale_;
   }
 
   [[gnu::always_inline]] void from_mean(const Doubles8& minimum, const Doubles8& quantum, LaneQuantisers& q) const {
-    q.minimum = __builtin_convertvector(mean_ + minimum * unscale_, Floats8);
-    q.quantum = __builtin_convertvector(quantum * unscale_, Floats8);
+    narrow(mean_ + minimum * unscale_, q.minimum);
+    narrow(quantum * unscale_, q.quantum);
   }
 
   [[gnu::always_inline]] void sum_terms(Doubles8& total) const {
     Floats8 sum;
     sum_groups(terms_.data(), shape_, sum);
-    total = __builtin_convertvector(sum, Doubles8);
+    total = Doubles8(sum);
   }
 
   const Floats8* values_;

@@ -9,19 +9,10 @@
 
 namespace weir {
 
-using Longs8 = std::int64_t __attribute__((vector_size(64)));
-
 [[gnu::always_inline]] inline bool any_lane(const Ints8& mask) {
   std::array<std::uint64_t, 4> pairs;
   std::memcpy(pairs.data(), &mask, sizeof mask);
   return (pairs[0] | pairs[1] | pairs[2] | pairs[3]) != 0;
-}
-
-[[gnu::always_inline]] inline void beside_floats(const Longs8& mask, Ints8& narrow) {
-  narrow = __builtin_convertvector(mask, Ints8);
-}
-[[gnu::always_inline]] inline void beside_doubles(const Ints8& mask, Longs8& wide) {
-  wide = __builtin_convertvector(mask, Longs8);
 }
 
 }  // namespace weir

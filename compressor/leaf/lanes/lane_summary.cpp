@@ -34,17 +34,17 @@ WEIR_SIMD void summarize_lanes(const Floats8* values, const LaneShape& shape, La
   const std::size_t count = shape.values();
   constexpr auto kVoxels = static_cast<double>(kLeafVoxels);
   std::array<Doubles8, kMostLaneValues> terms;
-  terms[0] = __builtin_convertvector(values[0], Doubles8);
-  for (std::size_t i = 1; i < count; ++i) terms[i] = __builtin_convertvector(values[i], Doubles8);
+  terms[0] = Doubles8(values[0]);
+  for (std::size_t i = 1; i < count; ++i) terms[i] = Doubles8(values[i]);
   Doubles8 sum;
   sum_groups(terms.data(), shape, sum);
   LaneRanges& ranges = summary.ranges;
   find_range(values, shape, ranges.min, ranges.max);
-  ranges.mean = __builtin_convertvector(sum / kVoxels, Floats8);
-  const Doubles8 centre = __builtin_convertvector(ranges.mean, Doubles8);
+  narrow(sum / kVoxels, ranges.mean);
+  const Doubles8 centre(ranges.mean);
   for (std::size_t i = 0; i < count; ++i) terms[i] -= centre;
   sum_groups(terms.data(), shape, sum);
-  ranges.residual = __builtin_convertvector(sum, Floats8);
+  narrow(sum, ranges.residual);
   for (std::size_t i = 0; i < count; ++i) terms[i] *= terms[i];
   sum_groups(terms.data(), shape, summary.sse);
 

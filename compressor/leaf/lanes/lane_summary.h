@@ -3,6 +3,7 @@
 
 #include "compressor/leaf/lanes/lane_ranges.h"
 #include "compressor/leaf/lanes/lane_shape.h"
+#include "format/base/doubles8.h"
 
 namespace weir {
 

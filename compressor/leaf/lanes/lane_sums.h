@@ -2,6 +2,7 @@
 #pragma once
 
 #include "compressor/leaf/lanes/lane_shape.h"
+#include "format/base/doubles8.h"
 
 namespace weir {
 
