@@ -27,8 +27,8 @@ std::optional<CodedStream> CodedRegion::find(const Index3& leaf) const {
   const auto i = static_cast<std::size_t>(ask);
   if (made_->made[i] == 0) return std::nullopt;
   const std::span<const std::byte> bytes = made_->bytes.subspan(asks_[i].offset, asks_[i].bytes);
-  if (!made_->records.empty()) return CodedStream{bytes, {}, &made_->records[i]};
-  return CodedStream{bytes, made_->decoded.subspan(512 * i, 512), nullptr};
+  if (!made_->records.empty()) return CodedStream{bytes, {}, &made_->records[i], &made_->sources[i]};
+  return CodedStream{bytes, made_->decoded.subspan(512 * i, 512), nullptr, nullptr};
 }
 
 CodedBatch::CodedBatch(const EncodeTarget& target, const Box& leaf_box, std::span<const std::int64_t> regions,
@@ -65,7 +65,8 @@ void CodedBatch::add(const EncodeTarget& target, const Box& leaf_box, std::int64
     const std::optional<StreamAskKind> kind = kind_of(*target.packed, step, streams.bytes(position));
     if (!kind) return;
     const bool rounded = *kind == StreamAskKind::rounded;
-    const std::uint32_t offset = asks_.empty() ? 0 : asks_.back().offset + asks_.back().bytes;
+    const std::uint32_t next = asks_.empty() ? 0 : asks_.back().offset + asks_.back().bytes;
+    const std::uint32_t offset = which_ == Blocks::resident ? streams.offset(position) - streams.base(0) : next;
     coded.set(leaf, asks_.size());
     asks_.push_back({streams.plan().region.means,
                      static_cast<std::uint32_t>(linear_index(leaf - leaf_box.lo, leaf_box.extent())), offset,

@@ -15,12 +15,13 @@
 
 namespace weir {
 
-/// One block's: as many bytes as planned, and what they decode to, in the order of a leaf; of a resident one its record
-/// instead.
+/// One block's: as many bytes as planned, and what they decode to, in the order of a leaf; of a resident one instead
+/// its record and the digest of its values.
 struct CodedStream {
   std::span<const std::byte> bytes;
   std::span<const float> decoded;
-  const MadeRecord* record;
+  const LeafRecord* record;
+  const Digest* source;
 };
 
 /// Of one region, as far as it lies in a box.
@@ -34,6 +35,9 @@ class CodedRegion {
   void set(const Index3& leaf, std::size_t ask) { ask_of_[at(leaf)] = static_cast<std::int32_t>(ask); }
   /// Nullopt where the caller has to encode it.
   std::optional<CodedStream> find(const Index3& leaf) const;
+  /// Of a resident region: its chunk from the first group on, up to the last stream that was asked for. What is not of
+  /// those that were coded the caller has to set. Empty where nothing was.
+  std::span<std::byte> chunk() const { return made_ ? made_->bytes : std::span<std::byte>(); }
 
  private:
   static constexpr std::int32_t kNone = -1;
@@ -51,7 +55,7 @@ class CodedRegion {
 class CodedBatch {
  public:
   /// Which blocks are asked for: none, all that are transformed, or, of resident ones, those that lie wholly in the
-  /// volume and are no corners of a preview.
+  /// volume and are no corners of a preview: these come as they lie in the region's chunk.
   enum class Blocks { none, loaded, resident };
   /// Begins with some of `regions`, which have kept leaves in `leaf_box`, whose values are `blocks`; both must outlive
   /// the object.

@@ -2,6 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <span>
 #include <vector>
 
 #include "compressor/leaf/certificate.h"
@@ -29,7 +30,8 @@ DecodedErrors sum_leaf_errors(const TreeRegions& tree, const RecordStore& record
     if (region.leaves == 0) return;
     DecodedErrors& errors = by_region[i];
     CompensatedSum squares;
-    const std::vector<LeafRecord> kept = records.read(region.first_leaf, region.leaves);
+    std::vector<LeafRecord> room;
+    const std::span<const LeafRecord> kept = records.view(region.first_leaf, region.leaves, room);
     const std::vector<bool> seen = seen_by == nullptr ? std::vector<bool>(kept.size(), true)
                                                       : seen_leaves(seen_by->read(static_cast<std::int64_t>(i)));
     for (std::size_t leaf = 0; leaf < kept.size(); ++leaf) {

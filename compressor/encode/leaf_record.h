@@ -48,6 +48,13 @@ class RecordStore {
     file_->read_at(first * sizeof(LeafRecord), std::as_writable_bytes(std::span(records)));
     return records;
   }
+  /// The same, once all are written: where they lie in memory, else read into `room`.
+  std::span<const LeafRecord> view(std::uint64_t first, std::uint32_t count, std::vector<LeafRecord>& room) const {
+    const std::span<const std::byte> memory = file_->memory();
+    if (!memory.empty()) return {reinterpret_cast<const LeafRecord*>(memory.data()) + first, count};
+    room = read(first, count);
+    return room;
+  }
   /// After each rank has written those of its leaves.
   void publish(Team& team) { team.publish(*file_); }
 

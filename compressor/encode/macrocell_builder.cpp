@@ -1,5 +1,7 @@
 #include "compressor/encode/macrocell_builder.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 
 #include "format/nanovdb/macrocells.h"
@@ -33,44 +35,44 @@ void RegionCells::add_tile(const Box& voxels, float value) {
 }
 
 void RegionCells::add_leaf(const Box& node, const LeafRecord& record) {
-  const Index3 leaf = floor_div(node.lo, kLeafDim);
-  const Index3 cell = floor_div(leaf, 2);
-  const Index3 outward = (leaf - cell * 2) * 2 - Index3{1, 1, 1};  // -1 or +1 along each axis
-  widen(at(cell), record.bounds);
+  // Leaves from the first cell on: two to a cell along each axis.
+  const Index3 leaf = floor_div(node.lo, kLeafDim) - first_ * 2;
+  const Index3 cell{leaf.x >> 1, leaf.y >> 1, leaf.z >> 1};
+  const auto outward = [](std::int64_t of_leaf, std::int64_t step) { return (of_leaf & 1) != 0 ? step : -step; };
+  const std::int64_t x = outward(leaf.x, 1);
+  const std::int64_t y = outward(leaf.y, kSide);
+  const std::int64_t z = outward(leaf.z, kSide * kSide);
+  MinMax* const own = cells_.data() + linear_index(cell, {kSide, kSide, kSide});
+  widen(*own, record.bounds);
   for (unsigned d = 1; d < 8; ++d) {
-    const Index3 step{(d & 1U) != 0 ? outward.x : 0, (d & 2U) != 0 ? outward.y : 0, (d & 4U) != 0 ? outward.z : 0};
-    widen(at(cell + step), record.outward[d - 1]);
+    const std::int64_t step = ((d & 1U) != 0 ? x : 0) + ((d & 2U) != 0 ? y : 0) + ((d & 4U) != 0 ? z : 0);
+    widen(own[step], record.outward[d - 1]);
   }
 }
 
 MacrocellBuilder::MacrocellBuilder(const Box& domain, float background)
     : lattice_(make_lattice(domain, kMacrocell)), background_(background) {}
 
-void MacrocellBuilder::begin_layer(std::int64_t region_z) {
-  const std::int64_t first = region_z * kRegionCells - 1 - lattice_.first.z;
-  const std::int64_t plane = lattice_.count.x * lattice_.count.y;
-  std::vector<MinMax> next(static_cast<std::size_t>(plane * RegionCells::kSide), kNoBounds);
-  if (!window_.empty()) {
-    // The two layers that the next region layer touches too.
-    std::copy(window_.end() - 2 * plane, window_.end(), next.begin());
-  }
+void MacrocellBuilder::begin_layers(std::int64_t region_z, std::int64_t layers) {
+  constexpr std::int64_t kTouched = RegionCells::kSide - kRegionCells;  // layers that the next regions touch, too
+  window_first_ = region_z * kRegionCells - 1 - lattice_.first.z;
+  window_layers_ = layers * kRegionCells + kTouched;
+  std::vector<MinMax> next(static_cast<std::size_t>(plane() * window_layers_), kNoBounds);
+  if (!window_.empty()) std::copy(window_.end() - kTouched * plane(), window_.end(), next.begin());
   window_.swap(next);
-  window_first_ = first;
 }
 
 void MacrocellBuilder::merge(const RegionCells& cells) {
-  const std::scoped_lock lock(mutex_);
   const Index3 offset = cells.first_ - lattice_.first;
-  for (std::int64_t z = 0; z < RegionCells::kSide; ++z) {
-    for (std::int64_t y = 0; y < RegionCells::kSide; ++y) {
-      for (std::int64_t x = 0; x < RegionCells::kSide; ++x) {
-        const Index3 at = offset + Index3{x, y, z};
-        if (!Box{{0, 0, 0}, lattice_.count}.contains(at)) continue;
-        const Index3 in_window{at.x, at.y, at.z - window_first_};
-        widen(window_[static_cast<std::size_t>(linear_index(in_window, {lattice_.count.x, lattice_.count.y, 0}))],
-              cells.cells_[static_cast<std::size_t>(
-                  linear_index({x, y, z}, {RegionCells::kSide, RegionCells::kSide, 0}))]);
-      }
+  const Index3 side{RegionCells::kSide, RegionCells::kSide, RegionCells::kSide};
+  const Box inside = intersect({offset, offset + side}, {{0, 0, 0}, lattice_.count});
+  const auto x_cells = static_cast<std::size_t>(std::max<std::int64_t>(0, inside.hi.x - inside.lo.x));
+  const std::scoped_lock lock(mutex_);
+  for (std::int64_t z = inside.lo.z; z < inside.hi.z; ++z) {
+    for (std::int64_t y = inside.lo.y; y < inside.hi.y; ++y) {
+      const MinMax* const from = cells.cells_.data() + linear_index(Index3{inside.lo.x, y, z} - offset, side);
+      MinMax* const to = window_.data() + linear_index({inside.lo.x, y, z - window_first_}, lattice_.count);
+      for (std::size_t x = 0; x < x_cells; ++x) widen(to[x], from[x]);
     }
   }
 }
@@ -78,25 +80,25 @@ void MacrocellBuilder::merge(const RegionCells& cells) {
 std::vector<MinMax> MacrocellBuilder::take_finished(bool last, std::int64_t& first_layer) {
   const std::int64_t keep = last ? 0 : 2;
   first_layer = std::max<std::int64_t>(0, window_first_);
-  const std::int64_t end = std::min(lattice_.count.z, window_first_ + RegionCells::kSide - keep);
-  std::vector<MinMax> cells;
-  for (std::int64_t layer = first_layer; layer < end; ++layer) finish(layer, cells);
+  const std::int64_t end = std::min(lattice_.count.z, window_first_ + window_layers_ - keep);
+  std::vector<MinMax> cells(static_cast<std::size_t>(plane() * std::max<std::int64_t>(0, end - first_layer)));
+  tbb::parallel_for(first_layer, end,
+                    [&](std::int64_t layer) { finish(layer, cells.data() + plane() * (layer - first_layer)); });
   return cells;
 }
 
-void MacrocellBuilder::finish(std::int64_t layer, std::vector<MinMax>& cells) const {
+void MacrocellBuilder::finish(std::int64_t layer, MinMax* cells) const {
   const Index3 apron{kMacrocellApron, kMacrocellApron, kMacrocellApron};
+  const MinMax* from = window_.data() + plane() * (layer - window_first_);
   for (std::int64_t y = 0; y < lattice_.count.y; ++y) {
     for (std::int64_t x = 0; x < lattice_.count.x; ++x) {
-      const Index3 in_window{x, y, layer - window_first_};
-      MinMax bounds =
-          window_[static_cast<std::size_t>(linear_index(in_window, {lattice_.count.x, lattice_.count.y, 0}))];
+      MinMax bounds = *from++;
       const Box box = lattice_.node_box({x, y, layer});
       if (!lattice_.domain.contains(Box{box.lo - apron, box.hi + apron})) widen(bounds, {background_, background_});
       // Nothing but NaN in reach: no majorant is asked for, but readers expect min <= max.
       if (bounds.min > bounds.max) bounds = {background_, background_};
       // A zero's sign is that of the region merged first: make it one.
-      cells.push_back({bounds.min + 0.0F, bounds.max + 0.0F});
+      *cells++ = {bounds.min + 0.0F, bounds.max + 0.0F};
     }
   }
 }

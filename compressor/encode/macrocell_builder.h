@@ -1,5 +1,5 @@
-// Builds the macrocells of a file layer by layer of 128^3 regions: a window of
-// ten cell layers is held, however deep the volume.
+// Builds the macrocells of a file from some layers of 128^3 regions after the other: a window of eight cell layers for
+// each, and two more, is held, however deep the volume.
 #pragma once
 
 #include <cstdint>
@@ -39,21 +39,23 @@ class MacrocellBuilder {
 
   const NodeLattice& lattice() const { return lattice_; }
 
-  /// Moves the window to region layer `region_z` (node coordinate); layers must come in order.
-  void begin_layer(std::int64_t region_z);
-  /// Merges one region of the current layer. Thread-safe.
+  /// Moves the window to so many layers of regions from `region_z` (node coordinate) on; layers must come in order.
+  void begin_layers(std::int64_t region_z, std::int64_t layers);
+  /// Merges one region of the current layers. Thread-safe.
   void merge(const RegionCells& cells);
   /// Cell layers that no later region can touch, finished: consecutive layers of the lattice from
-  /// `first_layer` on. Call after all regions of a layer; `last` also finishes what is left.
+  /// `first_layer` on. Call after all regions of the layers; `last` also finishes what is left.
   std::vector<MinMax> take_finished(bool last, std::int64_t& first_layer);
 
  private:
-  void finish(std::int64_t layer, std::vector<MinMax>& cells) const;
+  std::int64_t plane() const { return lattice_.count.x * lattice_.count.y; }  // cells of a layer
+  void finish(std::int64_t layer, MinMax* cells) const;
 
   NodeLattice lattice_;
   float background_;
   std::mutex mutex_;
-  std::int64_t window_first_ = 0;  // lattice z of the window's lowest layer
+  std::int64_t window_first_ = 0;   // lattice z of the window's lowest layer
+  std::int64_t window_layers_ = 0;  // of cells
   std::vector<MinMax> window_;
 };
 

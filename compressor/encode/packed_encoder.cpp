@@ -58,11 +58,14 @@ class PackedEncoder final : public PackedLayerEncoder {
   void add_layer(std::int64_t region_index, const RegionPlaces& of_region, const SurveyedLeaves& surveyed,
                  std::int64_t x, const CodedRegion& coded, const LeftLeaves& left) override {
     const Box box = target_.tree.leaf_box(region_index);
-    for_each_kept(region_index, *of_region.streams, box, x, [&](const Index3& leaf, const KeptPlace& place) {
+    const StreamPlaces& places = *of_region.streams;
+    chunk_ = {coded.chunk(), chunk_offset(target_, region_index) + places.base(0)};
+    for_each_kept(region_index, places, box, x, [&](const Index3& leaf, const KeptPlace& place) {
       if (const std::optional<CodedStream> known = coded.find(leaf)) {
-        surveyed.check(leaf, known->record->source);
-        append_coded(place.offset, known->bytes);
-        return records_.add(place.ordinal, known->record->record);
+        surveyed.check(leaf, *known->source);
+        chunk_.add(place.offset, known->bytes.size());
+        if (target_.sums) volume_sum_ += placed_checksum(place.offset, known->bytes);
+        return records_.add(place.ordinal, *known->record);
       }
       begin_leaf(leaf);
       std::copy_n(left.find(leaf), source_.size(), source_.begin());
@@ -71,10 +74,10 @@ class PackedEncoder final : public PackedLayerEncoder {
       add_stream(leaf, place);
       records_.add(place.ordinal, decoded_, node_, inside_, loss());
     });
+    write_part(std::exchange(chunk_, {}));
   }
 
   void finish() override {
-    append_run();
     flush_bytes();
     records_.flush();
   }
@@ -197,34 +200,38 @@ class PackedEncoder final : public PackedLayerEncoder {
             difference.different == 0 && difference.nonfinite_different == 0, difference.zeros_lost};
   }
 
-  // Streams that follow each other in the file and in memory, which stays until finish(), are appended together.
-  void append_coded(std::uint64_t offset, std::span<const std::byte> bytes) {
-    const bool follows =
-        !run_.empty() && run_.data() + run_.size() == bytes.data() && run_offset_ + run_.size() == offset;
-    if (follows) {
-      run_ = {run_.data(), run_.size() + bytes.size()};
-      return;
-    }
-    append_run();
-    run_ = bytes;
-    run_offset_ = offset;
-  }
+  // The chunk that a coder has left its streams in, and of it what is to be written: one layer's.
+  struct ChunkPart {
+    std::span<std::byte> bytes{};
+    std::uint64_t offset = 0;  // in the file
+    std::uint64_t begin = 0;   // in the file, as is `end`; both 0: nothing is
+    std::uint64_t end = 0;
 
-  void append_run() {
-    if (!run_.empty()) hold(run_offset_, std::exchange(run_, {}));
-  }
+    bool holds(std::uint64_t at, std::size_t size) const { return at - offset + size <= bytes.size(); }
+    // The pieces of a layer follow each other.
+    void add(std::uint64_t at, std::size_t size) {
+      if (end == 0) begin = at;
+      end = at + size;
+    }
+  };
 
   void append(std::uint64_t offset, std::span<const std::byte> bytes) {
-    append_run();
-    hold(offset, bytes);
-  }
-
-  void hold(std::uint64_t offset, std::span<const std::byte> bytes) {
+    if (target_.sums) volume_sum_ += placed_checksum(offset, bytes);
+    if (chunk_.holds(offset, bytes.size())) {
+      std::copy(bytes.begin(), bytes.end(), chunk_.bytes.subspan(offset - chunk_.offset).begin());
+      chunk_.add(offset, bytes.size());
+      return;
+    }
     if (!bytes_.empty() && offset != first_byte_ + bytes_.size()) flush_bytes();
     if (bytes_.empty()) first_byte_ = offset;
     bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
-    if (target_.sums) volume_sum_ += placed_checksum(offset, bytes);
     if (bytes_.size() >= kHeldBytes) flush_bytes();
+  }
+
+  void write_part(const ChunkPart& part) {
+    if (part.end == 0) return;
+    const TraceSpan span(target_.trace, "write", part.end - part.begin);
+    target_.out.write_at(part.begin, part.bytes.subspan(part.begin - part.offset, part.end - part.begin));
   }
 
   void flush_bytes() {
@@ -254,8 +261,7 @@ class PackedEncoder final : public PackedLayerEncoder {
   bool shortened_ = false;  // the stream has fewer coefficients, or a larger quantum, than planned
   std::vector<std::byte> stream_;
   std::vector<std::byte> exact_;
-  std::span<const std::byte> run_;  // of streams that a coder has made, to be appended at run_offset_
-  std::uint64_t run_offset_ = 0;
+  ChunkPart chunk_;  // of the region of a layer that a coder has looked at
   std::uint64_t first_byte_ = 0;
   std::vector<std::byte> bytes_;  // to be written from first_byte_ on
   std::uint64_t volume_sum_ = 0;  // of the checksums of what was appended, and of corners

@@ -6,7 +6,7 @@ namespace weir {
 
 void RecordBatch::add(std::uint64_t ordinal, const LeafValues& decoded, const Box& node, const Box& inside,
                       const DecodedErrors& loss) {
-  if (ordinal != first_ + held_.size() + count_) flush();
+  if (!known_.empty() || ordinal != first_ + held_.size() + count_) flush();
   if (held_.empty() && count_ == 0) first_ = ordinal;
   values_[count_] = decoded;
   nodes_[count_] = node;
@@ -17,19 +17,26 @@ void RecordBatch::add(std::uint64_t ordinal, const LeafValues& decoded, const Bo
 }
 
 void RecordBatch::add(std::uint64_t ordinal, const LeafRecord& record) {
-  compute();
-  if (ordinal != first_ + held_.size()) flush();
-  if (held_.empty()) first_ = ordinal;
-  held_.push_back(record);
-  if (held_.size() >= kHeldRecords) flush();
+  const bool follows = !known_.empty() && ordinal == first_ + known_.size() && &record == known_.data() + known_.size();
+  if (!follows) {
+    flush();
+    first_ = ordinal;
+    known_ = {&record, 0};
+  }
+  known_ = {known_.data(), known_.size() + 1};
 }
 
 void RecordBatch::flush() {
   compute();
-  if (held_.empty()) return;
-  records_.write(first_, held_);
-  for (std::size_t i = 0; sums_ && i < held_.size(); ++i) sum_ += record_checksum(first_ + i, held_[i]);
+  write(first_, known_.empty() ? held_ : known_);
+  known_ = {};
   held_.clear();
+}
+
+void RecordBatch::write(std::uint64_t first, std::span<const LeafRecord> records) {
+  if (records.empty()) return;
+  records_.write(first, records);
+  for (std::size_t i = 0; sums_ && i < records.size(); ++i) sum_ += record_checksum(first + i, records[i]);
 }
 
 void RecordBatch::compute() {

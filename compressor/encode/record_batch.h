@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "compressor/encode/leaf_record.h"
@@ -20,7 +21,7 @@ class RecordBatch {
 
   void add(std::uint64_t ordinal, const LeafValues& decoded, const Box& node, const Box& inside,
            const DecodedErrors& loss);
-  /// One that is known already.
+  /// One that is known already, and stays until flush().
   void add(std::uint64_t ordinal, const LeafRecord& record);
   /// Writes what is still held.
   void flush();
@@ -31,6 +32,7 @@ class RecordBatch {
   static constexpr std::size_t kHeldRecords = 1024;
 
   void compute();
+  void write(std::uint64_t first, std::span<const LeafRecord> records);
 
   RecordStore& records_;
   bool sums_;
@@ -41,6 +43,7 @@ class RecordBatch {
   std::array<DecodedErrors, kLeafBatch> losses_{};
   std::uint64_t first_ = 0;  // ordinal of the first record held
   std::vector<LeafRecord> held_;
+  std::span<const LeafRecord> known_;  // in the place of held ones, which are written first
   std::uint64_t sum_ = 0;
 };
 

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "compressor/encode/layer_encoder.h"
 #include "format/base/little_endian.h"
@@ -22,6 +23,13 @@ struct KeptPlace {
   std::uint64_t ordinal;  ///< of its record
 };
 
+/// Where the chunk of a region lies in the file.
+inline std::uint64_t chunk_offset(const EncodeTarget& target, std::int64_t region_index) {
+  const std::vector<Region>& regions = target.tree.regions;
+  return target.layout.packed_data + packed::kRegionsOffset + regions.size() * packed::region::kEntryBytes +
+         regions[static_cast<std::size_t>(region_index)].first_byte;
+}
+
 /// Of the kept leaves of layer `x` of a region, as far as they lie in `box`: calls ends(offset, bytes) of a group of
 /// which one is the first, and visit(leaf, place) of each.
 template <typename Ends, typename Visit>
@@ -30,8 +38,7 @@ void for_each_kept_stream(const EncodeTarget& target, std::int64_t region_index,
   using packed::chunk::kGroupBlocks;
   const TreeRegions& tree = target.tree;
   const Region& region = tree.regions[static_cast<std::size_t>(region_index)];
-  const std::uint64_t chunk = target.layout.packed_data + packed::kRegionsOffset +
-                              tree.regions.size() * packed::region::kEntryBytes + region.first_byte;
+  const std::uint64_t chunk = chunk_offset(target, region_index);
   for (std::int64_t y = box.lo.y; y < box.hi.y; ++y) {
     for (std::int64_t z = box.lo.z; z < box.hi.z; ++z) {
       const Index3 leaf{x, y, z};

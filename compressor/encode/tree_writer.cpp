@@ -38,7 +38,7 @@ class TableStatistics {
   std::uint64_t active_tiles_ = 0;
 };
 
-// Writes lower nodes and gathers macrocells, one layer of regions at a time.
+// Writes lower nodes and gathers macrocells, some layers of regions at a time.
 class LowerWriter {
  public:
   LowerWriter(const TreeParts& parts, File& out)
@@ -50,13 +50,15 @@ class LowerWriter {
 
   void run() {
     const NodeLattice& lattice = parts_.tree.region_lattice;
-    for (std::int64_t z = 0; z < lattice.count.z; ++z) {
-      macrocells_.begin_layer(lattice.first.z + z);
-      const Box layer{{0, 0, z}, {lattice.count.x, lattice.count.y, z + 1}};
-      for_each_region(parts_.tree, parts_.rows, layer,
+    constexpr std::int64_t kRegions = 1024;  // whose macrocells are 4 MiB: a layer may have more
+    const std::int64_t layers = std::max<std::int64_t>(1, kRegions / (lattice.count.x * lattice.count.y));
+    for (std::int64_t z = 0; z < lattice.count.z; z += layers) {
+      const std::int64_t end = std::min(z + layers, lattice.count.z);
+      macrocells_.begin_layers(lattice.first.z + z, end - z);
+      for_each_region(parts_.tree, parts_.rows, {{0, 0, z}, {lattice.count.x, lattice.count.y, end}},
                       [&](std::int64_t region, const RegionRows& rows) { write_region(region, rows); });
       std::int64_t first = 0;
-      const std::vector<MinMax> cells = macrocells_.take_finished(z + 1 == lattice.count.z, first);
+      const std::vector<MinMax> cells = macrocells_.take_finished(end == lattice.count.z, first);
       const Index3 count = macrocells_.lattice().count;
       out_.write_at(parts_.layout.blind_data + static_cast<std::uint64_t>(first * count.x * count.y) * sizeof(MinMax),
                     std::as_bytes(std::span(cells)));
@@ -87,7 +89,8 @@ class LowerWriter {
   void write_lower(std::int64_t index, const Region& region, const RegionRows& rows, RegionCells& cells) {
     const TreeRegions& tree = parts_.tree;
     const LeafChoices choices = parts_.choices.read(index);
-    const std::vector<LeafRecord> records = parts_.records.read(region.first_leaf, region.leaves);
+    std::vector<LeafRecord> room;
+    const std::span<const LeafRecord> records = parts_.records.view(region.first_leaf, region.leaves, room);
     const std::uint64_t node = parts_.layout.lower_offset(region.node);
     NodeImage& image = images_.local();
     image.reset();
@@ -127,7 +130,8 @@ class LowerWriter {
     }
     const StreamPlaces places(parts_.packed->streams.read_allocated(index));
     write_directory(parts_.layout, tree.regions.size(), index, region, places, out_);
-    const std::vector<LeafRecord> records = parts_.records.read(region.first_leaf, region.leaves);
+    std::vector<LeafRecord> room;
+    const std::span<const LeafRecord> records = parts_.records.view(region.first_leaf, region.leaves, room);
     MinMax decoded = kNoBounds;
     for_each_in_file_order(rows.leaf_box(), [&](const Index3& leaf) {
       const std::size_t position = tree.mask_position(leaf);
@@ -146,7 +150,7 @@ class LowerWriter {
 
   // Each block's mean, and the two corner leaves.
   void write_preview(std::int64_t index, const Region& region, const RegionRows& rows, const StreamPlaces& places,
-                     const std::vector<LeafRecord>& records) {
+                     std::span<const LeafRecord> records) {
     const TreeRegions& tree = parts_.tree;
     const std::uint64_t node = parts_.layout.lower_offset(region.node);
     const Index3 last = tree.leaves.count - Index3{1, 1, 1};

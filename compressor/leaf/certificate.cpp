@@ -22,10 +22,4 @@ Certificate make_certificate(double squared_error, double max_abs, bool lossless
   return c;
 }
 
-void CompensatedSum::add(double term) {
-  const double next = sum_ + term;
-  compensation_ += std::abs(sum_) >= std::abs(term) ? (sum_ - next) + term : (term - next) + sum_;
-  sum_ = next;
-}
-
 }  // namespace weir

@@ -2,6 +2,7 @@
 // all finite source voxels, in double.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
 
@@ -23,7 +24,11 @@ Certificate make_certificate(double squared_error, double max_abs, bool lossless
 /// Neumaier's compensated sum (1974): the error does not grow with the number of terms.
 class CompensatedSum {
  public:
-  void add(double term);
+  void add(double term) {
+    const double next = sum_ + term;
+    compensation_ += std::abs(sum_) >= std::abs(term) ? (sum_ - next) + term : (term - next) + sum_;
+    sum_ = next;
+  }
   double value() const { return sum_ + compensation_; }
 
  private:

@@ -14,6 +14,8 @@ struct PackedRule {
   std::int32_t coarsest = 0;  ///< step number that a step field of 0 stands for
   /// Rungs that no cut within it can choose are left out, whether they are built or not.
   std::optional<KeyWindow> window{};
+  /// A bound of the squared error of the volume where no block has a stream; 0: none is known.
+  double most_error = 0;
 };
 
 /// Step fields have 6 bits.

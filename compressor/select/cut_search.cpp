@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <span>
@@ -22,7 +23,7 @@ constexpr KeyRange kAllKeys{std::bit_cast<std::uint64_t>(kLastKey), std::bit_cas
 }  // namespace
 
 PurchaseGoal::Weight PurchaseGoal::weight(std::uint64_t bytes, double gain) const {
-  return unit == 0 ? Weight{bytes} : static_cast<Weight>(std::max(0.0, gain) / unit);
+  return unit == 0 ? Weight{bytes} : gain_weight(gain, unit);
 }
 
 KeyRange CutSearch::likely_keys(const GainRule& rule) {
@@ -31,6 +32,12 @@ KeyRange CutSearch::likely_keys(const GainRule& rule) {
 }
 
 KeyRange CutSearch::every_key() { return {kAllKeys.first, kAllKeys.end + 1}; }
+
+double CutSearch::error_unit(const GainRule& rule) {
+  if (!rule.packed || rule.visibility != nullptr) return 0;  // which weighs errors
+  const double unit = std::ldexp(rule.packed->most_error, -112);
+  return std::isnormal(unit) ? unit : 0;
+}
 
 template <typename Begin>
 void CutSearch::for_each_key(const Begin& begin, double least_key) const {
@@ -74,9 +81,9 @@ void CutSearch::count_steps(const PurchaseGoal& goal, KeyCounts& total) const {
       counted.add(step.key, goal.weight(step.bytes(rule_.region_bytes()), step.gain));
     };
   };
-  if (holds(goal.unit == 0 ? total.range : every_key())) {
+  if (holds(total.range) && knows_outside(goal)) {
     for_each_held(begin);
-    total.outside = held_->outside();
+    total.outside = goal.unit == 0 ? held_->outside() : held_->outside_gains();
   } else {
     for_each_key(begin);
   }
@@ -98,14 +105,16 @@ void CutSearch::hold(const KeyRange& range, std::uint64_t items, const PurchaseG
 Threshold CutSearch::find_threshold(PurchaseGoal& goal) {
   Threshold found = search(goal);
   const bool previewed = rule_.packed && rule_.packed->preview;
-  if (!previewed || goal.unit == 0 || !holds(every_key())) return found;
+  if (!previewed || goal.unit == 0 || held_ == nullptr || !held_->range().holds(found.key)) return found;
   tbb::enumerable_thread_specific<std::uint64_t> bytes{0};
   for_each_held([&] {
     return [&, least = found.key, &sum = bytes.local()](const HeldSteps::Step& step) {
       if (step.key >= least) sum += step.bytes(rule_.region_bytes());
     };
   });
-  found.bytes = std::accumulate(bytes.begin(), bytes.end(), std::uint64_t{0});
+  const OutsideSums outside = held_->outside();
+  found.bytes = static_cast<std::uint64_t>(outside[OutsideSums::required].weight + outside[OutsideSums::above].weight);
+  found.bytes = std::accumulate(bytes.begin(), bytes.end(), *found.bytes);
   return found;
 }
 

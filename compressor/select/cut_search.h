@@ -52,17 +52,19 @@ struct Threshold {
 class CutSearch {
  public:
   /// Over the keys of `tree` (region_keys.h) and of the leaves' steps; all must outlive the object. `held`: the steps
-  /// of likely_keys(), or of every_key() where an error is the goal, or null. `counts`: what those of likely_keys()
-  /// take, or null.
+  /// of likely_keys(), or of every_key() where an error is the goal whose unit is not known before (error_unit()), or
+  /// null. `counts`: what those of likely_keys() take, or null.
   CutSearch(const GainRule& rule, const RowStore& rows, const TreeRegions& tree, const HeldSteps* held,
             const KeyCounts* counts)
       : rule_(rule), rows_(rows), tree_(tree), held_(held), counts_(counts) {}
 
   /// Where the cut is looked for first.
   static KeyRange likely_keys(const GainRule& rule);
-  /// Of what is required, too: saved errors outside of what is held would have to be summed in units that are not known
-  /// while it is.
+  /// Of what is required, too.
   static KeyRange every_key();
+  /// The unit that saved errors are summed in, where it is known before they are: a bound of all of them together is
+  /// 2^112 of it. 0 where it is not.
+  static double error_unit(const GainRule& rule);
 
   /// The smallest key for which everything above it can be bought for `goal`.
   Threshold find_threshold(PurchaseGoal& goal);
@@ -83,6 +85,10 @@ class CutSearch {
   template <typename Begin>
   void for_each_held(const Begin& begin) const;
   bool holds(const KeyRange& range) const { return held_ != nullptr && held_->range().holds(range); }
+  // Whether what lies outside of the held range is known in the goal's weights.
+  bool knows_outside(const PurchaseGoal& goal) const {
+    return goal.unit == 0 || goal.unit == held_->unit() || holds(every_key());
+  }
 
   const GainRule& rule_;
   const RowStore& rows_;

@@ -122,11 +122,19 @@ class Candidate {
     return budget.kind == Budget::Kind::psnr ? Selection::Search::of_error : Selection::Search::of_bytes;
   }
 
+  // Every voxel reads a value of the volume, or the background.
+  static double most_error(const FileRequest& request) {
+    const auto background = static_cast<double>(request.rule.fill.background);
+    const double low = std::min(static_cast<double>(request.packed.constants.minimum), background);
+    const double high = std::max(static_cast<double>(request.packed.constants.maximum), background);
+    return (high - low) * (high - low) * static_cast<double>(request.domain.voxels());
+  }
+
   static GainRule rule_of(const FileRequest& request, Encoding encoding, bool preview) {
     GainRule rule = request.rule;
     rule.encoding = encoding;
     if (encoding == Encoding::packed) {
-      rule.packed = PackedRule{preview, request.packed.constants.coarsest, request.packed.window};
+      rule.packed = PackedRule{preview, request.packed.constants.coarsest, request.packed.window, most_error(request)};
     }
     if (request.budget.kind == Budget::Kind::max_error) rule.max_error = request.budget.target;
     return rule;

@@ -49,12 +49,6 @@ std::uint64_t HeldSteps::bytes_for(std::uint64_t steps) {
   return steps * sizeof(Step) + threads * kChunkBytes;
 }
 
-OutsideSums HeldSteps::outside() const {
-  OutsideSums sums;
-  for (const Part& part : parts_) sums += part.outside_;
-  return sums;
-}
-
 KeyCounts HeldSteps::counts() const {
   KeyCounts total(range_);
   for (const Part& part : parts_) {

@@ -1,5 +1,5 @@
-// The steps that a selection can buy, held in memory as a pass over the rows finds them, so that the cut among them is
-// found without further passes; where they are too many, what they take.
+// The steps that a selection can buy about its cut, held in memory as a pass over the rows finds them, so that the cut
+// among them is found without further passes; where they are too many, what they take.
 #pragma once
 
 #include <tbb/enumerable_thread_specific.h>
@@ -18,7 +18,8 @@
 
 namespace weir {
 
-/// Holds the steps whose keys lie in a range; of all others only the sum of bytes. Steps of one thread lie together.
+/// Holds the steps whose keys lie in a range; of all others only the sums of bytes and of saved errors. Steps of one
+/// thread lie together.
 class HeldSteps {
  public:
   /// The opening of a region, or a step of a leaf in it.
@@ -57,9 +58,15 @@ class HeldSteps {
   };
 
   /// Takes up to `most_bytes` of memory, as it is needed. An opening takes `region_bytes` in the file. `counts`:
-  /// whether the bytes of steps that find no room are counted.
-  HeldSteps(const KeyRange& range, std::uint64_t most_bytes, std::uint64_t region_bytes, bool counts = false)
-      : range_(range), most_chunks_(most_bytes / kChunkBytes), region_bytes_(region_bytes), counting_(counts) {}
+  /// whether the bytes of steps that find no room are counted. Saved errors are summed in units of `unit`, unless that
+  /// is 0.
+  HeldSteps(const KeyRange& range, std::uint64_t most_bytes, std::uint64_t region_bytes, bool counts = false,
+            double unit = 0)
+      : range_(range),
+        most_chunks_(most_bytes / kChunkBytes),
+        region_bytes_(region_bytes),
+        counting_(counts),
+        unit_(unit) {}
   ~HeldSteps();
   HeldSteps(const HeldSteps&) = delete;
   HeldSteps& operator=(const HeldSteps&) = delete;
@@ -75,6 +82,7 @@ class HeldSteps {
       if (!(step.key > 0)) return;
       if (!all_->range_.holds(step.key)) {
         outside_.add(all_->range_, step.key, {step.bytes(all_->region_bytes_), 1});
+        if (all_->unit_ > 0) outside_gains_.add(all_->range_, step.key, {gain_weight(step.gain, all_->unit_), 1});
       } else if (!counts_ && (room_ > 0 || grow())) {
         *next_++ = step;
         --room_;
@@ -103,6 +111,7 @@ class HeldSteps {
     Step* next_ = nullptr;
     std::size_t room_ = 0;  // steps that the last chunk still takes
     OutsideSums outside_;
+    OutsideSums outside_gains_;
     std::unique_ptr<KeyCounts> counts_;  // of the range, in place of steps
   };
   Part& part() { return parts_.local(); }
@@ -114,8 +123,11 @@ class HeldSteps {
   /// Of all steps, held or counted; those of the range where it counts, or is complete.
   KeyCounts counts() const;
   const KeyRange& range() const { return range_; }
-  /// Their bytes.
-  OutsideSums outside() const;
+  /// Bytes of the others.
+  OutsideSums outside() const { return sum_of(&Part::outside_); }
+  /// What the others save, in units of unit().
+  OutsideSums outside_gains() const { return sum_of(&Part::outside_gains_); }
+  double unit() const { return unit_; }
   /// In no order.
   std::vector<std::span<const Step>> chunks() const;
 
@@ -123,10 +135,17 @@ class HeldSteps {
   static constexpr std::uint64_t kChunkBytes = std::uint64_t{1} << 18U;
   static constexpr std::size_t kChunkSteps = kChunkBytes / sizeof(Step);
 
+  OutsideSums sum_of(OutsideSums Part::*sums) const {
+    OutsideSums sum;
+    for (const Part& part : parts_) sum += part.*sums;
+    return sum;
+  }
+
   KeyRange range_;
   std::uint64_t most_chunks_;
   std::uint64_t region_bytes_;
   bool counting_;
+  double unit_;
   std::atomic<std::uint64_t> chunk_count_ = 0;
   std::atomic<bool> overflown_ = false;
   tbb::enumerable_thread_specific<Part> parts_{[this] { return Part(*this); }};

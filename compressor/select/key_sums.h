@@ -1,6 +1,7 @@
 // What purchases come to, by their keys.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -20,6 +21,11 @@ struct PurchaseSum {
     items += other.items;
   }
 };
+
+/// A saved error in units of `unit`, an error too.
+inline PurchaseSum::Weight gain_weight(double gain, double unit) {
+  return static_cast<PurchaseSum::Weight>(std::max(0.0, gain) / unit);
+}
 
 /// Of purchases whose keys are not in a range.
 struct OutsideSums {

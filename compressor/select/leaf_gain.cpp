@@ -344,9 +344,7 @@ void GainRule::gains(const TreeRegions& tree, const RegionRows& rows, RegionGain
   const std::int64_t side = metric == Metric::sse ? 1 : brick_leaves;
   const std::int64_t bricks = kLowerLeaves / side;
   out.clear();
-  const bool whole =
-      leaves.voxels(rows.leaf_box().lo) == leaves.node_box(rows.leaf_box().lo) &&
-      leaves.voxels(rows.leaf_box().hi - Index3{1, 1, 1}) == leaves.node_box(rows.leaf_box().hi - Index3{1, 1, 1});
+  const bool whole = are_whole(leaves, rows.leaf_box());
   SharedValues& region = out.shared;
   std::optional<StreamLengths> lengths;
   if (packed) {

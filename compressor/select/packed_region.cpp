@@ -67,11 +67,12 @@ SharedValues shared_values(const RegionRows& rows, const NodeLattice& leaves, co
   const std::optional<float> uniform = commonest_uniform(rows, fill);
   region.value = uniform ? *uniform : mean_of(rows, fill.background);
   MinMax means = kNoBounds;
+  const bool all_whole = are_whole(leaves, rows.leaf_box());
   rows.for_each([&](const Index3& leaf, const LeafRow& row) {
-    const Box voxels = leaves.voxels(leaf);
-    const bool filled = row.finite < voxels.voxels() && fill.non_finite != NonFinitePolicy::keep;
+    const std::int64_t voxels = all_whole ? kLeafVoxels : leaves.voxels(leaf).voxels();
+    const bool filled = row.finite < voxels && fill.non_finite != NonFinitePolicy::keep;
     if (row.finite == 0 || (row.uniform() && !filled)) return;
-    widen(means, mean_range(row, voxels == leaves.node_box(leaf), filled, fill.background));
+    widen(means, mean_range(row, voxels == kLeafVoxels, filled, fill.background));
   });
   if (means.min <= means.max) region.means = {means.min, means.max};
   return region;
@@ -95,15 +96,14 @@ PackedKind packed_kind(const PackedLadder& ladder, KeptLevel level) {
   return ladder.rungs[level - 1U].bits == kMeanBits ? PackedKind::mean : PackedKind::transform;
 }
 
-double packed_error(const PackedLadder& ladder, KeptLevel level, const LeafRow& row, std::int64_t voxels) {
-  if (level == kExactLevel) return 0;
-  if (level >= kFirstNearLevel) return ladder.near[level - kFirstNearLevel].error.value() * row.sse;
-  const std::size_t rung = level - 1U;
-  const auto size = static_cast<double>(step_size(ladder.step(rung)));
-  // Codes of the mean lie size / sqrt(512) apart.
-  const double of_mean = size * size / 12 * static_cast<double>(voxels) / static_cast<double>(kLeafVoxels);
-  return ladder.rungs[rung].error.value() * row.sse + of_mean;
-}
+const std::array<double, kMostStep - kLeastStep + 1> kMeanErrors = [] {
+  std::array<double, kMostStep - kLeastStep + 1> errors{};
+  for (std::int32_t step = kLeastStep; step <= kMostStep; ++step) {
+    const auto size = static_cast<double>(step_size(step));
+    errors[static_cast<std::size_t>(step - kLeastStep)] = size * size / 12;
+  }
+  return errors;
+}();
 
 PlannedStreams plan_streams(const RegionRows& rows, const TreeRegions& tree, const SharedValues& shared,
                             const PackedRule& rule, const LeafChoices& choices) {

@@ -74,8 +74,18 @@ static_assert(sizeof(PlannedStreams) == 16 + 4 * LeafChoices::kLeaves, "plans ar
 
 PackedKind packed_kind(const PackedLadder& ladder, KeptLevel level);
 
+/// Squared error of a block's mean by step, from the least one on: its codes lie the step's size / sqrt(512) apart.
+extern const std::array<double, kMostStep - kLeastStep + 1> kMeanErrors;
+
 /// Squared error expected of the in-domain voxels of a block at a level but 0.
-double packed_error(const PackedLadder& ladder, KeptLevel level, const LeafRow& row, std::int64_t voxels);
+inline double packed_error(const PackedLadder& ladder, KeptLevel level, const LeafRow& row, std::int64_t voxels) {
+  if (level == kExactLevel) return 0;
+  if (level >= kFirstNearLevel) return ladder.near[level - kFirstNearLevel].error.value() * row.sse;
+  const std::size_t rung = level - 1U;
+  const double of_mean = kMeanErrors[static_cast<std::size_t>(ladder.step(rung) - kLeastStep)] *
+                         static_cast<double>(voxels) / static_cast<double>(kLeafVoxels);
+  return ladder.rungs[rung].error.value() * row.sse + of_mean;
+}
 
 /// `shared` are the region's.
 PlannedStreams plan_streams(const RegionRows& rows, const TreeRegions& tree, const SharedValues& shared,

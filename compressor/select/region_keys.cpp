@@ -61,12 +61,13 @@ void RegionKeys::summarize_region(std::int64_t index, const RegionRows& rows, co
   const float tile = packed ? *packed : tile_value(rule_.fill, builder.sums);
   region.packed_value = tile;
   const auto dropped_value = [&](const LeafRow& row) { return packed ? *packed : rule_.fill.leaf_value(row); };
+  const bool whole = are_whole(tree_.leaves, rows.leaf_box());
   bool exact = true;
   bool keeps_values = true;
   double dropped_leaves = 0;  // squared error once the region is open and before any leaf is kept
   rows.for_each([&](const Index3& leaf, const LeafRow& row) {
     builder.add_squares(row.finite, static_cast<double>(row.mean), static_cast<double>(row.residual), row.sse);
-    exact = exact && rule_.fill.exact(row, tree_.leaves.voxels(leaf).voxels(), tile);
+    exact = exact && rule_.fill.exact(row, whole ? kLeafVoxels : tree_.leaves.voxels(leaf).voxels(), tile);
     keeps_values = keeps_values && Fill::keeps_values(row, tile);
     dropped_leaves += row.sse_about(dropped_value(row));
   });

@@ -78,7 +78,9 @@ Selection::Selection(const GainRule& rule, const RowStore& rows, TreeRegions& tr
 }
 
 void Selection::begin_holding(Search search) {
-  const KeyRange range = search == Search::of_bytes ? CutSearch::likely_keys(rule_) : CutSearch::every_key();
+  const double unit = search == Search::of_error ? CutSearch::error_unit(rule_) : 0;
+  const bool outside_known = search == Search::of_bytes || unit > 0;
+  const KeyRange range = outside_known ? CutSearch::likely_keys(rule_) : CutSearch::every_key();
   std::uint64_t room = rows_.room().step_bytes;
   const std::size_t regions = tree_.regions.size();
   const bool some_above = range.end < CutSearch::every_key().end;
@@ -89,7 +91,7 @@ void Selection::begin_holding(Search search) {
     if (some_above) levels_ = std::make_unique<PageBuffer>(levels);
     room -= taken;
   }
-  held_ = std::make_unique<HeldSteps>(range, room, rule_.region_bytes(), search == Search::of_bytes);
+  held_ = std::make_unique<HeldSteps>(range, room, rule_.region_bytes(), search == Search::of_bytes, unit);
 }
 
 void Selection::hold(std::int64_t index, const RegionGains& gains) {
@@ -209,10 +211,11 @@ void Selection::choose_error(double squared_error) {
   const double error = all_tiles.value();
   cut_ = Cut{};
   most_bytes_.reset();
-  // Every gain is at most the error of nothing bought, which becomes 2^90: sums of 2^37 gains fit, and each is
-  // counted to 2^-90 of it.
+  // Every gain is at most the error of nothing bought. Where no bound of that is known before, or one that is far off,
+  // it becomes 2^90: sums of 2^37 gains fit, and each is counted to 2^-90 of it.
   PurchaseGoal goal;
-  goal.unit = std::ldexp(error, -90);
+  goal.unit = CutSearch::error_unit(rule_);
+  if (goal.unit == 0 || error < std::ldexp(goal.unit, 60)) goal.unit = std::ldexp(error, -90);
   if (!(goal.unit > 0)) return choose(error > squared_error ? bytes_.full.file_bytes : bytes_.minimum.file_bytes);
   const bool ends_exact = rule_.packed || rule_.encoding == Encoding::float32;
   if (ends_exact) {

@@ -75,10 +75,11 @@ class RegionPlanner {
     CompensatedSum squares;
     CompensatedSum seen_squares;
     CompensatedSum expected;
+    const bool whole = are_whole(tree_.leaves, rows.leaf_box());
     rows.for_each([&](const Index3& leaf, const LeafRow& row) {
       const std::size_t position = tree_.mask_position(leaf);
       const LeafWidth width = choices.width(position);
-      const std::int64_t voxels = tree_.leaves.voxels(leaf).voxels();
+      const std::int64_t voxels = whole ? kLeafVoxels : tree_.leaves.voxels(leaf).voxels();
       if (width != LeafWidth::tile) {
         const double weight = rule_.visibility == nullptr ? 1 : rule_.visibility->weight(rows.reach(leaf));
         if (rule_.packed) {

@@ -50,6 +50,12 @@ void for_each_in_file_order(const Box& box, const Visit& visit) {
   }
 }
 
+/// Whether the leaves of a box of lattice positions lie in the domain, all of each.
+inline bool are_whole(const NodeLattice& leaves, const Box& leaf_box) {
+  const Index3 last = leaf_box.hi - Index3{1, 1, 1};
+  return leaves.voxels(leaf_box.lo) == leaves.node_box(leaf_box.lo) && leaves.voxels(last) == leaves.node_box(last);
+}
+
 struct Region {
   TileSums sums;
   double key = 0;                ///< error saved per byte by opening the region; +inf where it must be
@@ -88,9 +94,9 @@ struct TreeRegions {
   Box leaf_box(std::int64_t region) const;
   /// Position of a leaf in the masks of its lower node: x<<8 | y<<4 | z.
   std::size_t mask_position(const Index3& leaf) const {
+    static_assert(kLowerLeaves == 16);
     const Index3 node = leaves.first + leaf;
-    const Index3 entry = node - floor_div(node, kLowerLeaves) * kLowerLeaves;
-    return static_cast<std::size_t>(entry.x << 8 | entry.y << 4 | entry.z);
+    return static_cast<std::size_t>((node.x & 15) << 8 | (node.y & 15) << 4 | (node.z & 15));
   }
   /// Linear index of the upper node above region i.
   std::int64_t upper_of(std::int64_t region) const;

@@ -13,6 +13,8 @@ namespace weir {
 SurveyedLeaves::SurveyedLeaves(const RowStore& rows, const Box& leaf_box, const SourceInfo& info, bool read)
     : leaves_(rows.leaves()), leaf_box_(leaf_box), info_(info) {
   if (!read) return;
+  held_ = rows.held();
+  if (held_ != nullptr) return;
   std::vector<LeafRow> layer;  // one at a time: a row has more bytes
   digests_.reserve(static_cast<std::size_t>(leaf_box.voxels()));
   for (std::int64_t z = leaf_box.lo.z; z < leaf_box.hi.z; ++z) {
@@ -23,7 +25,7 @@ SurveyedLeaves::SurveyedLeaves(const RowStore& rows, const Box& leaf_box, const 
 }
 
 void SurveyedLeaves::check(const Index3& leaf, std::span<const float> values, const Box& voxels) const {
-  if (digests_.empty()) return;
+  if (!checks()) return;
   const Box inside = leaves_.voxels(leaf);
   const Index3 extent = inside.extent();
   const Index3 rows = voxels.extent();
@@ -44,8 +46,10 @@ void SurveyedLeaves::check(const Index3& leaf, std::span<const float> values, co
 }
 
 void SurveyedLeaves::check(const Index3& leaf, const Digest& digest) const {
-  if (digests_.empty()) return;
-  const Digest& surveyed = digests_[static_cast<std::size_t>(linear_index(leaf - leaf_box_.lo, leaf_box_.extent()))];
+  if (!checks()) return;
+  const Digest& surveyed =
+      held_ != nullptr ? held_[leaves_.linear(leaf)].digest
+                       : digests_[static_cast<std::size_t>(linear_index(leaf - leaf_box_.lo, leaf_box_.extent()))];
   if (digest != surveyed) fail(leaves_.voxels(leaf));
 }
 

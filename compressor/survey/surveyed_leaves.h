@@ -12,7 +12,7 @@
 
 namespace weir {
 
-/// Of a box of leaves, 16 bytes each. Thread-safe.
+/// Of a box of leaves, 16 bytes each where the rows do not lie in memory. Thread-safe.
 class SurveyedLeaves {
  public:
   /// `leaf_box`: lattice positions. `info`, of the source, must outlive the object. `read`: whether the values are read
@@ -26,11 +26,13 @@ class SurveyedLeaves {
   void check(const Index3& leaf, const Digest& digest) const;
 
  private:
+  bool checks() const { return held_ != nullptr || !digests_.empty(); }
   [[noreturn]] void fail(const Box& inside) const;
 
   const NodeLattice& leaves_;
   Box leaf_box_;
-  std::vector<Digest> digests_;  // none where there is nothing to check
+  const LeafRow* held_ = nullptr;  // all rows of the volume, where they lie in memory
+  std::vector<Digest> digests_;    // else those of the box; neither where there is nothing to check
   const SourceInfo& info_;
 };
 

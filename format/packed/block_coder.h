@@ -103,7 +103,7 @@ enum class StreamAskKind : std::uint8_t {
 struct StreamAsk {
   MeanRange means;           ///< of the block's region
   std::uint32_t block = 0;   ///< of the box, x fastest
-  std::uint32_t offset = 0;  ///< among all streams: sums of `bytes`
+  std::uint32_t offset = 0;  ///< among all streams: behind the end of the ask before it, or further
   std::uint16_t bytes = 0;
   std::int16_t step = 0;
   StreamAskKind kind{};
@@ -132,18 +132,14 @@ struct SurveyedBlocks {
   }
 };
 
-/// Of a stream that was written: what the nodes above it need, and the digest of its block's values.
-struct MadeRecord {
-  LeafRecord record;
-  Digest source;
-};
-
 /// Streams and what they decode to, by ask.
 struct MadeStreams {
-  std::span<const std::byte> bytes;     ///< of all, one after the other
-  std::span<const float> decoded;       ///< 512 of each, in the order of a leaf; none of resident blocks
-  std::span<const std::uint8_t> made;   ///< 0: the caller has to encode it
-  std::span<const MadeRecord> records;  ///< of resident blocks alone
+  std::span<std::byte> bytes;  ///< of all, where the asks say; what lies between may be anything, and is the caller's
+  std::span<const float> decoded;      ///< 512 of each, in the order of a leaf; none of resident blocks
+  std::span<const std::uint8_t> made;  ///< 0: the caller has to encode it
+  // Of resident blocks alone.
+  std::span<const LeafRecord> records;  ///< what the nodes above them need
+  std::span<const Digest> sources;      ///< digests of their blocks' values
 };
 
 /// Streams that are being written.

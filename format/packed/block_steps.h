@@ -53,9 +53,13 @@ WEIR_HOST_DEVICE inline std::int32_t first_rung_step(double largest) {
 
 /// The rung that a search about the step `wanted` begins at.
 WEIR_HOST_DEVICE inline std::int32_t rung_about(std::int32_t first, std::int32_t wanted) {
-  std::int32_t rung = kLadderMeanRungs;
-  while (rung + 1 < kLadderRungs && rung_step(first, rung) < wanted) ++rung;
-  return rung;
+  // The first one of a step as fine: rung_step() the other way round.
+  const std::int32_t finer = wanted - first;
+  const std::int32_t rung = finer <= 4    ? kLadderMeanRungs
+                            : finer <= 12 ? finer - 2
+                            : finer <= 24 ? (finer + 9) / 2
+                                          : (finer + 43) / 4;
+  return rung < kLadderRungs ? rung : kLadderRungs - 1;
 }
 
 /// Distance of two means whose codes follow each other.

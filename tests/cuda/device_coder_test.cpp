@@ -342,13 +342,15 @@ TEST(ResidentVolume, SummariesRecordsValuesAndCountsAreThoseOfTheStepsOnTheHost)
       Values decoded;
       ASSERT_TRUE(
           decode_block(constants, asks[i].means, made->bytes.data() + asks[i].offset, asks[i].bytes, decoded.data()));
-      MadeRecord record;
-      const RecordCall call{box, place, &tables, &asks[i], 1, decoded.data(), &record};
+      LeafRecord record;
+      Digest source;
+      const RecordCall call{box, place, &tables, &asks[i], 1, decoded.data(), &record, &source};
       StatisticsTile tile;
       RecordStage record_stage;
       add_statistics(HostWarp{}, call, 0, tile);
       make_record(HostWarp{}, call, tables, 0, record_stage);
       ASSERT_EQ(std::memcmp(&record, &made->records[i], sizeof record), 0) << asks[i].block;
+      ASSERT_EQ(source, made->sources[i]) << asks[i].block;
       ++recorded;
     }
   }

@@ -46,7 +46,9 @@ struct StreamMemory {
   GrowingArray<float> decoded;
   GrowingArray<std::byte> out;
   GrowingArray<std::uint8_t> made;
-  GrowingArray<MadeRecord> records;  // of resident blocks
+  // Of resident blocks.
+  GrowingArray<LeafRecord> records;
+  GrowingArray<Digest> sources;
   GrowingPinned pinned;
 };
 

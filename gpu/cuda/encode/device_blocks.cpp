@@ -66,10 +66,12 @@ class DeviceStreams final : public PendingStreams {
     const std::size_t of_host = place ? 0 : 512 * count;  // decoded values
     const std::size_t recorded = place ? count : 0;
     if (pinned == nullptr) pinned = &memory_->pinned;
-    Parts parts(pinned->at_least(Parts::bytes<float>(of_host) + Parts::bytes<MadeRecord>(recorded) +
-                                 Parts::bytes<std::uint8_t>(count) + Parts::bytes<std::byte>(bytes)));
+    Parts parts(pinned->at_least(Parts::bytes<float>(of_host) + Parts::bytes<LeafRecord>(recorded) +
+                                 Parts::bytes<Digest>(recorded) + Parts::bytes<std::uint8_t>(count) +
+                                 Parts::bytes<std::byte>(bytes)));
     const auto decoded = parts.next<float>(of_host);
-    const auto records = parts.next<MadeRecord>(recorded);
+    const auto records = parts.next<LeafRecord>(recorded);
+    const auto sources = parts.next<Digest>(recorded);
     const auto made = parts.next<std::uint8_t>(count);
     const auto streams = parts.next<std::byte>(bytes);
     const cudaStream_t stream = memory_->stream.get();
@@ -78,15 +80,17 @@ class DeviceStreams final : public PendingStreams {
     launch_encode(call, stream);
     const char* const what = "encoding on the device";
     if (place) {
-      MadeRecord* const found = memory_->records.at_least(most);
-      launch_records({box, *place, coder_->digests.data(), asked, call.count, call.decoded, found}, stream);
+      LeafRecord* const found = memory_->records.at_least(most);
+      Digest* const digests = memory_->sources.at_least(most);
+      launch_records({box, *place, coder_->digests.data(), asked, call.count, call.decoded, found, digests}, stream);
       copy_back(records, found, stream, what);
+      copy_back(sources, digests, stream, what);
     } else {
       copy_back(decoded, call.decoded, stream, what);
     }
     copy_back(made, call.made, stream, what);
     copy_back(streams, call.out, stream, what);
-    found_ = {streams, decoded, made, records};
+    found_ = {streams, decoded, made, records, sources};
   }
 
   std::optional<MadeStreams> wait() override {

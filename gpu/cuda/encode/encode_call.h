@@ -133,7 +133,8 @@ struct RecordCall {
   const StreamAsk* asks = nullptr;
   std::uint32_t count = 0;         ///< of asks; the rest is by ask
   const float* decoded = nullptr;  ///< 512 of each
-  MadeRecord* records = nullptr;
+  LeafRecord* records = nullptr;
+  Digest* sources = nullptr;  ///< of the blocks' values
 };
 
 }  // namespace weir

@@ -99,7 +99,7 @@ WEIR_HOST_DEVICE void add_statistics(const Warp& warp, const RecordCall& call, s
   }
   warp.each([&](unsigned lane) {
     if (first + lane >= call.count) return;
-    LeafRecord& record = call.records[first + lane].record;
+    LeafRecord& record = call.records[first + lane];
     record.mean = mean(lane);
     record.m2 = squares(lane);
     record.bounds = MinMax{low(lane), high(lane)};
@@ -117,7 +117,7 @@ WEIR_HOST_DEVICE void make_record(const Warp& warp, const RecordCall& call, cons
   using namespace encode_detail;
   const std::uint32_t block = call.asks[i].block;
   const float* decoded = call.decoded + std::size_t{512} * i;
-  MadeRecord& out = call.records[i];
+  LeafRecord& record = call.records[i];
   gather_block(warp, call.box, block, stage.values);
   const std::uint32_t column = block % (call.box.blocks[0] * call.box.blocks[1]);
   const std::uint32_t at[3] = {column % call.box.blocks[0], column / call.box.blocks[0],
@@ -146,18 +146,18 @@ WEIR_HOST_DEVICE void make_record(const Warp& warp, const RecordCall& call, cons
   const double most = warp.of_all(largest, [](double a, double b) { return b > a ? b : a; });
   const std::uint32_t others = warp.of_all(different, sum);
   const std::uint32_t lost = warp.of_all(zeros_lost, sum);
-  digest_stage(warp, tables, stage.values, stage.lanes, reinterpret_cast<std::uint8_t*>(&out.source));
+  digest_stage(warp, tables, stage.values, stage.lanes, reinterpret_cast<std::uint8_t*>(&call.sources[i]));
   warp.each([&](unsigned lane) {
-    auto* const outward = reinterpret_cast<MinMax*>(&out.record.outward);
+    auto* const outward = reinterpret_cast<MinMax*>(&record.outward);
     const unsigned z = side[2];
     if (lane < 3) outward[lane] = layer_bounds(stage, lane);
     if (lane == 3) outward[3] = MinMax{stage.low[3][z], stage.high[3][z]};
     if (lane > 3 && lane < 7) outward[lane] = MinMax{stage.low[lane - 4][z], stage.high[lane - 4][z]};
     if (lane == 7) {
-      out.record.squared_error = error;
-      out.record.max_abs = most;
-      out.record.exact = others == 0 ? 1 : 0;
-      out.record.zeros_lost = lost;
+      record.squared_error = error;
+      record.max_abs = most;
+      record.exact = others == 0 ? 1 : 0;
+      record.zeros_lost = lost;
     }
   });
 }

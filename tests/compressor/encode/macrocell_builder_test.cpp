@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <random>
 #include <string>
@@ -105,7 +106,7 @@ TEST(Macrocells, BytesDoNotDependOnTheOrderOfRegions) {
   std::vector<std::uint32_t> low_bits;
   for (const bool left_first : {true, false}) {
     MacrocellBuilder builder(domain, 1.0F);
-    builder.begin_layer(0);
+    builder.begin_layers(0, 1);
     RegionCells left({0, 0, 0});
     left.add_tile({{0, 0, 0}, {128, 8, 8}}, 0.0F);
     RegionCells right({1, 0, 0});
@@ -117,6 +118,39 @@ TEST(Macrocells, BytesDoNotDependOnTheOrderOfRegions) {
   }
   ASSERT_EQ(low_bits.size(), 32U);
   for (std::size_t i = 0; i < 16; ++i) EXPECT_EQ(low_bits[i], low_bits[i + 16]) << i;
+}
+
+TEST(Macrocells, AreTheSameHoweverManyLayersOfRegionsTheWindowHas) {
+  const Box domain{{-5, 3, -140}, {30, 40, 500}};
+  const auto cells_of = [&](const std::vector<std::int64_t>& layers) {
+    MacrocellBuilder builder(domain, 0.5F);
+    std::vector<MinMax> all;
+    std::int64_t z = -2;  // of the first layer of regions
+    for (const std::int64_t count : layers) {
+      builder.begin_layers(z, count);
+      for (const std::int64_t end = z + count; z < end; ++z) {
+        for (std::int64_t x = -1; x < 1; ++x) {
+          const Index3 region{x, 0, z};
+          const Box voxels = intersect({region * kLowerDim, (region + Index3{1, 1, 1}) * kLowerDim}, domain);
+          RegionCells cells(region);
+          cells.add_tile(voxels, static_cast<float>(z + 100 * x));
+          builder.merge(cells);
+        }
+      }
+      std::int64_t first = 0;
+      const std::vector<MinMax> finished = builder.take_finished(z == 4, first);
+      EXPECT_EQ(first, static_cast<std::int64_t>(all.size()) / (builder.lattice().count.x * builder.lattice().count.y));
+      all.insert(all.end(), finished.begin(), finished.end());
+    }
+    return all;
+  };
+  const std::vector<MinMax> one_by_one = cells_of({1, 1, 1, 1, 1, 1});
+  ASSERT_EQ(one_by_one.size(), 3U * 3U * 41U);
+  for (const std::vector<std::int64_t>& layers : {std::vector<std::int64_t>{6}, {1, 3, 2}, {4, 2}}) {
+    const std::vector<MinMax> other = cells_of(layers);
+    ASSERT_EQ(other.size(), one_by_one.size());
+    EXPECT_EQ(std::memcmp(other.data(), one_by_one.data(), other.size() * sizeof(MinMax)), 0) << layers.size();
+  }
 }
 
 }  // namespace

@@ -40,5 +40,48 @@ TEST(RecordBatch, WritesWhatEachLeafAloneGives) {
   }
 }
 
+// Some are computed, others known: those that follow each other in memory, and those that do not.
+TEST(RecordBatch, WritesKnownRecordsAmongOthers) {
+  constexpr std::uint64_t kRecords = 500;
+  RecordStore store(test::CrashFileSystem().create_unnamed("records"), kRecords);
+  RecordBatch batch(store);
+  std::vector<LeafRecord> known(2 * kRecords);
+  std::vector<LeafRecord> expected(kRecords);
+  std::vector<bool> added(kRecords);
+  std::size_t next = 0;
+  std::uint64_t sum = 0;
+  for (std::uint64_t ordinal = 0; ordinal < kRecords; ++ordinal) {
+    if (ordinal % 50 == 49) continue;  // another thread's
+    added[ordinal] = true;
+    LeafRecord& record = expected[ordinal];
+    const auto value = static_cast<float>(ordinal);
+    if (ordinal % 13 < 10) {
+      if (ordinal % 7 == 3) ++next;  // a gap in memory
+      LeafRecord& of_coder = known[next++];
+      of_coder.mean = value;
+      of_coder.bounds = {value, value + 1};
+      record = of_coder;
+      batch.add(ordinal, of_coder);
+    } else {
+      LeafValues values;
+      values.fill(value);
+      const Box node{{0, 0, 0}, {8, 8, 8}};
+      batch.add(ordinal, values, node, node, {1, 0.5, false, 0});
+      record = make_leaf_record(values, node, node, leaf_statistics(values, node, node));
+      record.squared_error = 1;
+      record.max_abs = 0.5;
+      record.exact = 0;
+    }
+    sum += record_checksum(ordinal, record);
+  }
+  batch.flush();
+  for (std::uint64_t ordinal = 0; ordinal < kRecords; ++ordinal) {
+    if (!added[ordinal]) continue;
+    const LeafRecord found = store.read(ordinal, 1)[0];
+    ASSERT_EQ(std::memcmp(&found, &expected[ordinal], sizeof found), 0) << ordinal;
+  }
+  EXPECT_EQ(batch.sum(), sum);
+}
+
 }  // namespace
 }  // namespace weir::record_batch_test

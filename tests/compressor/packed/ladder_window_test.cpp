@@ -35,6 +35,16 @@ LeafValues block_of(unsigned seed) {
   return block;
 }
 
+TEST(RungAbout, IsTheFirstRungOfAStepAsFine) {
+  for (const std::int32_t first : {-250, -7, 0, 31, 200}) {
+    for (std::int32_t wanted = -260; wanted <= 260; ++wanted) {
+      std::int32_t expected = kLadderMeanRungs;
+      while (expected + 1 < kLadderRungs && rung_step(first, expected) < wanted) ++expected;
+      ASSERT_EQ(rung_about(first, wanted), expected) << first << ", " << wanted;
+    }
+  }
+}
+
 bool same_rung(const PackedRung& a, const PackedRung& b) {
   return a.bits == b.bits && a.error.value() == b.error.value();
 }

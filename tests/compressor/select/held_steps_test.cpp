@@ -60,6 +60,23 @@ TEST(HeldSteps, KeepsStepsOfItsRangeAndSumsTheBytesOfOthers) {
   EXPECT_TRUE(outside[OutsideSums::required].weight == kRegionBytes);
 }
 
+TEST(HeldSteps, SumsWhatOtherStepsSaveInTheUnitAskedFor) {
+  constexpr double kUnit = 0.125;
+  HeldSteps held(keys_between(1, 2), kMiB, kRegionBytes, false, kUnit);
+  HeldSteps::Part& part = held.part();
+  part.add(step(4, 1.5, 100, 4));
+  part.add(step(5, 0.5, 100, 1));
+  part.add(step(5, 0.25, 100, 2.3));
+  part.add(step(6, 3, 1000, 5));
+  part.add(HeldSteps::Step::opening(7, kRequiredKey, 0.5));
+  const OutsideSums gains = held.outside_gains();
+  EXPECT_TRUE(gains[OutsideSums::below].weight == 8U + 18U);
+  EXPECT_EQ(gains[OutsideSums::below].items, 2U);
+  EXPECT_TRUE(gains[OutsideSums::above].weight == 40U);
+  EXPECT_TRUE(gains[OutsideSums::required].weight == 4U);
+  EXPECT_EQ(held.unit(), kUnit);
+}
+
 TEST(HeldSteps, HoldsWhatManyThreadsAdd) {
   HeldSteps held(keys_between(1, 2), 64 * kMiB, kRegionBytes);
   constexpr std::int64_t kSteps = 100'000;
@@ -216,6 +233,19 @@ TEST(HeldSteps, TellHowEachLeafIsKept) {
         rule.packed->window = KeyWindow::about(*first.cut_key(), survey.max - survey.min);
         for (const unsigned eighths : {1U, 4U, 7U}) {
           compare(Selection::Search::of_bytes, [&](Selection& s) { s.choose(least + (most - least) / 8 * eighths); });
+        }
+        // The same for an error, of which a bound is known.
+        const double range = static_cast<double>(survey.max) - static_cast<double>(survey.min);
+        rule.packed->most_error = range * range * static_cast<double>(volume.info().domain().voxels());
+        for (const double share : {0.5, 1e-2, 1e-4, 1e-7}) {
+          Selection walked(rule, with, other, Selection::Search::no);
+          walked.choose_error(share * error);
+          compare(Selection::Search::of_error, [&](Selection& s) {
+            s.choose_error(share * error);
+            EXPECT_EQ(s.cut().threshold, walked.cut().threshold) << kind << ", " << share;
+            EXPECT_EQ(s.cut().tie_region, walked.cut().tie_region);
+            EXPECT_EQ(s.cut().tie_steps, walked.cut().tie_steps);
+          });
         }
       }
     }

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <optional>
 
 #include "compressor/packed/ladder_builder.h"
 #include "compressor/packed/packed_rule.h"
@@ -23,14 +24,19 @@ class PreviewedBytes : public testing::Test {
         plan_(plan_blocks(volume_.info().domain(), volume_.access(), std::uint64_t{1} << 30U)),
         tree_(volume_.info().domain()) {}
 
-  // Steps are held in up to `step_bytes`.
-  Selection select(Selection::Search search, std::uint64_t step_bytes) {
+  // Steps are held in up to `step_bytes`; those of a window alone, where one is given.
+  Selection select(Selection::Search search, std::uint64_t step_bytes, std::optional<double> about = std::nullopt) {
     rows_ = std::make_unique<RowStore>(files_.create_unnamed("rows"), plan_.lattice, SelectionRoom{64, step_bytes});
     rows_->set_ladders(std::make_unique<LeafStore<PackedLadder>>(files_.create_unnamed("ladders"), plan_.lattice));
     const Survey survey = survey_volume(volume_, plan_, *rows_, {}, {.ladders = LadderAim{}});
     GainRule rule;
     rule.encoding = Encoding::packed;
     rule.packed = PackedRule{true, coarsest_step(survey.min, survey.max)};
+    if (about) {
+      const float range = survey.max - survey.min;
+      rule.packed->window = KeyWindow::about(*about, range);
+      rule.packed->most_error = static_cast<double>(range * range) * 256 * 128 * 128;
+    }
     return Selection(rule, *rows_, tree_, search);
   }
   TreeLayout layout_of(const Selection& selection) {
@@ -60,6 +66,27 @@ TEST_F(PreviewedBytes, OfAnErrorAreNeverLessThanThoseOfTheFile) {
     EXPECT_GE(bytes->most_of_file, layout.file_bytes) << error;
     EXPECT_LE(bytes->most_of_file, layout.file_bytes + regions * kChunkCost + 64) << error;
     EXPECT_EQ(bytes->preview, layout.node_bytes()) << error;
+  }
+}
+
+TEST_F(PreviewedBytes, AreKnownWhereTheStepsOfAWindowAreHeld) {
+  for (const double error : {1e4, 1e3, 1e1}) {
+    Selection all = select(Selection::Search::of_error, kEnough);
+    all.choose_error(error);
+    ASSERT_TRUE(all.cut_key()) << error;
+    const double about = *all.cut_key() * 1.5;
+    Selection walked = select(Selection::Search::no, 0, about);
+    walked.choose_error(error);
+    EXPECT_FALSE(walked.previewed_bytes()) << error;
+    const std::optional<double> cut = walked.cut_key();
+    Selection held = select(Selection::Search::of_error, kEnough, about);
+    held.choose_error(error);
+    EXPECT_EQ(held.cut_key(), cut) << error;
+    const auto bytes = held.previewed_bytes();
+    ASSERT_TRUE(bytes) << error;
+    const TreeLayout layout = layout_of(held);
+    EXPECT_GE(bytes->most_of_file, layout.file_bytes) << error;
+    EXPECT_LE(bytes->most_of_file, layout.file_bytes + layout.counts.lowers * kChunkCost + 64) << error;
   }
 }
 
