@@ -108,10 +108,11 @@ bool raises_default(const ConversionOptions& options, const Box& domain) {
 }
 
 // Frees its memory meanwhile, which takes a second for 5 GB; at once where there is no thread for it.
-std::jthread released(std::unique_ptr<LeafCache> cache) {
-  if (cache == nullptr) return {};
+template <class T>
+std::jthread released(std::unique_ptr<T> memory) {
+  if (memory == nullptr) return {};
   try {
-    return std::jthread([cache = std::move(cache)]() mutable { cache.reset(); });
+    return std::jthread([memory = std::move(memory)]() mutable { memory.reset(); });
   } catch (const std::system_error&) {
     return {};
   }
@@ -179,10 +180,11 @@ class SurveyedConversion {
     FileRequest request = prepare();
     sidecar_.timing.survey_s = seconds_since(started_);
     const Clock::time_point encoding = Clock::now();
-    const EncodedFile encoded = encode(std::move(request));
+    EncodedFile encoded = encode(std::move(request));
     // Most of the file goes to the device while the rest is made.
     const std::jthread writeback([this] { parts_.output.volume().start_writeback(); });
     const std::jthread release = released(stores_.rows.give_up_cache());
+    const std::jthread unmap = released(std::move(encoded.mapped));
     write_inner_nodes(encoded);
     describe_file(sidecar_, info_, survey_, options_, background_, head_, encoded, shown_);
     say_quality();
@@ -291,7 +293,7 @@ class SurveyedConversion {
                      parts_.journal, options_.scene ? visible_values(options_.scene->scene) : "", stream_,
                      [&] { team_.run([&] { start_pass(parts_.control, "encode", voxels); }); }, parts_.control.notice,
                      parts_.control.planned, [&](FileRequest& outside, double cut) { move_window(outside, cut); },
-                     parts_.control.coder},
+                     parts_.control.coder, options_.memory},
                     std::move(request));
     const Message& notice = encoded.file.size.notice;
     // Of a lossless file that nobody asked for say_quality says all.

@@ -9,8 +9,10 @@
 #include "compressor/encode/encode.h"
 #include "compressor/encode/encoded_sums.h"
 #include "format/base/error.h"
+#include "format/base/process_memory.h"
 #include "format/base/text.h"
 #include "format/io/digest.h"
+#include "format/io/mapped_writes.h"
 
 namespace weir {
 namespace {
@@ -91,6 +93,16 @@ FilePlan select_file(const EncodeJob& job, FileRequest& request) {
   }
 }
 
+// For the streams that a device makes of a volume in a memory file system, whose space is reserved. Null where what is
+// left of the memory would not hold it, beside the records.
+std::unique_ptr<MappedWrites> mapped_writes(const EncodeJob& job, const FilePlan& file) {
+  if (job.source.resident() == nullptr || !job.rows.team().alone()) return nullptr;
+  constexpr std::uint64_t kBeside = std::uint64_t{256} << 20U;
+  const std::uint64_t needed = file.size.bytes + file.plan.kept * sizeof(LeafRecord) + kBeside;
+  if (resident_bytes() + needed > job.memory || !job.output.in_memory()) return nullptr;
+  return MappedWrites::of(job.output.volume(), file.size.bytes);
+}
+
 EncodedFile encode_once(const EncodeJob& job, FileRequest& request) {
   EncodedFile encoded;
   encoded.file = select_file(job, request);
@@ -103,6 +115,16 @@ EncodedFile encode_once(const EncodeJob& job, FileRequest& request) {
         PackedTarget{*file.streams, *file.packed, request.packed.constants, request.packed.lattice,
                      bounded ? std::optional(request.budget.target) : std::nullopt, job.coder});
   }
+  const auto reserve = [&] {
+    if (job.planned) job.planned(file.size.bytes);
+    const bool reserved = job.output.reserve(file.size.bytes);
+    if (!reserved && job.notice) {
+      job.notice(
+          cat(job.output.directory(), ": this file system cannot reserve space; a full disk will show while writing"));
+    }
+    return reserved;
+  };
+  if (job.journal == nullptr && reserve()) encoded.mapped = mapped_writes(job, file);
   const Fit fit = request.budget.kind == Budget::Kind::max_error ? Fit::largest : Fit::squares;
   const EncodeTarget target{*file.tree,
                             *file.choices,
@@ -110,17 +132,15 @@ EncodedFile encode_once(const EncodeJob& job, FileRequest& request) {
                             file.fill,
                             grid_type_of(file.encoding),
                             fit,
-                            job.output.volume(),
+                            encoded.mapped ? *encoded.mapped : job.output.volume(),
                             *encoded.records,
                             job.rows,
                             job.stream.trace,
                             encoded.packed.get(),
                             job.journal != nullptr};
-  if (job.journal != nullptr) check_written(job, target, *records);
-  if (job.planned) job.planned(file.size.bytes);
-  if (!job.output.reserve(file.size.bytes) && job.notice) {
-    job.notice(
-        cat(job.output.directory(), ": this file system cannot reserve space; a full disk will show while writing"));
+  if (job.journal != nullptr) {
+    check_written(job, target, *records);
+    reserve();
   }
   job.pass_started();
   const TraceSpan span(job.stream.trace, "encode pass");

@@ -13,6 +13,7 @@
 #include "compressor/select/encoding_choice.h"
 #include "compressor/survey/row_store.h"
 #include "format/base/message.h"
+#include "format/io/mapped_writes.h"
 #include "format/output/output_files.h"
 #include "ingest/plan/block_plan.h"
 #include "ingest/plan/block_stream.h"
@@ -26,7 +27,8 @@ struct EncodedFile {
   std::unique_ptr<RecordStore> records;
   std::unique_ptr<PackedTarget> packed;  ///< of a packed file
   DecodedErrors errors;
-  DecodedErrors seen_errors;  ///< of those that can be seen
+  DecodedErrors seen_errors;             ///< of those that can be seen
+  std::unique_ptr<MappedWrites> mapped;  ///< of the volume, no longer needed; null where it was not mapped
 };
 
 /// What the attempts work with; all of it outlives them.
@@ -46,6 +48,7 @@ struct EncodeJob {
   /// Called where the cut of a plan lies outside the request's window: builds other ladders and sets their window.
   std::function<void(FileRequest&, double cut)> move_window;
   BlockCoder* coder = nullptr;  ///< of packed blocks
+  std::uint64_t memory = 0;     ///< that the process may take
 };
 
 /// Plans, encodes and, where an error target is missed or left far behind, does so again with another expected error.

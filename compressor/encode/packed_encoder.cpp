@@ -200,18 +200,19 @@ class PackedEncoder final : public PackedLayerEncoder {
             difference.different == 0 && difference.nonfinite_different == 0, difference.zeros_lost};
   }
 
-  // The chunk that a coder has left its streams in, and of it what is to be written: one layer's.
+  // The chunk that a coder has left its streams in, at `offset` of the file, and the pieces of it that are to be
+  // written: from `written_from` to `written_to`, offsets in the file.
   struct ChunkPart {
     std::span<std::byte> bytes{};
-    std::uint64_t offset = 0;  // in the file
-    std::uint64_t begin = 0;   // in the file, as is `end`; both 0: nothing is
-    std::uint64_t end = 0;
+    std::uint64_t offset = 0;
+    std::uint64_t written_from = 0;
+    std::uint64_t written_to = 0;  // 0: nothing is
 
     bool holds(std::uint64_t at, std::size_t size) const { return at - offset + size <= bytes.size(); }
     // The pieces of a layer follow each other.
     void add(std::uint64_t at, std::size_t size) {
-      if (end == 0) begin = at;
-      end = at + size;
+      if (written_to == 0) written_from = at;
+      written_to = at + size;
     }
   };
 
@@ -229,9 +230,10 @@ class PackedEncoder final : public PackedLayerEncoder {
   }
 
   void write_part(const ChunkPart& part) {
-    if (part.end == 0) return;
-    const TraceSpan span(target_.trace, "write", part.end - part.begin);
-    target_.out.write_at(part.begin, part.bytes.subspan(part.begin - part.offset, part.end - part.begin));
+    if (part.written_to == 0) return;
+    const std::uint64_t bytes = part.written_to - part.written_from;
+    const TraceSpan span(target_.trace, "write", bytes);
+    target_.out.write_at(part.written_from, part.bytes.subspan(part.written_from - part.offset, bytes));
   }
 
   void flush_bytes() {

@@ -50,7 +50,7 @@ class LowerWriter {
 
   void run() {
     const NodeLattice& lattice = parts_.tree.region_lattice;
-    constexpr std::int64_t kRegions = 1024;  // whose macrocells are 4 MiB: a layer may have more
+    constexpr std::int64_t kRegions = 256;  // whose macrocells are 1 MiB: a layer may have more
     const std::int64_t layers = std::max<std::int64_t>(1, kRegions / (lattice.count.x * lattice.count.y));
     for (std::int64_t z = 0; z < lattice.count.z; z += layers) {
       const std::int64_t end = std::min(z + layers, lattice.count.z);

@@ -18,7 +18,8 @@ namespace {
 // Per worker: stack, allocator arena, histogram or value table (512 KiB), buckets of keys (512 KiB), a region's steps
 // (1.3 MiB; those of packed blocks are the region_bytes that callers give), leaves being encoded (700 KiB).
 constexpr std::uint64_t kWorkerBytes = 4ULL << 20U;
-// Code pages touched later, libraries' heaps, the head, one upper node's image.
+// Code pages touched later, libraries' heaps, the head, one upper node's image, small layers of macrocells: 1 MiB of
+// these, twice.
 constexpr std::uint64_t kSlackBytes = 8ULL << 20U;
 constexpr std::uint64_t kLeastBlockBytes = 1ULL << 20U;
 // A block comes with its rows, one 43rd of its size, and there are two; a quarter of what is left stays free for

@@ -105,7 +105,8 @@ void CutSearch::hold(const KeyRange& range, std::uint64_t items, const PurchaseG
 Threshold CutSearch::find_threshold(PurchaseGoal& goal) {
   Threshold found = search(goal);
   const bool previewed = rule_.packed && rule_.packed->preview;
-  if (!previewed || goal.unit == 0 || held_ == nullptr || !held_->range().holds(found.key)) return found;
+  const bool all = found.key == 0;
+  if (!previewed || goal.unit == 0 || held_ == nullptr || !(all || held_->range().holds(found.key))) return found;
   tbb::enumerable_thread_specific<std::uint64_t> bytes{0};
   for_each_held([&] {
     return [&, least = found.key, &sum = bytes.local()](const HeldSteps::Step& step) {
@@ -114,6 +115,7 @@ Threshold CutSearch::find_threshold(PurchaseGoal& goal) {
   });
   const OutsideSums outside = held_->outside();
   found.bytes = static_cast<std::uint64_t>(outside[OutsideSums::required].weight + outside[OutsideSums::above].weight);
+  if (all) *found.bytes += static_cast<std::uint64_t>(outside[OutsideSums::below].weight);
   found.bytes = std::accumulate(bytes.begin(), bytes.end(), *found.bytes);
   return found;
 }

@@ -62,8 +62,8 @@ class CutSearch {
   static KeyRange likely_keys(const GainRule& rule);
   /// Of what is required, too.
   static KeyRange every_key();
-  /// The unit that saved errors are summed in, where it is known before they are: a bound of all of them together is
-  /// 2^112 of it. 0 where it is not.
+  /// The unit that saved errors are summed in, where it is known before they are: a bound of the error of nothing
+  /// bought is 2^112 of it. 0 where it is not.
   static double error_unit(const GainRule& rule);
 
   /// The smallest key for which everything above it can be bought for `goal`.

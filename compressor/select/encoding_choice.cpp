@@ -122,7 +122,7 @@ class Candidate {
     return budget.kind == Budget::Kind::psnr ? Selection::Search::of_error : Selection::Search::of_bytes;
   }
 
-  // Every voxel reads a value of the volume, or the background.
+  // Every voxel reads a value in the volume's range, or the background.
   static double most_error(const FileRequest& request) {
     const auto background = static_cast<double>(request.rule.fill.background);
     const double low = std::min(static_cast<double>(request.packed.constants.minimum), background);

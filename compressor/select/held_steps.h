@@ -1,5 +1,5 @@
-// The steps that a selection can buy about its cut, held in memory as a pass over the rows finds them, so that the cut
-// among them is found without further passes; where they are too many, what they take.
+// The steps that a selection can buy, where a window is known those about its cut, held in memory as a pass over the
+// rows finds them, so that the cut among them is found without further passes; where they are too many, what they take.
 #pragma once
 
 #include <tbb/enumerable_thread_specific.h>

@@ -211,11 +211,11 @@ void Selection::choose_error(double squared_error) {
   const double error = all_tiles.value();
   cut_ = Cut{};
   most_bytes_.reset();
-  // Every gain is at most the error of nothing bought. Where no bound of that is known before, or one that is far off,
-  // it becomes 2^90: sums of 2^37 gains fit, and each is counted to 2^-90 of it.
+  // Every gain is at most the error of nothing bought, which is 2^84 units or more, so that sums of small ones do not
+  // round. Where no bound of it is known before, or one far above it, it is 2^90: sums of 2^37 gains fit.
   PurchaseGoal goal;
   goal.unit = CutSearch::error_unit(rule_);
-  if (goal.unit == 0 || error < std::ldexp(goal.unit, 60)) goal.unit = std::ldexp(error, -90);
+  if (goal.unit == 0 || error < std::ldexp(goal.unit, 84)) goal.unit = std::ldexp(error, -90);
   if (!(goal.unit > 0)) return choose(error > squared_error ? bytes_.full.file_bytes : bytes_.minimum.file_bytes);
   const bool ends_exact = rule_.packed || rule_.encoding == Encoding::float32;
   if (ends_exact) {

@@ -42,6 +42,8 @@ class OutputFiles {
   /// Sets the volume's size and reserves its blocks, unless they are; false where the file system cannot reserve.
   bool reserve(std::uint64_t bytes) { return reserved_ == bytes || volume().preallocate(bytes); }
   File& volume() { return volume_ ? *volume_ : *partial_; }
+  /// Whether the volume lies in a memory file system.
+  bool in_memory() const { return files_.is_memory(directory_); }
 
   /// The protocol's end, see the numbered steps in the source. After it returned, both files are
   /// durable under their names.

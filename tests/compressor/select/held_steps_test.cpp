@@ -237,15 +237,18 @@ TEST(HeldSteps, TellHowEachLeafIsKept) {
         // The same for an error, of which a bound is known.
         const double range = static_cast<double>(survey.max) - static_cast<double>(survey.min);
         rule.packed->most_error = range * range * static_cast<double>(volume.info().domain().voxels());
-        for (const double share : {0.5, 1e-2, 1e-4, 1e-7}) {
-          Selection walked(rule, with, other, Selection::Search::no);
-          walked.choose_error(share * error);
-          compare(Selection::Search::of_error, [&](Selection& s) {
-            s.choose_error(share * error);
-            EXPECT_EQ(s.cut().threshold, walked.cut().threshold) << kind << ", " << share;
-            EXPECT_EQ(s.cut().tie_region, walked.cut().tie_region);
-            EXPECT_EQ(s.cut().tie_steps, walked.cut().tie_steps);
-          });
+        for (const double far : {1.0, 0x1p40}) {  // as where the background is far from all values
+          rule.packed->most_error *= far;
+          for (const double share : {0.5, 1e-2, 1e-4, 1e-7}) {
+            Selection walked(rule, with, other, Selection::Search::no);
+            walked.choose_error(share * error);
+            compare(Selection::Search::of_error, [&](Selection& s) {
+              s.choose_error(share * error);
+              EXPECT_EQ(s.cut().threshold, walked.cut().threshold) << kind << ", " << share;
+              EXPECT_EQ(s.cut().tie_region, walked.cut().tie_region);
+              EXPECT_EQ(s.cut().tie_steps, walked.cut().tie_steps);
+            });
+          }
         }
       }
     }
