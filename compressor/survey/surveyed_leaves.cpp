@@ -32,9 +32,13 @@ void SurveyedLeaves::check(const Index3& leaf, std::span<const float> values, co
   std::array<float, kLeafVoxels> own;
   float* out = own.data();
   const float* const corner = values.data() + linear_index(inside.lo - voxels.lo, rows);
+  if (held_ != nullptr) __builtin_prefetch(held_ + leaves_.linear(leaf));
+  // Leaves come by z: rows of the next one, where the voxels have it.
+  const std::int64_t next = inside.hi.z + kLeafDim <= voxels.hi.z ? kLeafDim * rows.x * rows.y : 0;
   for (std::int64_t z = 0; z < extent.z; ++z) {
     for (std::int64_t y = 0; y < extent.y; ++y, out += extent.x) {
       const float* const row = corner + rows.x * (y + rows.y * z);
+      __builtin_prefetch(row + next);
       if (extent.x == kLeafDim) {  // a length the compiler knows
         std::memcpy(out, row, kLeafDim * sizeof(float));
       } else {

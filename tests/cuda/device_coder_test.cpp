@@ -267,7 +267,7 @@ TEST(DeviceCoder, StreamsOfRoundedValuesAndOfFloatsInOrderAreThoseOfTheHost) {
 // The steps' results on the host, which tests/fake_coder/ compares with the CPU's own code.
 TEST(ResidentVolume, SummariesRecordsValuesAndCountsAreThoseOfTheStepsOnTheHost) {
   WEIR_NEEDS_DEVICE();
-  const KeptDevice first(0);  // a test before may have left another one current
+  const KeptDevice kept(0);  // a test before may have left another one current
   using namespace encode_detail;
   const DigestTables tables;
   std::size_t summarized = 0;
@@ -362,7 +362,7 @@ TEST(ResidentVolume, SummariesRecordsValuesAndCountsAreThoseOfTheStepsOnTheHost)
 
 TEST(ResidentVolume, CountsEveryFiniteValueAndReadsAnyBox) {
   WEIR_NEEDS_DEVICE();
-  const KeptDevice first(0);
+  const KeptDevice kept(0);
   const Box voxels{{-3, 0, 9}, {60, 41, 40}};
   std::vector<float> values(static_cast<std::size_t>(voxels.voxels()));
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = i % 7 < 5 ? 0.0F : static_cast<float>(i % 1000) / 8;
