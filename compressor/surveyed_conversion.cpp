@@ -248,6 +248,7 @@ class SurveyedConversion {
     LadderState& state = ladders();
     const auto window = state.moves++ == 0 ? KeyWindow::about(cut, state.width) : std::nullopt;
     state.centre = window ? std::optional(window->centre()) : std::nullopt;
+    state.reach = KeyWindow::kMostReach;
     request.packed.window = window;
     if (!state.built) return;  // all rungs are there
     state.rebuilt = true;

@@ -19,20 +19,23 @@ namespace weir {
 /// Keys between which the cut of a selection lies: squared error saved per byte.
 class KeyWindow {
  public:
-  /// About `centre`, a normal number, > 0. Values of the volume lie in a range of about `width`.
-  KeyWindow(double centre, float width) : centre_(centre), width_(width), step_(coarsest_step_within(quantum())) {}
+  /// A sample of the blocks tells the cut within that factor, nearly always.
+  static constexpr double kMostReach = 2.5;
+
+  /// From `centre`, a normal number, > 0, divided by `reach`, > 1, to `centre` times that. Values of the volume lie in a
+  /// range of about `width`.
+  KeyWindow(double centre, float width, double reach = kMostReach)
+      : centre_(centre), reach_(reach), width_(width), step_(coarsest_step_within(quantum())) {}
   /// About a key; none about one so small that nothing is left to save.
-  static std::optional<KeyWindow> about(double key, float width) {
-    return key >= std::numeric_limits<double>::min() ? std::optional(KeyWindow(key, width)) : std::nullopt;
+  static std::optional<KeyWindow> about(double key, float width, double reach = kMostReach) {
+    return key >= std::numeric_limits<double>::min() ? std::optional(KeyWindow(key, width, reach)) : std::nullopt;
   }
 
-  /// A sample of the blocks tells the cut within that factor.
-  static constexpr double kWidth = 2.5;
-
   double centre() const { return centre_; }
+  double reach() const { return reach_; }
   float width() const { return width_; }
-  double low() const { return centre_ / kWidth; }
-  double high() const { return centre_ * kWidth; }
+  double low() const { return centre_ / reach_; }
+  double high() const { return centre_ * reach_; }
   bool holds(double key) const { return key >= low() && key <= high(); }
   /// Of a quantiser whose uniform error falls by that much per byte: at size^2 / 12 a value, halving the step takes a
   /// bit a value, and saves size^2 / 2 a byte.
@@ -50,6 +53,7 @@ class KeyWindow {
 
  private:
   double centre_;
+  double reach_;
   float width_;
   std::int32_t step_;
   int exponent_ = std::ilogb(quantum());

@@ -4,6 +4,8 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <map>
 #include <span>
 #include <vector>
@@ -37,15 +39,37 @@ struct BoughtBytes {
   }
 };
 
-/// The steps of sampled blocks, counted by their keys. The blocks' values lie in a range of that width.
+/// The bytes that each row of a sample takes, as by a sample of so many rows: how far off that is.
+class RowSpread {
+ public:
+  explicit RowSpread(std::size_t rows) : bytes_(rows) {}
+  void add(std::size_t row, double bytes) { bytes_[row] += bytes; }
+  /// Standard deviation of the sum. By the differences of neighbours: each row stands for its own part of the volume.
+  double deviation() const {
+    if (bytes_.size() < 2) return std::numeric_limits<double>::infinity();
+    double squares = 0;
+    for (std::size_t i = 1; i < bytes_.size(); ++i) squares += std::pow(bytes_[i] - bytes_[i - 1], 2);
+    const auto rows = static_cast<double>(bytes_.size());
+    return std::sqrt(squares / 2 * rows / (rows - 1));
+  }
+
+ private:
+  std::vector<double> bytes_;
+};
+
+/// The steps of the blocks of a sample of so many rows, counted by their keys. The blocks' values lie in a range of
+/// that width.
 class SampledSteps {
  public:
-  explicit SampledSteps(float width) : width_(width) {}
-  void add(const LeafRow& row, const PackedLadder& ladder, const LeafStep& step) {
-    Bucket& bucket = buckets_[key_bits(step.key) >> kDropped];
+  SampledSteps(float width, std::size_t rows) : width_(width), rows_(rows) {}
+  /// A step of a block in that row of the sample.
+  void add(std::size_t sampled_row, const LeafRow& row, const PackedLadder& ladder, const LeafStep& step) {
+    const std::uint64_t at = key_bits(step.key) >> kDropped;
+    Bucket& bucket = buckets_[at];
     const auto bytes = static_cast<double>(step.bytes);
     bucket.bytes.all += bytes;
     bucket.gain += step.gain;
+    steps_.push_back({static_cast<std::uint32_t>(at), static_cast<std::uint32_t>(sampled_row), bytes});
     const bool exact = step.level == kExactLevel;
     if (!(exact ? ladder.exact == ExactKind::ordered : step.level >= kFirstNearLevel)) return;
     (is_sparse(row) ? bucket.bytes.near_sparse : bucket.bytes.near_other) += bytes;
@@ -56,7 +80,8 @@ class SampledSteps {
     BoughtBytes bought;
     std::size_t cut = buckets_.size();
     while (cut > 0 && bought.all <= bytes) bought.add(buckets_[--cut].bytes);
-    return {bought.near(), bought.all > bytes ? window_at(cut) : std::nullopt};
+    if (bought.all <= bytes) return {bought.near(), std::nullopt};
+    return {bought.near(), KeyWindow::about(key_of(cut), width_, reach_at(cut, bytes))};
   }
 
   struct OfError {
@@ -72,7 +97,7 @@ class SampledSteps {
       if (left <= squared_error) continue;
       BoughtBytes bought;
       for (std::size_t i = cut; i < buckets_.size(); ++i) bought.add(buckets_[i].bytes);
-      return OfError{{bought.near(), window_at(cut)}, bought.all, key_of(cut)};
+      return OfError{{bought.near(), KeyWindow::about(key_of(cut), width_)}, bought.all, key_of(cut)};
     }
     return std::nullopt;
   }
@@ -87,9 +112,38 @@ class SampledSteps {
   static double key_of(std::size_t bucket) {
     return std::bit_cast<double>(static_cast<std::uint64_t>(bucket) << kDropped);
   }
-  std::optional<KeyWindow> window_at(std::size_t bucket) const { return KeyWindow::about(key_of(bucket), width_); }
+  // How far from the key of bucket `cut`, at which so many bytes are bought, the cut of the volume may lie.
+  double reach_at(std::size_t cut, double bytes) const {
+    constexpr double kDeviations = 3;
+    constexpr double kLeast = 1.25;  // lower nodes, and steps of one key, move the cut a little
+    constexpr double kBeside = 1.15;
+    RowSpread spread(rows_);
+    for (const Step& step : steps_) {
+      if (step.bucket >= cut) spread.add(step.row, step.bytes);
+    }
+    const double off = kDeviations * spread.deviation();
+    if (!(off < bytes)) return KeyWindow::kMostReach;
+    double bought = 0;
+    std::size_t bucket = buckets_.size();
+    const auto key_at = [&](double most) {
+      while (bucket > 0 && bought <= most) bought += buckets_[--bucket].bytes.all;
+      return bought > most ? key_of(bucket) : 0;
+    };
+    const double high = key_at(bytes - off);
+    const double low = key_at(bytes + off);
+    const double reach = std::max(high / key_of(cut), key_of(cut) / low);
+    return std::clamp(kBeside * reach, kLeast, KeyWindow::kMostReach);
+  }
+
+  struct Step {
+    std::uint32_t bucket;
+    std::uint32_t row;
+    double bytes;
+  };
 
   float width_;
+  std::size_t rows_;
+  std::vector<Step> steps_;
   std::vector<Bucket> buckets_ = std::vector<Bucket>(std::size_t{1} << (64 - kDropped));
 };
 
@@ -150,6 +204,7 @@ class SampledRegions {
 /// The sampled blocks whose values are all finite.
 struct Sample {
   struct Leaf {
+    std::size_t sampled_row;
     std::int64_t linear;
     std::int64_t voxels;
     LeafRow row;
@@ -157,6 +212,7 @@ struct Sample {
   std::vector<Leaf> leaves;  // but for those of one value
   std::int64_t count = 0;    // those too
   std::uint64_t voxels = 0;
+  std::size_t rows = 0;
   MinMax range = kNoBounds;
 };
 
@@ -174,8 +230,9 @@ Sample read_sample(const RowStore& rows) {
       ++sample.count;
       sample.voxels += static_cast<std::uint64_t>(voxels);
       widen(sample.range, {row.min, row.max});
-      if (!row.uniform()) sample.leaves.push_back({leaves.linear(leaf), voxels, row});
+      if (!row.uniform()) sample.leaves.push_back({sample.rows, leaves.linear(leaf), voxels, row});
     }
+    ++sample.rows;
   }
   return sample;
 }
@@ -187,7 +244,7 @@ BudgetOutlook judge(const FileRequest& request, const RowStore& rows) {
   GainRule rule = request.rule;
   rule.packed = PackedRule{false, coarsest_step(range.low, range.high)};
   const StreamLengths lengths(range, *rule.packed);
-  SampledSteps steps(range.high - range.low);
+  SampledSteps steps(range.high - range.low, sample.rows);
   SampledRegions regions(rows.leaves());
   RegionGains gains;
   for (const Sample::Leaf& sampled : sample.leaves) {
@@ -203,7 +260,7 @@ BudgetOutlook judge(const FileRequest& request, const RowStore& rows) {
     rule.add_packed_steps(ladder, region, lengths, sampled.row, sampled.voxels,
                           rule.visibility == nullptr ? nullptr : &reach, leaf, gains);
     for (const LeafStep& step : leaf.all_steps()) {
-      steps.add(sampled.row, ladder, step);
+      steps.add(sampled.sampled_row, sampled.row, ladder, step);
       regions.add(sampled.linear, step);
     }
   }

@@ -26,6 +26,7 @@ inline LadderState decided_by(const BudgetOutlook& outlook) {
   LadderState state{true, outlook.near};
   if (outlook.window) {
     state.centre = outlook.window->centre();
+    state.reach = outlook.window->reach();
     state.width = outlook.window->width();
   }
   state.short_of_preview = outlook.short_of_preview;

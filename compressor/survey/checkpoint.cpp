@@ -14,7 +14,7 @@ namespace {
 using Json = nlohmann::json;
 
 /// Raised whenever what a checkpoint or one of its files means changes.
-constexpr std::string_view kFormat = "weir checkpoint 7 ";
+constexpr std::string_view kFormat = "weir checkpoint 8 ";
 
 // JSON has no infinity, and not every reader tells -0.0 from 0.0.
 Json bits(float value) { return std::bit_cast<std::uint32_t>(value); }
@@ -105,6 +105,7 @@ Checkpoint checkpoint_of(const Json& json) {
   c.ladders.near = static_cast<NearBlocks>(ladders.at("near").get<int>());
   if (ladders.contains("centre")) {
     c.ladders.centre = double_of(ladders["centre"]);
+    c.ladders.reach = double_of(ladders.at("reach"));
     c.ladders.width = float_of(ladders.at("width"));
   }
   ladders.at("short_of_preview").get_to(c.ladders.short_of_preview);
@@ -146,6 +147,7 @@ std::string to_text(const Checkpoint& c) {
   }
   if (c.ladders.centre) {
     json["ladders"]["centre"] = bits(*c.ladders.centre);
+    json["ladders"]["reach"] = bits(c.ladders.reach);
     json["ladders"]["width"] = bits(c.ladders.width);
   }
   if (c.attempt) {

@@ -14,7 +14,7 @@
 namespace weir::budget_outlook_test {
 namespace {
 
-BudgetOutlook outlook_at(const char* kind, double psnr, std::int64_t edge) {
+BudgetOutlook outlook_of_cube(const char* kind, std::int64_t edge, const Budget& budget) {
   const auto source = open_synthetic(kind, {{edge, edge, edge}, 1});
   test::MemoryVolume volume(*source);
   const BlockPlan plan = plan_blocks(volume.info().domain(), volume.access(), std::uint64_t{1} << 30U);
@@ -25,11 +25,26 @@ BudgetOutlook outlook_at(const char* kind, double psnr, std::int64_t edge) {
   aim.near_rungs = true;
   survey_volume(volume, plan, rows, {}, {.ladders = aim});
   FileRequest request;
-  request.budget.kind = Budget::Kind::psnr;
-  request.budget.target = psnr;
+  request.budget = budget;
   request.domain = volume.info().domain();
   return outlook_of(request, rows);
 }
+
+BudgetOutlook outlook_at(const char* kind, double psnr, std::int64_t edge) {
+  Budget budget;
+  budget.kind = Budget::Kind::psnr;
+  budget.target = psnr;
+  return outlook_of_cube(kind, edge, budget);
+}
+
+// How far from the window's centre the cut at that part of the dense bytes may lie.
+double reach_at(const char* kind, double rate) {
+  Budget budget;
+  budget.kind = Budget::Kind::rate;
+  budget.rate = rate;
+  return outlook_of_cube(kind, 256, budget).window.value().reach();
+}
+
 NearBlocks bought_at(const char* kind, double psnr) { return outlook_at(kind, psnr, 96).near; }
 
 TEST(BudgetOutlook, NearRungsOfASparseCloudAreForItsSparseBlocksUntilNearlyAllIsKept) {
@@ -46,6 +61,17 @@ TEST(BudgetOutlook, DenseTurbulenceHasThemWhereNearlyAllIsKeptAlone) {
 TEST(BudgetOutlook, FilesThatAreClearlyShorterThanTenPreviewsAreKnown) {
   EXPECT_TRUE(outlook_at("turbulence", 40, 256).short_of_preview);
   EXPECT_FALSE(outlook_at("turbulence", 100, 256).short_of_preview);
+}
+
+// Rows of a dense volume take about as many bytes each; few rows of a sparse one have anything.
+TEST(BudgetOutlook, TheCutOfADenseVolumeIsKnownMoreCloselyThanThatOfASparseOne) {
+  EXPECT_LT(reach_at("turbulence", 20), 1.5);
+  EXPECT_EQ(reach_at("noise", 20), 1.25);
+  EXPECT_EQ(reach_at("cloud", 20), KeyWindow::kMostReach);
+}
+
+TEST(BudgetOutlook, TheCutOfAnErrorMayLieAsFarAway) {
+  EXPECT_EQ(outlook_at("turbulence", 60, 256).window.value().reach(), KeyWindow::kMostReach);
 }
 
 TEST(BudgetOutlook, SparseBlocksAreThoseThatAreMostlyZero) {

@@ -29,7 +29,7 @@ Checkpoint sample() {
   t.loss = {5, 6, 0.1, 8};
   c.survey.done.add({{0, 0, 0}, {1, 2, 3}});
   c.survey.done.add({{0, 5, 0}, {9, 9, 9}});
-  c.ladders = {true, NearBlocks::sparse, 1.0 / 3, 0.1F, true, true, true, 2};
+  c.ladders = {true, NearBlocks::sparse, 1.0 / 3, 1.3, 0.1F, true, true, true, 2};
   c.background = {-1e-30F, "sampled-mode", 1.0 / 3};
   c.attempt = {3, std::numeric_limits<double>::infinity(), Encoding::fp8, "iso 3", 0.3};
   c.plan.bytes[15] = std::byte{255};
@@ -81,6 +81,7 @@ TEST(Checkpoint, ReadsBackBitForBit) {
   EXPECT_TRUE(back->ladders.decided);
   EXPECT_EQ(back->ladders.near, NearBlocks::sparse);
   EXPECT_EQ(back->ladders.centre, 1.0 / 3);
+  EXPECT_EQ(back->ladders.reach, 1.3);
   EXPECT_EQ(back->ladders.width, 0.1F);
   EXPECT_TRUE(back->ladders.short_of_preview);
   EXPECT_TRUE(back->ladders.built);
@@ -105,7 +106,7 @@ TEST(Checkpoint, AFreshOneHasNeitherBackgroundNorAttempt) {
 
 TEST(Checkpoint, DamagedCheckpointIsRejected) {
   const std::string text = to_text(sample());
-  EXPECT_EQ(text.substr(0, 18), "weir checkpoint 7 ");
+  EXPECT_EQ(text.substr(0, 18), "weir checkpoint 8 ");
   for (std::size_t length = 0; length < text.size(); ++length) {
     EXPECT_FALSE(parse_checkpoint(std::string_view(text).substr(0, length))) << length;
   }
