@@ -22,8 +22,8 @@ class KeyWindow {
   /// A sample of the blocks tells the cut within that factor, nearly always.
   static constexpr double kMostReach = 2.5;
 
-  /// From `centre`, a normal number, > 0, divided by `reach`, > 1, to `centre` times that. Values of the volume lie in a
-  /// range of about `width`.
+  /// From `centre`, a normal number, > 0, divided by `reach`, > 1, to `centre` times that. Values of the volume lie in
+  /// a range of about `width`.
   KeyWindow(double centre, float width, double reach = kMostReach)
       : centre_(centre), reach_(reach), width_(width), step_(coarsest_step_within(quantum())) {}
   /// About a key; none about one so small that nothing is left to save.
