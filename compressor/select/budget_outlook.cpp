@@ -1,11 +1,11 @@
 #include "compressor/select/budget_outlook.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <map>
 #include <span>
 #include <vector>
@@ -13,139 +13,12 @@
 #include "compressor/packed/block_sample.h"
 #include "compressor/packed/ladder_builder.h"
 #include "compressor/select/fixed_bytes.h"
-#include "compressor/select/step_keys.h"
+#include "compressor/select/sampled_steps.h"
 #include "format/layout/nanovdb_layout.h"
 #include "format/leaf/bounds.h"
 
 namespace weir {
 namespace {
-
-/// Bytes of streams, and of those that are near rungs or floats in order, of sparse blocks and of others.
-struct BoughtBytes {
-  double all = 0;
-  double near_sparse = 0;
-  double near_other = 0;
-
-  void add(const BoughtBytes& bytes) {
-    all += bytes.all;
-    near_sparse += bytes.near_sparse;
-    near_other += bytes.near_other;
-  }
-  NearBlocks near() const {
-    // Fewer are not worth their time; with a fiftieth by other blocks, a file takes 5 % fewer bytes.
-    const double least = all / 256;
-    if (near_other > least) return NearBlocks::all;
-    return near_sparse > least ? NearBlocks::sparse : NearBlocks::none;
-  }
-};
-
-/// The bytes that each row of a sample takes, as by a sample of so many rows: how far off that is.
-class RowSpread {
- public:
-  explicit RowSpread(std::size_t rows) : bytes_(rows) {}
-  void add(std::size_t row, double bytes) { bytes_[row] += bytes; }
-  /// Standard deviation of the sum. By the differences of neighbours: each row stands for its own part of the volume.
-  double deviation() const {
-    if (bytes_.size() < 2) return std::numeric_limits<double>::infinity();
-    double squares = 0;
-    for (std::size_t i = 1; i < bytes_.size(); ++i) squares += std::pow(bytes_[i] - bytes_[i - 1], 2);
-    const auto rows = static_cast<double>(bytes_.size());
-    return std::sqrt(squares / 2 * rows / (rows - 1));
-  }
-
- private:
-  std::vector<double> bytes_;
-};
-
-/// The steps of the blocks of a sample of so many rows, counted by their keys. The blocks' values lie in a range of
-/// that width.
-class SampledSteps {
- public:
-  SampledSteps(float width, std::size_t rows) : width_(width), rows_(rows) {}
-  /// A step of a block in that row of the sample.
-  void add(std::size_t sampled_row, const LeafRow& row, const PackedLadder& ladder, const LeafStep& step) {
-    const std::uint64_t at = key_bits(step.key) >> kDropped;
-    Bucket& bucket = buckets_[at];
-    const auto bytes = static_cast<double>(step.bytes);
-    bucket.bytes.all += bytes;
-    bucket.gain += step.gain;
-    steps_.push_back({static_cast<std::uint32_t>(at), static_cast<std::uint32_t>(sampled_row), bytes});
-    const bool exact = step.level == kExactLevel;
-    if (!(exact ? ladder.exact == ExactKind::ordered : step.level >= kFirstNearLevel)) return;
-    (is_sparse(row) ? bucket.bytes.near_sparse : bucket.bytes.near_other) += bytes;
-  }
-
-  /// Of what is bought for so many bytes.
-  BudgetOutlook within_bytes(double bytes) const {
-    BoughtBytes bought;
-    std::size_t cut = buckets_.size();
-    while (cut > 0 && bought.all <= bytes) bought.add(buckets_[--cut].bytes);
-    if (bought.all <= bytes) return {bought.near(), std::nullopt};
-    return {bought.near(), KeyWindow::about(key_of(cut), width_, reach_at(cut, bytes))};
-  }
-
-  struct OfError {
-    BudgetOutlook outlook;
-    double bytes;      ///< of what is bought
-    double least_key;  ///< that it has, about
-  };
-  /// Of what must be bought so that no more than that error is left; nullopt where nothing must.
-  std::optional<OfError> within_error(double squared_error) const {
-    double left = 0;
-    for (std::size_t cut = 0; cut < buckets_.size(); ++cut) {
-      left += buckets_[cut].gain;
-      if (left <= squared_error) continue;
-      BoughtBytes bought;
-      for (std::size_t i = cut; i < buckets_.size(); ++i) bought.add(buckets_[i].bytes);
-      return OfError{{bought.near(), KeyWindow::about(key_of(cut), width_)}, bought.all, key_of(cut)};
-    }
-    return std::nullopt;
-  }
-
- private:
-  struct Bucket {
-    BoughtBytes bytes{};
-    double gain = 0;
-  };
-  static constexpr int kDropped = 48;  // bits of a key: 16 to an octave remain
-
-  static double key_of(std::size_t bucket) {
-    return std::bit_cast<double>(static_cast<std::uint64_t>(bucket) << kDropped);
-  }
-  // How far from the key of bucket `cut`, at which so many bytes are bought, the cut of the volume may lie.
-  double reach_at(std::size_t cut, double bytes) const {
-    constexpr double kDeviations = 3;
-    constexpr double kLeast = 1.25;  // lower nodes, and steps of one key, move the cut a little
-    constexpr double kBeside = 1.15;
-    RowSpread spread(rows_);
-    for (const Step& step : steps_) {
-      if (step.bucket >= cut) spread.add(step.row, step.bytes);
-    }
-    const double off = kDeviations * spread.deviation();
-    if (!(off < bytes)) return KeyWindow::kMostReach;
-    double bought = 0;
-    std::size_t bucket = buckets_.size();
-    const auto key_at = [&](double most) {
-      while (bucket > 0 && bought <= most) bought += buckets_[--bucket].bytes.all;
-      return bought > most ? key_of(bucket) : 0;
-    };
-    const double high = key_at(bytes - off);
-    const double low = key_at(bytes + off);
-    const double reach = std::max(high / key_of(cut), key_of(cut) / low);
-    return std::clamp(kBeside * reach, kLeast, KeyWindow::kMostReach);
-  }
-
-  struct Step {
-    std::uint32_t bucket;
-    std::uint32_t row;
-    double bytes;
-  };
-
-  float width_;
-  std::size_t rows_;
-  std::vector<Step> steps_;
-  std::vector<Bucket> buckets_ = std::vector<Bucket>(std::size_t{1} << (64 - kDropped));
-};
 
 /// The steps of sampled blocks by the regions that these lie in: which regions have a lower node.
 class SampledRegions {
@@ -237,17 +110,19 @@ Sample read_sample(const RowStore& rows) {
   return sample;
 }
 
-BudgetOutlook judge(const FileRequest& request, const RowStore& rows) {
-  const Sample sample = read_sample(rows);
-  if (sample.count == 0) return {NearBlocks::all, std::nullopt};  // nothing to judge by
-  const MeanRange range{sample.range.min, sample.range.max};
-  GainRule rule = request.rule;
-  rule.packed = PackedRule{false, coarsest_step(range.low, range.high)};
-  const StreamLengths lengths(range, *rule.packed);
-  SampledSteps steps(range.high - range.low, sample.rows);
-  SampledRegions regions(rows.leaves());
+struct StepOfLeaf {
+  const Sample::Leaf* leaf;
+  bool ordered;  // its exact kind is that of floats in order
+  LeafStep step;
+};
+using StepsOfLeaves = std::vector<StepOfLeaf>;
+constexpr std::size_t kLeavesTogether = 128;  // by one thread
+
+StepsOfLeaves steps_of(std::span<const Sample::Leaf> leaves, const GainRule& rule, const StreamLengths& lengths,
+                       const MeanRange& range, const RowStore& rows) {
+  StepsOfLeaves steps;
   RegionGains gains;
-  for (const Sample::Leaf& sampled : sample.leaves) {
+  for (const Sample::Leaf& sampled : leaves) {
     PackedLadder ladder;
     rows.ladders()->read(sampled.linear, std::span(&ladder, 1));
     MinMax reach;
@@ -259,9 +134,44 @@ BudgetOutlook judge(const FileRequest& request, const RowStore& rows) {
     gains.begin(leaf);
     rule.add_packed_steps(ladder, region, lengths, sampled.row, sampled.voxels,
                           rule.visibility == nullptr ? nullptr : &reach, leaf, gains);
-    for (const LeafStep& step : leaf.all_steps()) {
-      steps.add(sampled.sampled_row, sampled.row, ladder, step);
-      regions.add(sampled.linear, step);
+    for (const LeafStep& step : leaf.all_steps()) steps.push_back({&sampled, ladder.exact == ExactKind::ordered, step});
+  }
+  return steps;
+}
+
+std::vector<StepsOfLeaves> steps_of(const Sample& sample, const GainRule& rule, const MeanRange& range,
+                                    const RowStore& rows) {
+  const StreamLengths lengths(range, *rule.packed);
+  std::vector<StepsOfLeaves> steps((sample.leaves.size() + kLeavesTogether - 1) / kLeavesTogether);
+  tbb::parallel_for(std::size_t{0}, steps.size(), [&](std::size_t part) {
+    const std::size_t first = kLeavesTogether * part;
+    const std::size_t count = std::min(kLeavesTogether, sample.leaves.size() - first);
+    steps[part] = steps_of(std::span(sample.leaves).subspan(first, count), rule, lengths, range, rows);
+  });
+  return steps;
+}
+
+// Bytes of the lower nodes of a file that keeps the steps of `key` and higher ones.
+double preview_bytes(const std::vector<StepsOfLeaves>& steps, const NodeLattice& leaves, double key) {
+  constexpr auto kNodeBytes = static_cast<double>(nvdb::kLowerBytes);
+  SampledRegions regions(leaves);
+  for (const StepsOfLeaves& part : steps) {
+    for (const StepOfLeaf& of_leaf : part) regions.add(of_leaf.leaf->linear, of_leaf.step);
+  }
+  return regions.open(key, kNodeBytes) * kNodeBytes;
+}
+
+BudgetOutlook judge(const FileRequest& request, const RowStore& rows) {
+  const Sample sample = read_sample(rows);
+  if (sample.count == 0) return {NearBlocks::all, std::nullopt};  // nothing to judge by
+  const MeanRange range{sample.range.min, sample.range.max};
+  GainRule rule = request.rule;
+  rule.packed = PackedRule{false, coarsest_step(range.low, range.high)};
+  const std::vector<StepsOfLeaves> found = steps_of(sample, rule, range, rows);
+  SampledSteps steps(range.high - range.low, sample.rows);
+  for (const StepsOfLeaves& part : found) {
+    for (const auto& [leaf, ordered, step] : part) {
+      steps.add({leaf->sampled_row, is_sparse(leaf->row), ordered}, step);
     }
   }
   const double share = static_cast<double>(sample.count) / static_cast<double>(rows.leaves().size());
@@ -272,10 +182,9 @@ BudgetOutlook judge(const FileRequest& request, const RowStore& rows) {
     const double error = width * width * static_cast<double>(sample.voxels) / std::pow(10, budget.target / 10);
     if (const auto bought = steps.within_error(error)) {
       constexpr double kClearly = 2;
-      constexpr auto kNodeBytes = static_cast<double>(nvdb::kLowerBytes);
-      const double preview = regions.open(bought->least_key, kNodeBytes) * kNodeBytes;
       outlook = bought->outlook;
-      outlook.short_of_preview = kClearly * bought->bytes / share < kLeastOfPreview * preview;
+      outlook.short_of_preview =
+          kClearly * bought->bytes / share < kLeastOfPreview * preview_bytes(found, rows.leaves(), bought->least_key);
     }
   } else {
     const auto dense = static_cast<std::uint64_t>(request.domain.voxels()) * sizeof(float);
