@@ -19,6 +19,11 @@ __device__ inline std::int32_t spread_bits(std::uint32_t n) {
   return static_cast<std::int32_t>((n | n >> 8U) & 0x0000FFFFU);
 }
 
+__device__ inline std::uint32_t least_of_warp(std::uint32_t n) {
+  for (int distance = 16; distance > 0; distance /= 2) n = lesser(n, __shfl_xor_sync(~0U, n, distance));
+  return n;
+}
+
 template <class Volume, bool kPath>
 __global__ void __launch_bounds__(kTileWidth* kTileHeight, kPath ? kPathBlocks : 1)
     render_paged_kernel(const __grid_constant__ RenderTask<Volume> task, const __grid_constant__ PagedPicture picture,
@@ -31,30 +36,34 @@ __global__ void __launch_bounds__(kTileWidth* kTileHeight, kPath ? kPathBlocks :
       spread_bits(tile) * static_cast<std::int32_t>(kTileWidth) + static_cast<std::int32_t>(threadIdx.x);
   const std::int32_t y =
       spread_bits(tile >> 1U) * static_cast<std::int32_t>(kTileHeight) + static_cast<std::int32_t>(threadIdx.y);
-  if (x < task.width && y < task.height) {
-    const std::int64_t pixel = static_cast<std::int64_t>(y) * task.width + x;
-    Float3 sum = picture.sums[pixel];
-    const std::uint32_t before = picture.done[pixel];
-    std::uint32_t done = before;
-    const std::uint32_t last = lesser(picture.samples, before + picture.at_once);
-    while (done < last) {
+  const bool inside = x < task.width && y < task.height;
+  const std::int64_t pixel = static_cast<std::int64_t>(y) * task.width + x;
+  const std::uint32_t before = inside ? picture.done[pixel] : picture.samples;
+  Float3 sum = inside ? picture.sums[pixel] : Float3{};
+  std::uint32_t done = before;
+  // The pixels of a warp stay together: where one misses something, the others wait for it, at most a sample ahead.
+  std::uint32_t at = least_of_warp(before);
+  const std::uint32_t last = lesser(picture.samples, at + picture.at_once);
+  for (bool waits = false; at < last && !waits; ++at) {
+    bool missed = false;
+    if (done == at) {
       set_thread_missed(false);
       const Float3 added = render_sample(task, kPath ? RenderMode::path : task.mode, x, y, picture.first + done);
-      if (thread_missed()) {
-        atomicAdd(&counts.missed, 1U);
-        if (!picture.keep_missed) break;
+      missed = thread_missed();
+      if (missed) atomicAdd(&counts.missed, 1U);
+      if (!missed || picture.keep_missed) {
+        sum += added;
+        ++done;
       }
-      sum += added;
-      ++done;
     }
-    if (done > before) {
-      picture.sums[pixel] = sum;
-      picture.done[pixel] = done;
-      atomicAdd(reinterpret_cast<unsigned long long*>(&counts.finished),
-                static_cast<unsigned long long>(done - before));
-    }
-    if (done < picture.samples) atomicAdd(&counts.unfinished, 1U);
+    waits = !picture.keep_missed && __any_sync(~0U, missed) != 0;
   }
+  if (done > before) {
+    picture.sums[pixel] = sum;
+    picture.done[pixel] = done;
+    atomicAdd(reinterpret_cast<unsigned long long*>(&counts.finished), static_cast<unsigned long long>(done - before));
+  }
+  if (done < picture.samples) atomicAdd(&counts.unfinished, 1U);
   __syncthreads();
   if (threadIdx.x == 0 && threadIdx.y == 0) {
     if (counts.finished > 0) {
