@@ -263,10 +263,10 @@ giant() {
     --type uint8 --memory 4GiB --encoding packed --lossless -o "$name.nvdb" --progress never --log-level error)"
   rm "$name.raw"
   printf '%s bytes; seconds of rendering with 2 GiB of device memory, and --lod 3\n' "$(stat -c %s "$name.nvdb")"
-  for mode in dvr iso mip; do
+  for mode in "path --spp 8" dvr iso mip; do
     printf '%-16s' "$mode"
-    smaller "$name.nvdb" $mode --device-memory 2GiB
-    smaller "$name.nvdb" $mode --device-memory 2GiB --lod 3
+    smaller "$name.nvdb" "$mode" --device-memory 2GiB
+    smaller "$name.nvdb" "$mode" --device-memory 2GiB --lod 3
     echo
   done
   rm "$work"/*
