@@ -1,6 +1,6 @@
 // Which rungs of a ladder a budget can choose among, once it is known about where its cut lies. The survey then builds
-// five of some twenty. What is chosen is the same: at a cut within the window, the best of all rungs is among them,
-// as long as each further byte of a block saves less error than the one before.
+// three to five of some twenty. What is chosen is the same: at a cut within the window, the best of all rungs is among
+// them, as long as each further byte of a block saves less error than the one before.
 #pragma once
 
 #include <algorithm>
