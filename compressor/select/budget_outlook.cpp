@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <map>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "compressor/packed/block_sample.h"
@@ -84,6 +85,7 @@ struct Sample {
   };
   std::vector<Leaf> leaves;  // but for those of one value
   std::int64_t count = 0;    // those too
+  std::int64_t left_out = 0;
   std::uint64_t voxels = 0;
   std::size_t rows = 0;
   MinMax range = kNoBounds;
@@ -99,7 +101,10 @@ Sample read_sample(const RowStore& rows) {
       const Index3 leaf = box.lo + index_at(i, box.extent());
       const LeafRow& row = found[static_cast<std::size_t>(i)];
       const std::int64_t voxels = leaves.voxels(leaf).voxels();
-      if (row.finite < voxels) continue;
+      if (row.finite < voxels) {
+        ++sample.left_out;
+        continue;
+      }
       ++sample.count;
       sample.voxels += static_cast<std::uint64_t>(voxels);
       widen(sample.range, {row.min, row.max});
@@ -151,12 +156,12 @@ std::vector<StepsOfLeaves> steps_of(const Sample& sample, const GainRule& rule, 
   return steps;
 }
 
-// Bytes of the lower nodes of a file that keeps the steps of `key` and higher ones.
-double preview_bytes(const std::vector<StepsOfLeaves>& steps, const NodeLattice& leaves, double key) {
+// Bytes of the lower nodes of a file that keeps the steps of `key` and higher ones. Frees the steps.
+double preview_bytes(std::vector<StepsOfLeaves>& steps, const NodeLattice& leaves, double key) {
   constexpr auto kNodeBytes = static_cast<double>(nvdb::kLowerBytes);
   SampledRegions regions(leaves);
-  for (const StepsOfLeaves& part : steps) {
-    for (const StepOfLeaf& of_leaf : part) regions.add(of_leaf.leaf->linear, of_leaf.step);
+  for (StepsOfLeaves& part : steps) {
+    for (const StepOfLeaf& of_leaf : std::exchange(part, {})) regions.add(of_leaf.leaf->linear, of_leaf.step);
   }
   return regions.open(key, kNodeBytes) * kNodeBytes;
 }
@@ -167,7 +172,7 @@ BudgetOutlook judge(const FileRequest& request, const RowStore& rows) {
   const MeanRange range{sample.range.min, sample.range.max};
   GainRule rule = request.rule;
   rule.packed = PackedRule{false, coarsest_step(range.low, range.high)};
-  const std::vector<StepsOfLeaves> found = steps_of(sample, rule, range, rows);
+  std::vector<StepsOfLeaves> found = steps_of(sample, rule, range, rows);
   SampledSteps steps(range.high - range.low, sample.rows);
   for (const StepsOfLeaves& part : found) {
     for (const auto& [leaf, ordered, step] : part) {
@@ -192,6 +197,9 @@ BudgetOutlook judge(const FileRequest& request, const RowStore& rows) {
     const std::uint64_t fixed =
         fixed_bytes(request.domain, Encoding::packed, request.packed.preview, asked, region_count(request.domain));
     outlook = steps.within_bytes(std::max(0.0, static_cast<double>(asked) - static_cast<double>(fixed)) * share);
+    // What blocks with values that are not finite take is not known.
+    if (outlook.window && sample.left_out > 0)
+      outlook.window.emplace(outlook.window->centre(), outlook.window->width());
   }
   if (rule.visibility != nullptr || rows.leaves().size() < kLeastForecastBlocks) {
     outlook.window.reset();

@@ -59,9 +59,9 @@ class SampledSteps {
   static constexpr int kDropped = 48;  // bits of a key: 16 to an octave remain
 
   static double key_of(std::size_t bucket);
-  // How far from the key of bucket `cut`, at which so many bytes are bought, the cut of the volume may lie.
+  // By which factor the cut of the volume may differ from the key of bucket `cut`, at which so many bytes are bought.
   double reach_at(std::size_t cut, double bytes) const;
-  // Standard deviation of the bytes bought there, of samples of as many rows.
+  // Standard deviation of the bytes bought there, among samples of this many rows.
   double deviation_at(std::size_t cut) const;
 
   float width_;

@@ -81,12 +81,14 @@ TEST_F(FoundLadders, WithNearRungsAreThoseOfTheHost_WhereverTheWindowLies) {
     for (const double centre : {1e-24, 1e-14, 1e-9, 1e-5, 1e-2, 10.0, 1e6}) {
       for (const float width : {0.0F, 1e30F}) {  // of means with codes at all steps, and at none
         SCOPED_TRACE(testing::Message() << centre << ' ' << width);
-        aim.window = KeyWindow(centre, width);
-        built += compare(aim, NearRungs::yes);
+        for (const double reach : {1.25, KeyWindow::kMostReach}) {
+          aim.window = KeyWindow(centre, width, reach);
+          built += compare(aim, NearRungs::yes);
+        }
       }
     }
   }
-  EXPECT_GT(built, 4800U);
+  EXPECT_GT(built, 9600U);
 }
 
 TEST_F(FoundLadders, WithAllNearRungsAreThoseOfTheHost) {

@@ -3,9 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <functional>
+#include <limits>
 #include <memory>
+#include <optional>
+#include <vector>
 
 #include "compressor/packed/ladder_builder.h"
+#include "compressor/select/selection.h"
 #include "compressor/survey/survey.h"
 #include "ingest/synthetic/synthetic.h"
 #include "tests/compressor/support/crash_file_system.h"
@@ -14,37 +20,68 @@
 namespace weir::budget_outlook_test {
 namespace {
 
-BudgetOutlook outlook_of_cube(const char* kind, std::int64_t edge, const Budget& budget) {
-  const auto source = open_synthetic(kind, {{edge, edge, edge}, 1});
-  test::MemoryVolume volume(*source);
-  const BlockPlan plan = plan_blocks(volume.info().domain(), volume.access(), std::uint64_t{1} << 30U);
-  test::CrashFileSystem files;
-  RowStore rows(files.create_unnamed("rows"), plan.lattice, {64, 0});
-  rows.set_ladders(std::make_unique<LeafStore<PackedLadder>>(files.create_unnamed("ladders"), plan.lattice));
-  LadderAim aim;
-  aim.near_rungs = true;
-  survey_volume(volume, plan, rows, {}, {.ladders = aim});
-  FileRequest request;
-  request.budget = budget;
-  request.domain = volume.info().domain();
-  return outlook_of(request, rows);
+using Change = std::function<void(std::vector<float>&)>;
+
+test::MemoryVolume make_volume(const char* kind, std::int64_t edge, const Change& change) {
+  test::MemoryVolume volume(*open_synthetic(kind, {{edge, edge, edge}, 1}));
+  if (!change) return volume;
+  std::vector<float> values(volume.values().begin(), volume.values().end());
+  change(values);
+  return {volume.info().domain(), std::move(values)};
+}
+
+// A cube of that many voxels along each edge, surveyed for packed blocks without a preview.
+class Cube {
+ public:
+  Cube(const char* kind, std::int64_t edge, const Change& change = {}) : volume_(make_volume(kind, edge, change)) {
+    plan_ = plan_blocks(volume_.info().domain(), volume_.access(), std::uint64_t{1} << 30U);
+    rows_ = std::make_unique<RowStore>(files_.create_unnamed("rows"), plan_.lattice, SelectionRoom{64, 0});
+    rows_->set_ladders(std::make_unique<LeafStore<PackedLadder>>(files_.create_unnamed("ladders"), plan_.lattice));
+    LadderAim aim;
+    aim.near_rungs = true;
+    aim.near = NearBlocks::all;
+    survey_ = survey_volume(volume_, plan_, *rows_, {}, {.ladders = aim});
+  }
+
+  BudgetOutlook outlook(const Budget& budget) const {
+    FileRequest request;
+    request.budget = budget;
+    request.domain = volume_.info().domain();
+    request.packed.preview = Preview::off;
+    return outlook_of(request, *rows_);
+  }
+  // The cut of a file of the volume that has 1 / rate of the dense bytes.
+  std::optional<double> cut(double rate) const {
+    GainRule rule;
+    rule.encoding = Encoding::packed;
+    rule.packed = PackedRule{false, coarsest_step(survey_.min, survey_.max)};
+    TreeRegions tree(volume_.info().domain());
+    Selection selection(rule, *rows_, tree, Selection::Search::no);
+    selection.choose(static_cast<std::uint64_t>(static_cast<double>(4 * volume_.info().domain().voxels()) / rate));
+    return selection.cut_key();
+  }
+
+ private:
+  test::MemoryVolume volume_;
+  BlockPlan plan_;
+  test::CrashFileSystem files_;
+  std::unique_ptr<RowStore> rows_;
+  Survey survey_;
+};
+
+Budget budget_of_rate(double rate) {
+  Budget budget;
+  budget.kind = Budget::Kind::rate;
+  budget.rate = rate;
+  return budget;
 }
 
 BudgetOutlook outlook_at(const char* kind, double psnr, std::int64_t edge) {
   Budget budget;
   budget.kind = Budget::Kind::psnr;
   budget.target = psnr;
-  return outlook_of_cube(kind, edge, budget);
+  return Cube(kind, edge).outlook(budget);
 }
-
-// How far from the window's centre the cut at that part of the dense bytes may lie.
-double reach_at(const char* kind, double rate) {
-  Budget budget;
-  budget.kind = Budget::Kind::rate;
-  budget.rate = rate;
-  return outlook_of_cube(kind, 256, budget).window.value().reach();
-}
-
 NearBlocks bought_at(const char* kind, double psnr) { return outlook_at(kind, psnr, 96).near; }
 
 TEST(BudgetOutlook, NearRungsOfASparseCloudAreForItsSparseBlocksUntilNearlyAllIsKept) {
@@ -64,10 +101,32 @@ TEST(BudgetOutlook, FilesThatAreClearlyShorterThanTenPreviewsAreKnown) {
 }
 
 // Rows of a dense volume take about as many bytes each; few rows of a sparse one have anything.
-TEST(BudgetOutlook, TheCutOfADenseVolumeIsKnownMoreCloselyThanThatOfASparseOne) {
-  EXPECT_LT(reach_at("turbulence", 20), 1.5);
-  EXPECT_EQ(reach_at("noise", 20), 1.25);
-  EXPECT_EQ(reach_at("cloud", 20), KeyWindow::kMostReach);
+TEST(BudgetOutlook, TheCutOfADenseVolumeLiesInANarrowWindow) {
+  for (const char* kind : {"turbulence", "noise", "tiny", "denormal"}) {
+    const Cube cube(kind, 256);
+    for (const double rate : {8, 20, 50}) {
+      const KeyWindow window = cube.outlook(budget_of_rate(rate)).window.value();
+      EXPECT_LT(window.reach(), 1.6) << kind << ' ' << rate;
+      EXPECT_TRUE(window.holds(cube.cut(rate).value())) << kind << ' ' << rate;
+    }
+  }
+}
+
+TEST(BudgetOutlook, TheCutOfASparseVolumeMayLieFarAway) {
+  const Cube cube("cloud", 256);
+  for (const double rate : {20, 50}) {
+    const KeyWindow window = cube.outlook(budget_of_rate(rate)).window.value();
+    EXPECT_EQ(window.reach(), KeyWindow::kMostReach) << rate;
+    EXPECT_TRUE(window.holds(cube.cut(rate).value())) << rate;
+  }
+}
+
+// What blocks without finite values take is not judged.
+TEST(BudgetOutlook, TheCutOfAVolumeWithMissingValuesMayLieFarAway) {
+  const Cube cube("turbulence", 256, [](std::vector<float>& values) {
+    std::fill_n(values.begin(), values.size() / 10, std::numeric_limits<float>::quiet_NaN());
+  });
+  EXPECT_EQ(cube.outlook(budget_of_rate(20)).window.value().reach(), KeyWindow::kMostReach);
 }
 
 TEST(BudgetOutlook, TheCutOfAnErrorMayLieAsFarAway) {

@@ -1,6 +1,10 @@
 // In place of the kernels that draw volumes whose bricks come and go: pixels one after the other.
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
 #include "gpu/cuda/bricks/paged_sampler.h"
 #include "gpu/cuda/render/render_kernel.cuh"
 #include "gpu/cuda/render/render_paged.h"
@@ -18,28 +22,42 @@ void launch_paged(const RenderTask<Volume>& task, const PagedPicture& picture, s
     for (unsigned b = 0; b < 16; ++b) bits |= static_cast<std::int32_t>(n >> (2 * b) & 1U) << b;
     return bits;
   };
-  for (std::uint32_t tile = first_tile; tile < first_tile + tiles; ++tile) {
-    for (std::int32_t p = 0; p < static_cast<std::int32_t>(kTileWidth * kTileHeight); ++p) {
-      const std::int32_t x = every_second(tile) * static_cast<std::int32_t>(kTileWidth) + p % 8;
-      const std::int32_t y = every_second(tile >> 1U) * static_cast<std::int32_t>(kTileHeight) + p / 8;
+  // A warp's pixels stay together: where one misses something, the others wait for it, at most a sample ahead.
+  constexpr unsigned kWarpPixels = 32;
+  constexpr unsigned kWarps = kTileWidth * kTileHeight / kWarpPixels;
+  struct Pixel {
+    std::int32_t x, y;
+    std::int64_t index;
+  };
+  for (std::uint32_t warp = kWarps * first_tile; warp < kWarps * (first_tile + tiles); ++warp) {
+    const std::uint32_t tile = warp / kWarps;
+    std::vector<Pixel> pixels;
+    std::uint32_t at = picture.samples;
+    for (unsigned p = warp % kWarps * kWarpPixels; p < (warp % kWarps + 1) * kWarpPixels; ++p) {
+      const auto x = every_second(tile) * static_cast<std::int32_t>(kTileWidth) + static_cast<std::int32_t>(p % 8);
+      const auto y =
+          every_second(tile >> 1U) * static_cast<std::int32_t>(kTileHeight) + static_cast<std::int32_t>(p / 8);
       if (x >= task.width || y >= task.height) continue;
-      const std::int64_t pixel = static_cast<std::int64_t>(y) * task.width + x;
-      std::uint32_t& done = picture.done[pixel];
-      const std::uint32_t before = done;
-      const std::uint32_t last = std::min(picture.samples, before + picture.at_once);
-      while (done < last) {
+      pixels.push_back({x, y, static_cast<std::int64_t>(y) * task.width + x});
+      at = std::min(at, picture.done[pixels.back().index]);
+    }
+    const std::uint32_t last = std::min(picture.samples, at + picture.at_once);
+    for (bool waits = false; at < last && !waits; ++at) {
+      for (const Pixel& pixel : pixels) {
+        if (picture.done[pixel.index] != at) continue;
         set_thread_missed(false);
-        const Float3 added = render_sample(task, x, y, picture.first + done);
+        const Float3 added = render_sample(task, pixel.x, pixel.y, picture.first + at);
         if (thread_missed()) {
           ++picture.counts->missed;
-          if (!picture.keep_missed) break;
+          waits = waits || !picture.keep_missed;
+          if (!picture.keep_missed) continue;
         }
-        picture.sums[pixel] += added;
-        ++done;
+        picture.sums[pixel.index] += added;
+        ++picture.done[pixel.index];
+        ++picture.counts->finished;
       }
-      picture.counts->finished += done - before;
-      if (done < picture.samples) ++picture.counts->unfinished;
     }
+    for (const Pixel& pixel : pixels) picture.counts->unfinished += picture.done[pixel.index] < picture.samples ? 1 : 0;
   }
 }
 
