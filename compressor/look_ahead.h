@@ -5,9 +5,9 @@
 #include <optional>
 
 #include "compressor/conversion_options.h"
+#include "compressor/outlook/budget_outlook.h"
 #include "compressor/packed/ladder_builder.h"
 #include "compressor/plan/reading_plan.h"
-#include "compressor/select/budget_outlook.h"
 #include "compressor/survey/row_store.h"
 #include "ingest/plan/block_stream.h"
 #include "ingest/source/volume_source.h"

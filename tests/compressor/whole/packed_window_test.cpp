@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "compressor/outlook/budget_outlook.h"
 #include "compressor/packed/block_sample.h"
-#include "compressor/select/budget_outlook.h"
 #include "tests/compressor/support/converted.h"
 #include "tests/compressor/support/memory_volume.h"
 #include "tests/compressor/support/packed_files.h"

@@ -1,5 +1,5 @@
 // What a budget will buy, judged by a sample, which is all of the small volumes.
-#include "compressor/select/budget_outlook.h"
+#include "compressor/outlook/budget_outlook.h"
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,9 @@
 #include <optional>
 #include <vector>
 
-#include "compressor/select/budget_outlook.h"
+#include "compressor/packed/ladder_window.h"
 #include "compressor/select/leaf_gain.h"
+#include "format/packed/near_rungs.h"
 
 namespace weir {
 
@@ -20,6 +21,14 @@ struct BoughtBytes {
   void add(const BoughtBytes& bytes);
   /// Which blocks' near rungs are worth the time to look at them.
   NearBlocks near() const;
+};
+
+/// What a budget buys of a sample.
+struct SampledCut {
+  NearBlocks near{};                  ///< whose near rungs are worth the time to look at them
+  std::optional<KeyWindow> window{};  ///< that the cut of the volume lies in; none where all is bought
+  double bytes = 0;                   ///< of what is bought
+  double least_key = 0;               ///< that it has, about
 };
 
 /// The steps of a sample's blocks, counted by their keys.
@@ -36,15 +45,9 @@ class SampledSteps {
   void add(const Block& block, const LeafStep& step);
 
   /// Of what is bought for so many bytes.
-  BudgetOutlook within_bytes(double bytes) const;
-
-  struct OfError {
-    BudgetOutlook outlook;
-    double bytes;      ///< of what is bought
-    double least_key;  ///< that it has, about
-  };
+  SampledCut within_bytes(double bytes) const;
   /// Of what must be bought so that no more than that error is left; nullopt where nothing must.
-  std::optional<OfError> within_error(double squared_error) const;
+  std::optional<SampledCut> within_error(double squared_error) const;
 
  private:
   struct Bucket {

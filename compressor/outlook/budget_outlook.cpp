@@ -1,4 +1,4 @@
-#include "compressor/select/budget_outlook.h"
+#include "compressor/outlook/budget_outlook.h"
 
 #include <tbb/parallel_for.h>
 
@@ -11,10 +11,10 @@
 #include <utility>
 #include <vector>
 
+#include "compressor/outlook/sampled_steps.h"
 #include "compressor/packed/block_sample.h"
 #include "compressor/packed/ladder_builder.h"
 #include "compressor/select/fixed_bytes.h"
-#include "compressor/select/sampled_steps.h"
 #include "format/layout/nanovdb_layout.h"
 #include "format/leaf/bounds.h"
 
@@ -187,7 +187,8 @@ BudgetOutlook judge(const FileRequest& request, const RowStore& rows) {
     const double error = width * width * static_cast<double>(sample.voxels) / std::pow(10, budget.target / 10);
     if (const auto bought = steps.within_error(error)) {
       constexpr double kClearly = 2;
-      outlook = bought->outlook;
+      outlook.near = bought->near;
+      outlook.window = bought->window;
       outlook.short_of_preview =
           kClearly * bought->bytes / share < kLeastOfPreview * preview_bytes(found, rows.leaves(), bought->least_key);
     }
@@ -196,7 +197,10 @@ BudgetOutlook judge(const FileRequest& request, const RowStore& rows) {
     const std::uint64_t asked = asked_bytes(budget, dense);
     const std::uint64_t fixed =
         fixed_bytes(request.domain, Encoding::packed, request.packed.preview, asked, region_count(request.domain));
-    outlook = steps.within_bytes(std::max(0.0, static_cast<double>(asked) - static_cast<double>(fixed)) * share);
+    const SampledCut bought =
+        steps.within_bytes(std::max(0.0, static_cast<double>(asked) - static_cast<double>(fixed)) * share);
+    outlook.near = bought.near;
+    outlook.window = bought.window;
     // What blocks with values that are not finite take is not known.
     if (outlook.window && sample.left_out > 0)
       outlook.window.emplace(outlook.window->centre(), outlook.window->width());

@@ -1,4 +1,4 @@
-#include "compressor/select/sampled_steps.h"
+#include "compressor/outlook/sampled_steps.h"
 
 #include <algorithm>
 #include <bit>
@@ -34,15 +34,16 @@ void SampledSteps::add(const Block& block, const LeafStep& step) {
   (block.sparse ? bucket.bytes.near_sparse : bucket.bytes.near_other) += bytes;
 }
 
-BudgetOutlook SampledSteps::within_bytes(double bytes) const {
+SampledCut SampledSteps::within_bytes(double bytes) const {
   BoughtBytes bought;
   std::size_t cut = buckets_.size();
   while (cut > 0 && bought.all <= bytes) bought.add(buckets_[--cut].bytes);
-  if (bought.all <= bytes) return {bought.near(), std::nullopt};
-  return {bought.near(), KeyWindow::about(key_of(cut), width_, reach_at(cut, bytes))};
+  SampledCut found{bought.near(), std::nullopt, bought.all, key_of(cut)};
+  if (bought.all > bytes) found.window = KeyWindow::about(key_of(cut), width_, reach_at(cut, bytes));
+  return found;
 }
 
-std::optional<SampledSteps::OfError> SampledSteps::within_error(double squared_error) const {
+std::optional<SampledCut> SampledSteps::within_error(double squared_error) const {
   double left = 0;
   for (std::size_t cut = 0; cut < buckets_.size(); ++cut) {
     left += buckets_[cut].gain;
@@ -50,7 +51,7 @@ std::optional<SampledSteps::OfError> SampledSteps::within_error(double squared_e
     BoughtBytes bought;
     for (std::size_t i = cut; i < buckets_.size(); ++i) bought.add(buckets_[i].bytes);
     // The range of the values, which the error is a part of, is known too roughly for a narrower window.
-    return OfError{{bought.near(), KeyWindow::about(key_of(cut), width_)}, bought.all, key_of(cut)};
+    return SampledCut{bought.near(), KeyWindow::about(key_of(cut), width_), bought.all, key_of(cut)};
   }
   return std::nullopt;
 }
