@@ -78,14 +78,15 @@ RungRange rungs_within(const KeyWindow& window, double energy, std::size_t start
   std::optional<RungPoint> point = at(coarse);
   while (!point && coarse > first) point = at(--coarse);
   if (!point) return {first, first, true};
-  // Whether a byte more from one point to a later one saves less, or more, than a key, however the two were rounded to
-  // whole bytes.
+  // Whether a byte more from one point to a later one saves less, or more, than a key. In a narrow window, however the
+  // two were rounded to whole bytes: a wide one has further rungs.
+  const double rounding = window.reach() < KeyWindow::kMostReach ? 1 : 0;
   const auto saves = [&](const RungPoint& from, const RungPoint& to) { return energy * (from.share - to.share); };
   const auto saves_less = [&](const RungPoint& from, const RungPoint& to, double key) {
-    return saves(from, to) < key * (to.bytes - from.bytes - 1);
+    return saves(from, to) < key * (to.bytes - from.bytes - rounding);
   };
   const auto saves_more = [&](const RungPoint& from, const RungPoint& to, double key) {
-    return saves(from, to) > key * (to.bytes - from.bytes + 1);
+    return saves(from, to) > key * (to.bytes - from.bytes + rounding);
   };
   const double low = window.low();
   const double high = window.high();
