@@ -16,9 +16,12 @@
 #include "ingest/synthetic/synthetic.h"
 #include "tests/compressor/support/crash_file_system.h"
 #include "tests/compressor/support/memory_volume.h"
+#include "tests/compressor/support/packed_files.h"
 
 namespace weir::budget_outlook_test {
 namespace {
+
+using test::packed;
 
 using Change = std::function<void(std::vector<float>&)>;
 
@@ -69,18 +72,8 @@ class Cube {
   Survey survey_;
 };
 
-Budget budget_of_rate(double rate) {
-  Budget budget;
-  budget.kind = Budget::Kind::rate;
-  budget.rate = rate;
-  return budget;
-}
-
 BudgetOutlook outlook_at(const char* kind, double psnr, std::int64_t edge) {
-  Budget budget;
-  budget.kind = Budget::Kind::psnr;
-  budget.target = psnr;
-  return Cube(kind, edge).outlook(budget);
+  return Cube(kind, edge).outlook(packed(Budget::Kind::psnr, psnr).budget);
 }
 NearBlocks bought_at(const char* kind, double psnr) { return outlook_at(kind, psnr, 96).near; }
 
@@ -105,7 +98,7 @@ TEST(BudgetOutlook, TheCutOfADenseVolumeLiesInANarrowWindow) {
   for (const char* kind : {"turbulence", "noise", "tiny", "denormal"}) {
     const Cube cube(kind, 256);
     for (const double rate : {8, 20, 50}) {
-      const KeyWindow window = cube.outlook(budget_of_rate(rate)).window.value();
+      const KeyWindow window = cube.outlook(packed(Budget::Kind::rate, rate).budget).window.value();
       EXPECT_LT(window.reach(), 1.6) << kind << ' ' << rate;
       EXPECT_TRUE(window.holds(cube.cut(rate).value())) << kind << ' ' << rate;
     }
@@ -115,7 +108,7 @@ TEST(BudgetOutlook, TheCutOfADenseVolumeLiesInANarrowWindow) {
 TEST(BudgetOutlook, TheCutOfASparseVolumeMayLieFarAway) {
   const Cube cube("cloud", 256);
   for (const double rate : {20, 50}) {
-    const KeyWindow window = cube.outlook(budget_of_rate(rate)).window.value();
+    const KeyWindow window = cube.outlook(packed(Budget::Kind::rate, rate).budget).window.value();
     EXPECT_EQ(window.reach(), KeyWindow::kMostReach) << rate;
     EXPECT_TRUE(window.holds(cube.cut(rate).value())) << rate;
   }
@@ -126,7 +119,7 @@ TEST(BudgetOutlook, TheCutOfAVolumeWithMissingValuesMayLieFarAway) {
   const Cube cube("turbulence", 256, [](std::vector<float>& values) {
     std::fill_n(values.begin(), values.size() / 10, std::numeric_limits<float>::quiet_NaN());
   });
-  EXPECT_EQ(cube.outlook(budget_of_rate(20)).window.value().reach(), KeyWindow::kMostReach);
+  EXPECT_EQ(cube.outlook(packed(Budget::Kind::rate, 20).budget).window.value().reach(), KeyWindow::kMostReach);
 }
 
 TEST(BudgetOutlook, TheCutOfAnErrorMayLieAsFarAway) {

@@ -151,8 +151,7 @@ class ResumeTest : public ::testing::Test {
       if (result.bytes_read < expected.bytes_read) ++continued;
     }
     if (!kSanitized) {
-      // The journal is saved beside the work: fewer times where others keep the machine busy.
-      EXPECT_GE(continued, points / 8) << "so many had something to go on from";
+      EXPECT_GT(continued, points / 5) << "so many had something to go on from";
     }
   }
 
