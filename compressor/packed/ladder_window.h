@@ -78,39 +78,31 @@ RungRange rungs_within(const KeyWindow& window, double energy, std::size_t start
   std::optional<RungPoint> point = at(coarse);
   while (!point && coarse > first) point = at(--coarse);
   if (!point) return {first, first, true};
-  // Whether a byte more from one point to a later one saves less, or more, than a key. In a narrow window, however the
-  // two were rounded to whole bytes: a wide one has further rungs.
-  const double rounding = window.reach() < KeyWindow::kMostReach ? 1 : 0;
-  const auto saves = [&](const RungPoint& from, const RungPoint& to) { return energy * (from.share - to.share); };
-  const auto saves_less = [&](const RungPoint& from, const RungPoint& to, double key) {
-    return saves(from, to) < key * (to.bytes - from.bytes - rounding);
-  };
-  const auto saves_more = [&](const RungPoint& from, const RungPoint& to, double key) {
-    return saves(from, to) > key * (to.bytes - from.bytes + rounding);
-  };
+  // A rung beyond those of the window costs more, at its key, than the best one. By a byte more: with whole bytes a
+  // finer rung may still cost less.
+  const auto cost = [&](const RungPoint& rung, double key) { return energy * rung.share + key * rung.bytes; };
   const double low = window.low();
   const double high = window.high();
   std::size_t fine = coarse;
   bool more = true;
-  RungPoint last = *point;
-  while (fine + 1 < end) {
+  double best = cost(*point, low);
+  while (more && fine + 1 < end) {
     const std::optional<RungPoint> next = at(fine + 1);
     if (!next) break;
     ++fine;
-    if (!(next->bytes > last.bytes)) continue;
-    more = !saves_less(last, *next, low);
-    if (!more) break;
-    last = *next;
+    const double here = cost(*next, low);
+    more = here <= best + low;
+    best = std::min(best, here);
   }
-  RungPoint begin = *point;
   constexpr RungPoint kMeanAlone{1, 1};
+  best = cost(*point, high);
   while (coarse > first) {
     const std::optional<RungPoint> next = at(coarse - 1);
     if (!next) break;
     --coarse;
-    const bool steep = next->bytes < begin.bytes && saves_more(*next, begin, high);
-    begin = *next;
-    if (steep && saves_more(kMeanAlone, *next, high)) break;
+    const double here = cost(*next, high);
+    if (here > best + high && here < cost(kMeanAlone, high) - high) break;
+    best = std::min(best, here);
   }
   return {coarse, fine + 1, more};
 }

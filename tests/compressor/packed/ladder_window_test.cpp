@@ -80,6 +80,19 @@ std::vector<double> keys_of(const LeafRow& row) {
   return keys;
 }
 
+// From 4 to 64 values that are not zero, next to each other.
+LeafValues sparse_block_of(unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  LeafValues block{};
+  const std::size_t count = 4 + seed % 61;
+  const std::size_t begin = seed * 7 % (block.size() - count);
+  for (std::size_t i = 0; i < count; ++i) {
+    block[begin + i] = static_cast<float>(std::sin(static_cast<double>(i) / 9 + seed) + 0.05 * uniform(random));
+  }
+  return block;
+}
+
 class LadderWindowOf : public testing::TestWithParam<double> {};
 INSTANTIATE_TEST_SUITE_P(Reaches, LadderWindowOf, testing::Values(KeyWindow::kMostReach, kLeastReach));
 
@@ -142,6 +155,29 @@ TEST_P(LadderWindowOf, HoldsTheBestRungOfEachCutInIt) {
   EXPECT_GT(cuts, 5000);
   EXPECT_LE(worse, cuts / 100);  // some blocks on a lattice save more by the next rung but one than by the next
   EXPECT_LT(excess / cuts, 0.001);
+}
+
+// A finer rung of a block with few values takes a byte or two more. Rounded to whole bytes, one rung is dear and the
+// next one is cheap: the search goes on beyond a dear one.
+TEST_P(LadderWindowOf, HoldsTheBestRungOfSparseBlocks) {
+  int worse = 0;
+  int cuts = 0;
+  for (unsigned seed = 1; seed < 400; ++seed) {
+    const LeafValues block = sparse_block_of(seed);
+    for (const double key : keys_of(summarize_leaf(block, 0))) {
+      const Ladders ladders = ladders_of(block, key, NearRungs::yes, GetParam());
+      const KeyWindow window = window_of(ladders.row, key, GetParam());
+      const LadderRange range = range_within(window, ladders.all, ladders.row);
+      for (const double at : {window.low(), key, window.high()}) {
+        const double best = least_cost(ladders.all, all_of(ladders.all), ladders.row, at);
+        const double held = least_cost(ladders.all, range, ladders.row, at);
+        ++cuts;
+        worse += held > best * 1.0000001 ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(cuts, 20000);
+  EXPECT_LE(worse, cuts / 1000);
 }
 
 TEST(LadderWindow, LeavesOutTheKindOfRungsThatIsFarBehind) {
