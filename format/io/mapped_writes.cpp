@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "format/base/process_memory.h"
-
 namespace weir {
 
 std::unique_ptr<MappedWrites> MappedWrites::of(File& file, std::uint64_t bytes) {
@@ -19,11 +17,6 @@ MappedWrites::~MappedWrites() { ::munmap(mapped_.data(), mapped_.size()); }
 
 void MappedWrites::write_at(std::uint64_t offset, std::span<const std::byte> bytes) {
   if (offset > mapped_.size() || bytes.size() > mapped_.size() - offset) return file_.write_at(offset, bytes);
-  // Many pages made at once take three quarters of what they take one by one.
-  constexpr std::size_t kPage = 4096;
-  constexpr std::size_t kManyPages = 4 * kPage;
-  const std::size_t first = offset / kPage * kPage;
-  if (bytes.size() >= kManyPages) make_pages(mapped_.subspan(first, offset - first + bytes.size()));
   std::copy(bytes.begin(), bytes.end(), mapped_.subspan(offset).begin());
 }
 

@@ -43,24 +43,6 @@ TEST(MappedWrites, AreTheFilesBytes_WhatLiesBehindTheMappingToo) {
   EXPECT_EQ(found == all, true);
 }
 
-// Whose pages are made at once.
-TEST(MappedWrites, LongOnesMayBeginAnywhere) {
-  const TemporaryDirectory directory;
-  const auto files = make_posix_file_system();
-  const auto file = files->create(directory / "a");
-  const std::vector<std::byte> all = bytes_of(300'001, 9);
-  file->preallocate(all.size());
-  const auto mapped = MappedWrites::of(*file, all.size());
-  ASSERT_NE(mapped, nullptr);
-  constexpr std::size_t kLong = 70'001;
-  for (std::size_t at = 0; at < all.size(); at += kLong) {
-    mapped->write_at(at, std::span(all).subspan(at, std::min(kLong, all.size() - at)));
-  }
-  std::vector<std::byte> found(all.size());
-  file->read_at(0, found);
-  EXPECT_EQ(found == all, true);
-}
-
 TEST(MappedWrites, AreNotOfAFileWithoutADescriptor) {
   MemoryFileSystem files;
   const auto file = files.create("a");
