@@ -2,10 +2,10 @@
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <cmath>
-#include <future>
 #include <string>
 #include <system_error>
 #include <thread>
@@ -27,7 +27,6 @@
 #include "compressor/select/leaf_reach.h"
 #include "compressor/survey/background.h"
 #include "compressor/survey/ladder_completion.h"
-#include "format/base/begun.h"
 #include "format/base/error.h"
 #include "format/base/process_memory.h"
 #include "format/base/seconds_since.h"
@@ -187,7 +186,6 @@ class SurveyedConversion {
     const std::jthread release = released(stores_.rows.give_up_cache());
     const std::jthread unmap = released(std::move(encoded.mapped));
     write_inner_nodes(encoded);
-    if (source_digest_.valid()) sidecar_.source.digest = source_digest_.get();
     describe_file(sidecar_, info_, survey_, options_, background_, head_, encoded, shown_);
     say_quality();
     digest(encoded);
@@ -207,15 +205,22 @@ class SurveyedConversion {
     return request;
   }
 
+  // The background and the source's digest, at the same time.
   void find_background() {
     refuse_values(options_, survey_, info_);
     Journal* const journal = parts_.journal;
     const bool known = journal != nullptr && journal->state.background;
-    // The source's digest is found beside all that follows.
-    if (team_.alone()) source_digest_ = begun([this] { return source_digest(stores_.rows); });
-    background_ = known ? *journal->state.background
-                        : choose_background(options_, survey_, stores_.rows, parts_.source, reading_.survey, stream_);
-    if (!team_.alone()) team_.lead([&] { sidecar_.source.digest = source_digest(stores_.rows); });
+    const auto find = [&] {
+      background_ = known ? *journal->state.background
+                          : choose_background(options_, survey_, stores_.rows, parts_.source, reading_.survey, stream_);
+    };
+    const auto digest = [&] { sidecar_.source.digest = source_digest(stores_.rows); };
+    if (team_.alone()) {
+      tbb::parallel_invoke(find, digest);
+    } else {  // which meet in the same order everywhere
+      find();
+      team_.lead(digest);
+    }
     if (journal == nullptr) return;
     journal->state.background = background_;
     // Selection cannot be continued: let it not take the last blocks with it. A short conversion has none to lose.
@@ -383,7 +388,6 @@ class SurveyedConversion {
   Shown shown_;
   GridHead head_;
   std::uint32_t checksum_ = 0;
-  std::future<std::string> source_digest_;
 };
 
 }  // namespace

@@ -3,13 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <future>
 #include <optional>
 #include <utility>
 
 #include "compressor/encode/encode.h"
 #include "compressor/encode/encoded_sums.h"
-#include "format/base/begun.h"
 #include "format/base/error.h"
 #include "format/base/process_memory.h"
 #include "format/base/text.h"
@@ -105,20 +103,9 @@ std::unique_ptr<MappedWrites> mapped_writes(const EncodeJob& job, const FilePlan
   return MappedWrites::of(job.output.volume(), file.size.bytes);
 }
 
-// Has a device take the memory for streams while the host selects them.
-std::future<void> prepared(const EncodeJob& job) {
-  ResidentVolume* const resident = job.source.resident();
-  if (resident == nullptr || !job.rows.team().alone()) return {};
-  const auto regions = static_cast<std::size_t>(make_lattice(job.source.info().domain(), kLowerDim).size());
-  return begun([resident, regions] { resident->prepare_encode(regions); });
-}
-
 EncodedFile encode_once(const EncodeJob& job, FileRequest& request) {
   EncodedFile encoded;
-  {
-    const std::future<void> ready = prepared(job);
-    encoded.file = select_file(job, request);
-  }
+  encoded.file = select_file(job, request);
   const FilePlan& file = encoded.file;
   const std::shared_ptr<File> records = open_targets(job, file);
   encoded.records = std::make_unique<RecordStore>(records, file.plan.kept);

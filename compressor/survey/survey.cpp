@@ -97,7 +97,7 @@ void survey_boxes(VolumeSource& source, const BlockPlan& plan, std::span<const B
 }
 
 std::string source_digest(const RowStore& rows) {
-  constexpr std::int64_t kBatch = 1 << 15;  // digests of so many leaves are in memory
+  constexpr std::int64_t kBatch = 1 << 18;  // digests of so many leaves are in memory
   DigestStream digest;
   std::vector<Digest> digests;
   const std::int64_t total = rows.leaves().size();

@@ -213,9 +213,6 @@ class ResidentVolume {
   /// Null where it has failed, has no room, or has most_open() of them: the caller reads the values then.
   virtual std::unique_ptr<ResidentBlocks> open(const Box& blocks) = 0;
   virtual std::size_t most_open() const = 0;
-  /// Takes the memory that encoding needs, of the device and of the host, so that the first `boxes` do not wait for it.
-  /// What cannot be taken is asked for again once it is needed.
-  virtual void prepare_encode(std::size_t boxes) = 0;
 
   /// How many of its finite values v have floor(v * 2^-exponent) - base = i, by i < bins, which all of them have.
   /// Nullopt where that has failed.

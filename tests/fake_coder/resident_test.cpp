@@ -153,32 +153,6 @@ TEST_F(Resident, WhereTheDeviceHasNoRoomTheHostDoesItsWorkAndSaysItOnce) {
   }
 }
 
-TEST_F(Resident, MemoryForStreamsIsPreparedOnce) {
-  MemoryVolume volume = turbulence();
-  const auto resident = make_resident_volume(0, volume.values().data(), volume.info().domain(), no_failure);
-  const std::uint64_t before = runtime().calls("cudaMallocAsync");
-  resident->prepare_encode(2);
-  const std::uint64_t prepared = runtime().calls("cudaMallocAsync") - before;
-  EXPECT_EQ(prepared, 2U * 9) << "arrays of two boxes";
-  resident->prepare_encode(2);
-  EXPECT_EQ(runtime().calls("cudaMallocAsync") - before, prepared);
-  resident->prepare_encode(1000);
-  EXPECT_EQ(runtime().calls("cudaMallocAsync") - before, kMostResidentBoxes * 9);
-}
-
-TEST_F(Resident, MemoryForStreamsThatCannotBePreparedIsAskedForAgain) {
-  MemoryVolume volume = turbulence();
-  ConversionOptions options = with(budget_of(Budget::Kind::rate, 8));
-  options.resume = Resume::off;
-  const Result expected = convert_by(nullptr, volume, options);
-  auto resident = make_resident_volume(0, volume.values().data(), volume.info().domain(), no_failure);
-  runtime().fail_from("cudaMallocAsync", 5, cudaErrorMemoryAllocation);
-  resident->prepare_encode(2);
-  runtime().heal();
-  const std::unique_ptr<VolumeSource> source = open_resident(std::move(resident), volume.info());
-  EXPECT_EQ(convert_by(nullptr, *source, options).file == expected.file, true);
-}
-
 TEST_F(Resident, ADeviceThatIsGoneEndsTheConversionAndLeavesNothing) {
   MemoryVolume volume = turbulence();
   for (const int nth : {0, 2, 5}) {

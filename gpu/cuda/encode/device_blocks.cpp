@@ -33,10 +33,6 @@ class Parts {
   std::byte* next_;
 };
 
-// Resident blocks come by regions, of which one has more streams than the next: room for most, so that it seldom grows.
-constexpr std::size_t kBlocksOfRegion = 4096;
-constexpr std::size_t kOftenEnough = std::size_t{2} << 20U;  // four bits a voxel
-
 class DeviceStreams final : public PendingStreams {
  public:
   /// `place` of resident blocks, whose decoded values stay on the device. What comes back lies in `pinned`, or where
@@ -46,7 +42,9 @@ class DeviceStreams final : public PendingStreams {
       : coder_(std::move(coder)), memory_(coder_->streams, coder_->streams.take()) {
     const std::size_t count = asks.size();
     const std::size_t bytes = std::size_t{asks.back().offset} + asks.back().bytes;
-    const std::size_t most = place ? std::max(count, kBlocksOfRegion) : count;
+    // Resident blocks come by regions, of which one has more streams than the next: room for most, so that it seldom
+    // grows.
+    const std::size_t most = place ? std::max(count, kRegionBlocks) : count;
     const std::size_t most_bytes = place ? std::max(bytes, kOftenEnough) : bytes;
     EncodeCall call;
     call.box = box;
@@ -103,24 +101,15 @@ class DeviceStreams final : public PendingStreams {
   }
 
  private:
+  static constexpr std::size_t kRegionBlocks = 4096;
+  static constexpr std::size_t kOftenEnough = std::size_t{2} << 20U;  // four bits a voxel
+
   std::shared_ptr<CoderState> coder_;
   Lent<StreamMemory> memory_;
   MadeStreams found_;
 };
 
 }  // namespace
-
-void reserve_streams(StreamMemory& memory) {
-  memory.asks.at_least(kBlocksOfRegion);
-  memory.states.at_least(kBlocksOfRegion);
-  memory.coded.at_least(512 * kBlocksOfRegion);
-  memory.words.at_least(kOftenEnough / 2 + kBlocksOfRegion + 1);
-  memory.decoded.at_least(512 * kBlocksOfRegion);
-  memory.out.at_least(kOftenEnough);
-  memory.made.at_least(kBlocksOfRegion);
-  memory.records.at_least(kBlocksOfRegion);
-  memory.sources.at_least(kBlocksOfRegion);
-}
 
 std::optional<BlockBox> block_box(const Box& voxels, const Box& blocks) {
   BlockBox box;

@@ -17,9 +17,6 @@ namespace weir {
 /// Where a box of blocks lies in one of voxels; nullopt where the device's whole numbers are too short.
 std::optional<BlockBox> block_box(const Box& voxels, const Box& blocks);
 
-/// Takes what the streams of a region of resident blocks need of the device. Throws Error(io).
-void reserve_streams(StreamMemory& memory);
-
 class DeviceBlocks final : public ResidentBlocks {
  public:
   /// `memory` is one of coder->boxes. `values` of the host are copied to the device. Throws Error(io).

@@ -1,6 +1,5 @@
 #include "gpu/cuda/encode/resident_volume.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -35,22 +34,6 @@ class DeviceVolume final : public ResidentVolume {
   }
 
   std::size_t most_open() const override { return kMostResidentBoxes; }
-
-  void prepare_encode(std::size_t boxes) override {
-    if (state_->broken) return;
-    MemoryPool<StreamMemory>& pool = state_->streams;
-    std::vector<std::unique_ptr<StreamMemory>> taken;
-    try {
-      const KeptDevice kept(state_->device);
-      while (taken.size() < std::min(boxes, kMostResidentBoxes)) {
-        taken.push_back(pool.take());
-        reserve_streams(*taken.back());
-      }
-    } catch (const Error&) {
-      // A box that needs it asks again, and says so.
-    }
-    for (std::unique_ptr<StreamMemory>& memory : taken) pool.give_back(std::move(memory));
-  }
 
   std::optional<std::vector<std::uint64_t>> count(int exponent, double base, std::size_t bins) override {
     if (bins > kMostCountedBins) return std::nullopt;
