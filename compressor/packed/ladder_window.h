@@ -78,8 +78,8 @@ RungRange rungs_within(const KeyWindow& window, double energy, std::size_t start
   std::optional<RungPoint> point = at(coarse);
   while (!point && coarse > first) point = at(--coarse);
   if (!point) return {first, first, true};
-  // A rung beyond those of the window costs more, at its key, than the best one. By a byte more: with whole bytes a
-  // finer rung may still cost less.
+  // Costs are in whole bytes: a rung ends the search only where it costs a byte more, at the window's key, than the
+  // best one so far.
   const auto cost = [&](const RungPoint& rung, double key) { return energy * rung.share + key * rung.bytes; };
   const double low = window.low();
   const double high = window.high();

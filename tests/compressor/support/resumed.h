@@ -36,8 +36,8 @@ inline float ripples(const Index3& i) {
   return static_cast<float>(90 * std::sin(x / 9) * std::cos(y / 7 + z / 50) + 3 * std::sin(x * y) + z / 40);
 }
 
-// With blocks of the least size there is, to the byte: rounded to a MiB, as the error's advice is, it would be left to
-// chance whether a block has one layer of leaves or two, and with it how many calls a conversion makes.
+// What a conversion in two blocks of a MiB takes, the least there is. To the byte: rounded to a MiB, as the error's
+// advice is, it would leave to chance whether a block has one layer of leaves or two, and so how many calls are made.
 inline std::uint64_t least_memory(MemoryVolume& volume, std::size_t threads) {
   constexpr std::uint64_t kEnough = std::uint64_t{1} << 40U;
   constexpr std::uint64_t kTwoBlocks = std::uint64_t{2} << 20U;
@@ -137,7 +137,7 @@ class ResumeTest : public ::testing::Test {
       SCOPED_TRACE("killed at call " + std::to_string(at) + " of " + std::to_string(calls));
       CrashFileSystem memory;
       if (!killed(options, memory, at)) {
-        EXPECT_TRUE(kSanitized) << "it ended before";
+        if (!kSanitized) ADD_FAILURE() << "it ended before";
         continue;
       }
       if (i % 2 == 0) memory.lose_unflushed();
