@@ -132,52 +132,47 @@ LadderRange all_of(const PackedLadder& ladder) {
   return {{PackedLadder::kMeanRungs, ladder.count}, {0, ladder.near_count}};
 }
 
-TEST_P(LadderWindowOf, HoldsTheBestRungOfEachCutInIt) {
+// Cuts in windows of a reach, and those whose best rung the window does not hold.
+struct Cuts {
+  int all = 0;
   int worse = 0;
-  int cuts = 0;
-  double excess = 0;
-  for (unsigned seed = 1; seed < 200; ++seed) {
-    const LeafValues block = block_of(seed);
+  double excess = 0;  // of their cost, as a share, summed
+};
+Cuts cuts_of(LeafValues (*make)(unsigned seed), unsigned seeds, double reach) {
+  Cuts cuts;
+  for (unsigned seed = 1; seed < seeds; ++seed) {
+    const LeafValues block = make(seed);
     for (const double key : keys_of(summarize_leaf(block, 0))) {
-      const Ladders ladders = ladders_of(block, key, NearRungs::yes, GetParam());
+      const Ladders ladders = ladders_of(block, key, NearRungs::yes, reach);
       if (!(ladders.row.sse > 0)) continue;
-      const KeyWindow window = window_of(ladders.row, key, GetParam());
+      const KeyWindow window = window_of(ladders.row, key, reach);
       const LadderRange range = range_within(window, ladders.all, ladders.row);
       for (const double at : {window.low(), key, window.high()}) {
         const double best = least_cost(ladders.all, all_of(ladders.all), ladders.row, at);
         const double held = least_cost(ladders.all, range, ladders.row, at);
-        ++cuts;
-        worse += held > best * 1.0000001 ? 1 : 0;
-        excess += held / best - 1;
+        ++cuts.all;
+        cuts.worse += held > best * 1.0000001 ? 1 : 0;
+        cuts.excess += held / best - 1;
       }
     }
   }
-  EXPECT_GT(cuts, 5000);
-  EXPECT_LE(worse, cuts / 100);  // some blocks on a lattice save more by the next rung but one than by the next
-  EXPECT_LT(excess / cuts, 0.001);
+  return cuts;
+}
+
+TEST_P(LadderWindowOf, HoldsTheBestRungOfEachCutInIt) {
+  const Cuts cuts = cuts_of(block_of, 200, GetParam());
+  EXPECT_GT(cuts.all, 5000);
+  // Some blocks on a lattice save more by the next rung but one than by the next.
+  EXPECT_LE(cuts.worse, cuts.all / 100);
+  EXPECT_LT(cuts.excess / cuts.all, 0.001);
 }
 
 // A finer rung of a block with few values takes a byte or two more. Rounded to whole bytes, one rung is dear and the
 // next one is cheap: the search goes on beyond a dear one.
 TEST_P(LadderWindowOf, HoldsTheBestRungOfSparseBlocks) {
-  int worse = 0;
-  int cuts = 0;
-  for (unsigned seed = 1; seed < 400; ++seed) {
-    const LeafValues block = sparse_block_of(seed);
-    for (const double key : keys_of(summarize_leaf(block, 0))) {
-      const Ladders ladders = ladders_of(block, key, NearRungs::yes, GetParam());
-      const KeyWindow window = window_of(ladders.row, key, GetParam());
-      const LadderRange range = range_within(window, ladders.all, ladders.row);
-      for (const double at : {window.low(), key, window.high()}) {
-        const double best = least_cost(ladders.all, all_of(ladders.all), ladders.row, at);
-        const double held = least_cost(ladders.all, range, ladders.row, at);
-        ++cuts;
-        worse += held > best * 1.0000001 ? 1 : 0;
-      }
-    }
-  }
-  EXPECT_GT(cuts, 20000);
-  EXPECT_LE(worse, cuts / 1000);
+  const Cuts cuts = cuts_of(sparse_block_of, 400, GetParam());
+  EXPECT_GT(cuts.all, 20000);
+  EXPECT_LE(cuts.worse, cuts.all / 1000);
 }
 
 TEST(LadderWindow, LeavesOutTheKindOfRungsThatIsFarBehind) {
