@@ -17,6 +17,8 @@ PageBuffer::PageBuffer(std::size_t size) {
     throw io_error("memory", compose("get ", size, " bytes for reading; lower ", option("memory")), errno);
   }
   bytes_ = {static_cast<std::byte*>(memory), size};
+  constexpr std::size_t kLarge = std::size_t{8} << 20U;
+  if (size >= kLarge) ::madvise(memory, size, MADV_HUGEPAGE);  // fewer pages are made; where it is refused, small ones
 }
 
 PageBuffer::~PageBuffer() {
