@@ -53,6 +53,7 @@ class Weir:
 
     def __init__(self, library, folder):
         self.calls = ctypes.CDLL(str(library))
+        self.calls.weir_push_free.restype = None
         self.output = folder / "out.nvdb"
 
     def made(self, status, error):
@@ -140,7 +141,6 @@ def main():
     compared = refused = different = 0
     with tempfile.TemporaryDirectory() as folder:
         weir = Weir(options.library.resolve(), pathlib.Path(folder))
-        weir.calls.weir_push_free.restype = None
         for path in options.volumes:
             for values in forms(read(path)):
                 on_devices = []

@@ -37,6 +37,10 @@ std::uint64_t shared_bytes(std::uint64_t resident, const Box& domain) {
   return resident + kSlackBytes + kStagingBytes + tree;
 }
 
+std::uint64_t fixed_bytes(std::uint64_t resident, std::size_t threads, const Box& domain) {
+  return shared_bytes(resident, domain) + threads * kWorkerBytes;
+}
+
 }  // namespace
 
 std::size_t processors_or_all(std::size_t given) {
@@ -59,10 +63,15 @@ Message fewer_threads_notice(std::size_t threads, std::size_t processors, std::u
                  " threads; give more to use them all");
 }
 
+std::uint64_t least_ceiling(std::uint64_t resident, std::size_t threads, const Box& domain,
+                            std::uint64_t region_bytes) {
+  return fixed_bytes(resident, threads, domain) + 2 * kLeastBlockBytes + threads * region_bytes;
+}
+
 MemoryPlan plan_memory(std::uint64_t ceiling, std::uint64_t resident, std::size_t threads, const Box& domain,
                        std::uint64_t region_bytes, std::uint64_t records) {
-  const std::uint64_t fixed = shared_bytes(resident, domain) + threads * kWorkerBytes;
-  const std::uint64_t least = fixed + 2 * kLeastBlockBytes + threads * region_bytes;
+  const std::uint64_t fixed = fixed_bytes(resident, threads, domain);
+  const std::uint64_t least = least_ceiling(resident, threads, domain, region_bytes);
   if (ceiling < least) {
     throw Error(ErrorKind::usage,
                 compose(option("memory", format_bytes(ceiling)), " is too small for this volume with ", threads,

@@ -20,6 +20,10 @@ struct MemoryPlan {
   std::uint64_t record_bytes = 0;  ///< of the records of all leaves, which are not spilled; 0: they are
 };
 
+/// The least ceiling that plan_memory() divides.
+std::uint64_t least_ceiling(std::uint64_t resident, std::size_t threads, const Box& domain,
+                            std::uint64_t region_bytes = kRegionRowsBytes);
+
 /// Divides `ceiling` bytes for a domain and `threads` workers, with `resident` bytes already in use.
 /// A walk over regions holds `region_bytes` of rows for each. The records of all leaves take
 /// `records` bytes, 0: they are spilled; they stay in memory if that is at most a quarter of what is to be divided.

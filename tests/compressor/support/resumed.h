@@ -36,18 +36,11 @@ inline float ripples(const Index3& i) {
   return static_cast<float>(90 * std::sin(x / 9) * std::cos(y / 7 + z / 50) + 3 * std::sin(x * y) + z / 40);
 }
 
-// What a conversion in two blocks of a MiB takes, the least there is. To the byte: rounded to a MiB, as the error's
-// advice is, it would leave to chance whether a block has one layer of leaves or two, and so how many calls are made.
+// To the byte: rounded to a MiB, as the error's advice is, it would leave to chance whether a block has one layer of
+// leaves or two, and so how many calls are made.
 inline std::uint64_t least_memory(MemoryVolume& volume, std::size_t threads) {
-  constexpr std::uint64_t kEnough = std::uint64_t{1} << 40U;
-  constexpr std::uint64_t kTwoBlocks = std::uint64_t{2} << 20U;
-  ConversionOptions options;
-  options.threads = threads;
-  options.memory = kEnough;
-  const Workers workers = choose_workers(volume, options, nullptr, resident_bytes());
-  const Box domain = volume.info().domain();
-  const MemoryPlan plan = plan_memory(kEnough, workers.resident, threads, domain, region_bytes(options));
-  return plan.fixed_bytes + kTwoBlocks + threads * region_bytes(options);
+  const std::uint64_t resident = resident_bytes() + volume.working_bytes();
+  return least_ceiling(resident, threads, volume.info().domain(), region_bytes({}));
 }
 
 // What the process grows by between the question and the conversion; a sanitizer's takes all for one block.
