@@ -20,6 +20,7 @@
 #include "bench/gpu/block_field.h"
 #include "bench/gpu/device_seconds.h"
 #include "bench/gpu/near_survey.h"
+#include "compressor/packed/ladder_window.h"
 #include "format/base/error.h"
 #include "format/packed/block_decode.h"
 #include "format/packed/block_encode.h"
@@ -58,12 +59,16 @@ class Bench {
     const Surveyed all = survey({});
     say("survey, all rungs, on the device", all.seconds);
     const std::int32_t step = choose_step(all);
-    const Surveyed about = survey({false, step});
-    say("survey, 8 rungs about the cut, on the device", about.seconds);
+    // As in a conversion that has looked ahead.
+    const double size = static_cast<double>(step_size(step));
+    const SearchKeys keys = KeyWindow(size * size / 2, 1, 1.25).keys();
+    const Surveyed about = survey({false, step, {}, keys});
+    say("survey, rungs about a known cut, on the device", about.seconds);
     const std::size_t other_costs = compare_costs(about) + (field_.edge <= 512 ? compare_costs(all) : 0);
     // The exponent of the largest power of two that is no coarser than the step.
-    const std::size_t other_near = survey_near({NearBlocks::all, false, -((step + 1) >> 1)}, "6 near rungs about it") +
-                                   survey_near({NearBlocks::all}, "all near rungs and floats in order");
+    const NearAsk near_about{NearBlocks::all, false, -((step + 1) >> 1)};
+    const std::size_t other_near = survey_near({false, step, near_about, keys}, "near rungs about it") +
+                                   survey_near({true, 0, {NearBlocks::all}}, "all near rungs and floats in order");
     make_asks(all, step);
     const std::size_t other_streams = encode();
     through_host(step);
@@ -104,7 +109,6 @@ class Bench {
     call.box = field_.box(values_.data());
     call.tables = tables_.data();
     call.ask = ask;
-    call.most = ask.most();
     call.figures = figures.data();
     call.costs = costs.data();
     surveyed.seconds = device_seconds([&] { launch_survey(call, cudaStreamPerThread); });
@@ -113,7 +117,7 @@ class Bench {
     return surveyed;
   }
 
-  std::size_t survey_near(const NearAsk& ask, const std::string& what) const {
+  std::size_t survey_near(const RungAsk& ask, const std::string& what) const {
     const NearSurvey near(field_, values_.data(), tables_.data(), codes_.data(), ask);
     say(("survey, " + what + ", on the device").c_str(), near.seconds());
     std::size_t other = 0;
@@ -189,7 +193,7 @@ class Bench {
         }
       });
     });
-    say(surveyed.ask.all ? "survey, all rungs, by the CPU" : "survey, 8 rungs about the cut, by the CPU", seconds);
+    say(surveyed.ask.all ? "survey, all rungs, by the CPU" : "survey, rungs about a known cut, by the CPU", seconds);
     return other;
   }
 

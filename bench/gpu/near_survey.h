@@ -24,24 +24,23 @@ class NearSurvey {
  public:
   /// Of values and tables on the device.
   NearSurvey(const Field& field, const float* values, const CostTables* tables, const CodeTables* codes,
-             const NearAsk& ask)
+             const RungAsk& ask)
       : field_(field),
-        ask_(ask),
+        ask_(ask.near),
+        all_looked_at_(!ask.keys.known()),
         figures_(static_cast<std::size_t>(field.blocks())),
-        costs_(ask.most() * figures_.size()) {
+        costs_(ask.near.most() * figures_.size()) {
     const DeviceArray<BlockFigures> figures(figures_.size());
     const DeviceArray<NearCost> costs(costs_.size());
-    constexpr std::uint32_t kFew = RungAsk::kRungsAbout;
-    const DeviceArray<RungCost> rungs(kFew * figures_.size());
+    const DeviceArray<RungCost> rungs(ask.most() * figures_.size());
     SurveyCall survey;
     survey.box = field.box(values);
     survey.tables = tables;
-    survey.ask = {false, 0};
+    survey.ask = ask;
     survey.figures = figures.data();
     survey.costs = rungs.data();
-    survey.most = kFew;
     launch_survey(survey, cudaStreamPerThread);
-    const NearCall call{survey.box, tables, codes, ask, figures.data(), costs.data()};
+    const NearCall call{survey.box, tables, codes, ask, figures.data(), rungs.data(), costs.data()};
     seconds_ = device_seconds([&] { launch_near_survey(call, cudaStreamPerThread); });
     figures.download(figures_);
     costs.download(costs_);
@@ -75,6 +74,7 @@ class NearSurvey {
     const std::int32_t coarsest = coarsest_near_exponent(rounded.exponent());
     for (std::uint32_t k = 0; k < figures.near; ++k) {
       const NearCost& cost = costs_[ask_.most() * b + k];
+      if (cost.bytes == 0 && !all_looked_at_) continue;
       const auto expected = rounded.cost(coarsest - static_cast<std::int32_t>(figures.first_near + k));
       if (cost.bytes != (expected ? expected->bytes : kNoNearBytes)) return false;
       if (expected && cost.squared_error != expected->squared_error) return false;
@@ -90,6 +90,7 @@ class NearSurvey {
 
   const Field& field_;
   NearAsk ask_;
+  bool all_looked_at_;
   std::vector<BlockFigures> figures_;
   std::vector<NearCost> costs_;
   double seconds_ = 0;

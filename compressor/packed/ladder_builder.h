@@ -46,7 +46,7 @@ struct LadderAim {
   RungAsk rung_ask() const {
     RungAsk ask;
     if (window) {
-      ask = {false, window->step(), {NearBlocks::none, false, window->exponent()}};
+      ask = {false, window->step(), {NearBlocks::none, false, window->exponent()}, window->keys()};
     }
     if (near_rungs) ask.near.blocks = near;
     return ask;

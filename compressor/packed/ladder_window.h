@@ -12,6 +12,7 @@
 
 #include "compressor/leaf/leaf_row.h"
 #include "compressor/packed/packed_ladder.h"
+#include "format/packed/block_coder.h"
 #include "format/packed/block_steps.h"
 
 namespace weir {
@@ -50,6 +51,8 @@ class KeyWindow {
     constexpr std::int32_t kOctave = 2;
     return step_ + kOctave <= kMostStep && mean_bits({0, width_}, step_ + kOctave) != kNoMeanBits;
   }
+  /// For a coder.
+  SearchKeys keys() const { return {low(), high(), means_have_codes()}; }
 
  private:
   double centre_;

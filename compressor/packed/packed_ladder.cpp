@@ -1,22 +1,21 @@
 #include "compressor/packed/packed_ladder.h"
 
 #include <algorithm>
-#include <cmath>
+#include <bit>
+#include <cstdint>
 
 namespace weir {
 
+// The nearest one, and of two the even one, by the bits of the double: conversions make millions of them.
 ErrorShare::ErrorShare(double share) {
+  constexpr int kDropped = 52 - kMantissaBits;
   if (!(share > 0)) return;
-  int exponent = 0;
-  const double mantissa = 2 * std::frexp(std::min(share, 1.0), &exponent);  // in [1, 2)
-  int e = 1 - exponent;
-  int m = static_cast<int>(std::nearbyint((mantissa - 1) * (1 << kMantissaBits)));
-  if (m == 1 << kMantissaBits) {
-    m = 0;
-    --e;
-  }
+  const auto bits = std::bit_cast<std::uint64_t>(std::min(share, 1.0));
+  const std::uint64_t half = (std::uint64_t{1} << (kDropped - 1)) - 1 + (bits >> kDropped & 1U);
+  const std::uint64_t rounded = (bits + half) >> kDropped;  // exponent and mantissa; a carry goes into the exponent
+  const std::uint64_t e = 1023 - (rounded >> kMantissaBits);
   if (e > kLargestExponent) return;
-  code_ = static_cast<std::uint16_t>(std::max(e, 0) << kMantissaBits | m);
+  code_ = static_cast<std::uint16_t>(e << kMantissaBits | (rounded & ((1U << kMantissaBits) - 1U)));
 }
 
 }  // namespace weir

@@ -29,7 +29,7 @@ class ErrorShare {
 
  private:
   static constexpr int kMantissaBits = 10;
-  static constexpr int kLargestExponent = 62;
+  static constexpr std::uint64_t kLargestExponent = 62;
   static constexpr std::uint16_t kNone = 0xFFFF;
   std::uint16_t code_ = kNone;  // e << 10 | m
 };

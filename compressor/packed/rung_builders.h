@@ -29,11 +29,13 @@ class TransformRungs {
     ladder.first_step = static_cast<std::int16_t>(first_rung_step(largest));
     // Finer than float32 resolves the values themselves: nothing is gained.
     const double finest = static_cast<double>(std::max(std::fabs(row.min), std::fabs(row.max))) * 0x1p-24;
-    while (end_ < PackedLadder::kMostRungs) {
-      const std::int32_t step = ladder.step(end_);
-      if (step < kLeastStep || step > kMostStep || static_cast<double>(step_size(step)) < finest) break;
-      ++end_;
-    }
+    const auto is_useful = [&](std::size_t rung) {
+      const std::int32_t step = ladder_.step(rung);
+      return step >= kLeastStep && step <= kMostStep && static_cast<double>(step_size(step)) >= finest;
+    };
+    // Steps grow finer: of most blocks all rungs are useful.
+    if (is_useful(0) && is_useful(PackedLadder::kMostRungs - 1)) end_ = PackedLadder::kMostRungs;
+    while (end_ < PackedLadder::kMostRungs && is_useful(end_)) ++end_;
   }
 
   std::size_t end() const { return end_; }

@@ -47,14 +47,40 @@ struct NearAsk {
   static constexpr std::uint32_t kAbout = 6;
 };
 
+/// Keys between which the cut lies: squared error that a byte saves. Of the rungs asked for, those that no search
+/// between them comes to need not be looked at.
+struct SearchKeys {
+  double low = 0;
+  double high = 0;        ///< 0: all rungs are looked at
+  bool compares = false;  ///< whether rungs or near rungs that are far behind the others are left out
+
+  WEIR_HOST_DEVICE bool known() const { return high > 0; }
+};
+
 /// Which rungs of a ladder are looked at.
 struct RungAsk {
   bool all = true;          ///< from kLadderMeanRungs on; else those about `wanted`
   std::int32_t wanted = 0;  ///< step
   NearAsk near{};
+  SearchKeys keys{};
 
   /// Of each block.
-  std::uint32_t most() const { return all ? kLadderRungs - kLadderMeanRungs : kRungsAbout; }
+  WEIR_HOST_DEVICE std::uint32_t most() const {
+    return all ? static_cast<std::uint32_t>(kLadderRungs - kLadderMeanRungs) : kRungsAbout;
+  }
+  /// The rung that a search about `wanted` begins at, of a ladder whose first step is that.
+  WEIR_HOST_DEVICE std::uint32_t start(std::int32_t first_step) const {
+    return static_cast<std::uint32_t>(rung_about(first_step, wanted));
+  }
+  /// The first one that is looked at.
+  WEIR_HOST_DEVICE std::uint32_t first(std::int32_t first_step) const {
+    constexpr std::uint32_t kFirst = kLadderMeanRungs;
+    if (all) return kFirst;
+    constexpr std::uint32_t kCoarser = 4;
+    constexpr std::uint32_t kLast = kLadderRungs - kRungsAbout;
+    const std::uint32_t about = start(first_step);
+    return about < kFirst + kCoarser ? kFirst : about - kCoarser > kLast ? kLast : about - kCoarser;
+  }
   /// A search among them goes four to the coarse side and three to the fine one.
   static constexpr std::uint32_t kRungsAbout = 8;
 };

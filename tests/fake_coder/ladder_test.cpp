@@ -32,17 +32,21 @@ class FoundLadders : public testing::Test {
     FakeRuntime::instance().reset();
   }
 
-  // Compares each ladder; returns for how many blocks what was found was enough.
-  std::size_t compare(const LadderAim& aim, NearRungs near) {
+  // Compares each ladder of what is found when aim's rungs are asked for; returns for how many blocks it was enough.
+  std::size_t compare(const LadderAim& aim, NearRungs near) { return compare(aim, near, aim.rung_ask()); }
+  std::size_t compare(const LadderAim& aim, NearRungs near, const RungAsk& ask) {
     LadderBuilder builder(aim);
     std::size_t built = 0;
+    looked_at_ = 0;
     for (const BlockVolume& volume : volumes_) {
       SCOPED_TRACE(volume.name);
       const Box voxels{{0, 0, 0}, volume.extent};
       const Index3 count{ceil_div(volume.extent.x, 8), ceil_div(volume.extent.y, 8), ceil_div(volume.extent.z, 8)};
       const auto loaded = coder_->load(volume.values, voxels, {{0, 0, 0}, count * 8});
-      loaded->begin_survey(aim.rung_ask());
+      loaded->begin_survey(ask);
       const auto found = loaded->end_survey();
+      for (const RungCost& cost : found->costs) looked_at_ += cost.bits != 0 ? 1 : 0;
+      for (const NearCost& cost : found->near) looked_at_ += cost.bytes != 0 ? 1 : 0;
       for (std::int64_t b = 0; b < weir::volume(count); ++b) {
         LeafValues values;
         for (std::int64_t i = 0; i < 512; ++i) {
@@ -65,6 +69,7 @@ class FoundLadders : public testing::Test {
   }
 
   std::unique_ptr<BlockCoder> coder_;
+  std::size_t looked_at_ = 0;  // rungs and near rungs of all blocks
   std::vector<BlockVolume> volumes_ = [] {
     std::vector<BlockVolume> all = test::block_volumes();
     for (BlockVolume& volume : test::mixed_volumes()) all.push_back(std::move(volume));
@@ -89,6 +94,27 @@ TEST_F(FoundLadders, WithNearRungsAreThoseOfTheHost_WhereverTheWindowLies) {
     }
   }
   EXPECT_GT(built, 9600U);
+}
+
+TEST_F(FoundLadders, AreEnoughForAsManyBlocks_OfFewerRungs_WhereTheKeysAreKnown) {
+  LadderAim aim;
+  aim.near_rungs = true;
+  aim.near = NearBlocks::all;
+  std::size_t all = 0;
+  std::size_t fewer = 0;
+  for (const double centre : {1e-14, 1e-9, 1e-5, 1e-2, 10.0}) {
+    for (const float width : {0.0F, 1e30F}) {
+      SCOPED_TRACE(testing::Message() << centre << ' ' << width);
+      aim.window = KeyWindow(centre, width, 1.25);
+      RungAsk unknown = aim.rung_ask();
+      unknown.keys = {};
+      const std::size_t built = compare(aim, NearRungs::yes, unknown);
+      all += looked_at_;
+      EXPECT_EQ(compare(aim, NearRungs::yes), built);
+      fewer += looked_at_;
+    }
+  }
+  EXPECT_LT(fewer, all * 2 / 3);
 }
 
 TEST_F(FoundLadders, WithAllNearRungsAreThoseOfTheHost) {

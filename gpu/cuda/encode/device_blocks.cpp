@@ -151,23 +151,23 @@ void DeviceBlocks::begin_survey(const RungAsk& ask) {
     call.box = box_;
     call.tables = coder_->costs.data();
     call.ask = ask;
-    call.most = ask.most();
+    const std::size_t rungs = ask.most() * count;
     call.figures = memory_->figures.at_least(count);
-    call.costs = memory_->costs.at_least(call.most * count);
+    call.costs = memory_->costs.at_least(rungs);
     const std::size_t nearly = ask.near.most() * count;
     const std::size_t summarized = place_ ? count : 0;
-    Parts parts(memory_->pinned.at_least(Parts::bytes<BlockFigures>(count) + Parts::bytes<RungCost>(call.most * count) +
+    Parts parts(memory_->pinned.at_least(Parts::bytes<BlockFigures>(count) + Parts::bytes<RungCost>(rungs) +
                                          Parts::bytes<NearCost>(nearly) + Parts::bytes<BlockSummary>(summarized)));
     const auto figures = parts.next<BlockFigures>(count);
-    const auto costs = parts.next<RungCost>(call.most * count);
+    const auto costs = parts.next<RungCost>(rungs);
     const auto near = parts.next<NearCost>(nearly);
     const auto summaries = parts.next<BlockSummary>(summarized);
     const cudaStream_t stream = memory_->stream.get();
     const char* const what = "surveying on the device";
     launch_survey(call, stream);
     if (nearly > 0) {
-      const NearCall of_near{box_,     call.tables,  coder_->codes.data(),
-                             ask.near, call.figures, memory_->near.at_least(nearly)};
+      const NearCall of_near{box_,         call.tables, coder_->codes.data(),          ask,
+                             call.figures, call.costs,  memory_->near.at_least(nearly)};
       launch_near_survey(of_near, stream);
       copy_back(near, of_near.costs, stream, what);
     }

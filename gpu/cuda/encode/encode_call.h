@@ -77,8 +77,7 @@ struct SurveyCall {
   const CostTables* tables = nullptr;
   RungAsk ask;
   BlockFigures* figures = nullptr;  ///< of each block
-  RungCost* costs = nullptr;        ///< `most` of each block
-  std::uint32_t most = 0;
+  RungCost* costs = nullptr;        ///< ask.most() of each block
 };
 
 /// What looks at near rungs of blocks that were surveyed.
@@ -86,9 +85,10 @@ struct NearCall {
   BlockBox box;
   const CostTables* tables = nullptr;
   const CodeTables* codes = nullptr;
-  NearAsk ask;
+  RungAsk ask;
   BlockFigures* figures = nullptr;  ///< of each block, as the survey has left them
-  NearCost* costs = nullptr;        ///< ask.most() of each block
+  const RungCost* rungs = nullptr;  ///< as well
+  NearCost* costs = nullptr;        ///< ask.near.most() of each block
 };
 
 /// What the first step of encoding finds of a block, and the second.

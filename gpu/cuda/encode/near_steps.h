@@ -9,6 +9,7 @@
 #include "format/packed/near_rungs.h"
 #include "format/packed/stream_length.h"
 #include "gpu/cuda/encode/residual_stream.h"
+#include "gpu/cuda/encode/rung_search.h"
 #include "gpu/cuda/encode/symbol_sums.h"
 #include "gpu/cuda/encode/transform_steps.h"
 
@@ -177,18 +178,27 @@ WEIR_HOST_DEVICE void survey_near_rungs(const Warp& warp, const NearCall& call, 
   using namespace encode_detail;
   const BlockFigures& known = call.figures[block];
   if (known.transformed == 0 || known.lattice != 0 || !(known.energy > 0)) return;
+  const NearAsk& ask = call.ask.near;
   gather_block(warp, call.box, block, stage.values);
   const NearValues values = near_values(warp, stage.values);
   const bool sparse = 2 * values.zeros > 512;
-  if (call.ask.blocks == NearBlocks::sparse && !sparse) return;
+  if (ask.blocks == NearBlocks::sparse && !sparse) return;
   const unsigned predictor = rounded_predictor(warp, values, stage);
   const std::int32_t coarsest = coarsest_near_exponent(values.exponent);
-  const std::uint32_t first = call.ask.first(coarsest);
-  NearCost* costs = call.costs + std::size_t{call.ask.most()} * block;
-  typename Warp::template Own<double> errors;
+  const std::uint32_t first = ask.first(coarsest);
+  const std::uint32_t most = ask.most();
+  NearCost* costs = call.costs + std::size_t{most} * block;
+  warp.each([&](unsigned lane) {
+    if (lane < most) costs[lane] = {};
+  });
   constexpr std::uint32_t kAtOnce = kLanes / kGroup;
-  for (std::uint32_t k = 0; k < call.ask.most(); ++k) {
-    if (k % kAtOnce == 0) near_errors(warp, stage, values, coarsest, first + k, errors);
+  typename Warp::template Own<double> errors;
+  std::uint32_t first_error = most;  // of the kAtOnce rungs whose errors the lanes have
+  const auto look_at = [&](std::uint32_t k) {
+    if (k - first_error >= kAtOnce) {
+      first_error = k < most - kAtOnce ? k / kAtOnce * kAtOnce : most - kAtOnce;
+      near_errors(warp, stage, values, coarsest, first + first_error, errors);
+    }
     const std::int32_t exponent = coarsest - static_cast<std::int32_t>(first + k);
     const NearQuantum quantum = near_quantum(values, exponent);
     std::uint32_t bytes = kRawStreamBytes;
@@ -200,19 +210,30 @@ WEIR_HOST_DEVICE void survey_near_rungs(const Warp& warp, const NearCall& call, 
       }
     }
     warp.each([&](unsigned lane) {
-      if (lane != kGroup * (k % kAtOnce)) return;
+      if (lane != kGroup * (k - first_error)) return;
       const double size = wide_power_of_two(exponent);
       costs[k] =
           bytes < kRawStreamBytes ? NearCost{errors(lane) * size * size, bytes, 0} : NearCost{0, kNoNearBytes, 0};
     });
+  };
+  if (ask.all || !call.ask.keys.known()) {
+    for (std::uint32_t k = 0; k < most; ++k) look_at(k);
+  } else {
+    const std::uint32_t start = static_cast<std::uint32_t>(near_rung_about(coarsest, ask.wanted)) - first;
+    const RungCost& rung =
+        call.rungs[std::size_t{call.ask.most()} * block + call.ask.start(known.first_step) - known.first_rung];
+    const auto at = [&](std::uint32_t k) { return known_rung(costs[k]); };
+    std::uint32_t next = start;
+    look_at(next);
+    const bool searched = !is_sure_to_lead(call.ask.keys, known_rung(rung), at(start));
+    while (searched && (next = next_rung(call.ask.keys, known.energy, start, most, at)) != kNoRung) look_at(next);
   }
-  const std::uint32_t ordered =
-      call.ask.all || sparse ? encode_detail::ordered_bytes(warp, tables, *call.codes, stage) : 0U;
+  const std::uint32_t ordered = ask.all || sparse ? encode_detail::ordered_bytes(warp, tables, *call.codes, stage) : 0U;
   warp.each([&](unsigned lane) {
     if (lane > 0) return;
     call.figures[block].ordered_bytes = static_cast<std::uint16_t>(ordered);
     call.figures[block].first_near = static_cast<std::uint8_t>(first);
-    call.figures[block].near = static_cast<std::uint8_t>(call.ask.most());
+    call.figures[block].near = static_cast<std::uint8_t>(most);
   });
 }
 

@@ -9,6 +9,7 @@
 #include "format/packed/quantiser.h"
 #include "format/packed/stream_length.h"
 #include "gpu/cuda/encode/lattice_steps.h"
+#include "gpu/cuda/encode/rung_search.h"
 #include "gpu/cuda/encode/symbol_sums.h"
 #include "gpu/cuda/encode/transform_steps.h"
 
@@ -88,11 +89,21 @@ WEIR_HOST_DEVICE inline ColumnError quantise_column(const CostTables& tables, co
   return error;
 }
 
-// Costs of rungs [first, first + kRungsAtOnce), as far as there are any before `end`; returns whether finer ones are
-// of use.
+// kRungsAtOnce rungs that are looked at together, one a group of lanes: [first, first + kRungsAtOnce), of which `gap`
+// more are left out from the one of group `before_gap` on.
+struct RungBatch {
+  std::uint32_t first = 0;
+  std::uint32_t before_gap = kRungsAtOnce;
+  std::uint32_t gap = 0;
+
+  WEIR_HOST_DEVICE std::uint32_t rung(unsigned group) const { return first + group + (group < before_gap ? 0U : gap); }
+};
+
+// Costs of a batch's rungs, as far as there are any before `end`, counted from the first one asked for; returns
+// whether finer ones are of use.
 template <class Warp>
 WEIR_HOST_DEVICE bool cost_rungs(const Warp& warp, const CostTables& tables, const BlockStage& stage,
-                                 const BlockFigures& figures, double finest, std::uint32_t first, std::uint32_t end,
+                                 const BlockFigures& figures, double finest, const RungBatch& batch, std::uint32_t end,
                                  RungCost* costs) {
   typename Warp::template Own<GroupRung> rung;
   typename Warp::template Own<float> squares;
@@ -101,9 +112,9 @@ WEIR_HOST_DEVICE bool cost_rungs(const Warp& warp, const CostTables& tables, con
   const auto larger = [](std::uint32_t a, std::uint32_t b) { return b > a ? b : a; };
   const auto sum = [](std::uint32_t a, std::uint32_t b) { return a + b; };
   warp.each([&](unsigned lane) {
-    const std::uint32_t own = first + lane / kGroup;
+    const std::uint32_t own = batch.rung(lane / kGroup);
     GroupRung& r = rung(lane);
-    const std::int32_t step = rung_step(figures.first_step, static_cast<std::int32_t>(own));
+    const std::int32_t step = rung_step(figures.first_step, static_cast<std::int32_t>(figures.first_rung + own));
     if (own >= end || step < kLeastStep || step > kMostStep) return;
     r.step = step_size(step);
     if (static_cast<double>(r.step) < finest) return;
@@ -152,7 +163,7 @@ WEIR_HOST_DEVICE bool cost_rungs(const Warp& warp, const CostTables& tables, con
         cost.bits += coded_stream_bits(symbols(lane), raw(lane), nonzero(lane), of_end, kEndBits, kLeastMeanBits);
       }
     }
-    costs[lane / kGroup] = cost;
+    costs[batch.rung(lane / kGroup)] = cost;
     // As far as a search that ends where raw values are shorter, and no bits fall back by so many, may go.
     constexpr std::uint32_t kMostUseful = 8 * 2049 + 2048;
     useful(lane) = cost.bits <= kMostUseful ? 1U : 0U;
@@ -173,9 +184,10 @@ WEIR_HOST_DEVICE void survey_block(const Warp& warp, const SurveyCall& call, con
   figures.mean = range.mean;
   figures.lattice = may_lie_on_lattice(warp, range, stage.values) ? 1 : 0;
   figures.transformed = range.transformed ? 1 : 0;
-  RungCost* costs = call.costs + std::size_t{call.most} * block;
+  const std::uint32_t most = call.ask.most();
+  RungCost* costs = call.costs + std::size_t{most} * block;
   warp.each([&](unsigned lane) {
-    if (lane < call.most) costs[lane] = {};
+    if (lane < most) costs[lane] = {};
   });
   if (range.transformed && figures.lattice == 0) {
     transform_stage(warp, range.mean, stage.values);
@@ -184,21 +196,25 @@ WEIR_HOST_DEVICE void survey_block(const Warp& warp, const SurveyCall& call, con
     figures.energy = sizes.energy;
     if (sizes.energy > 0 && sizes.largest > 0) {
       figures.first_step = static_cast<std::int16_t>(first_rung_step(static_cast<double>(sizes.largest)));
-      std::int32_t first = kLadderMeanRungs;
-      if (!call.ask.all) {
-        constexpr std::int32_t kCoarser = 4;
-        const std::int32_t last = kLadderRungs - static_cast<std::int32_t>(RungAsk::kRungsAbout);
-        first = rung_about(figures.first_step, call.ask.wanted) - kCoarser;
-        first = first < kLadderMeanRungs ? kLadderMeanRungs : first > last ? last : first;
-      }
-      figures.first_rung = static_cast<std::uint8_t>(first);
-      figures.rungs = static_cast<std::uint8_t>(call.most);
+      figures.first_rung = static_cast<std::uint8_t>(call.ask.first(figures.first_step));
+      figures.rungs = static_cast<std::uint8_t>(most);
       const float below = range.low < 0 ? -range.low : range.low;
       const float above = range.high < 0 ? -range.high : range.high;
       const double finest = static_cast<double>(below > above ? below : above) * 0x1p-24;
-      const auto begin = static_cast<std::uint32_t>(first);
-      for (std::uint32_t rung = 0; rung < call.most; rung += kRungsAtOnce) {
-        if (!cost_rungs(warp, tables, stage, figures, finest, begin + rung, begin + call.most, costs + rung)) break;
+      const auto look_at = [&](const RungBatch& batch) {
+        return cost_rungs(warp, tables, stage, figures, finest, batch, most, costs);
+      };
+      if (call.ask.all || !call.ask.keys.known()) {
+        std::uint32_t rung = 0;
+        while (rung < most && look_at({rung})) rung += kRungsAtOnce;
+      } else {
+        // Nearly every search ends among the first ones; the others are those to both sides of them.
+        const std::uint32_t start = call.ask.start(figures.first_step) - figures.first_rung;
+        const std::uint32_t coarser = start < 2 ? 0U : start - 2;
+        const std::uint32_t first = coarser < most - kRungsAtOnce ? coarser : most - kRungsAtOnce;
+        look_at({first});
+        const auto known = [&](std::uint32_t rung) { return known_rung(costs[rung]); };
+        if (next_rung(call.ask.keys, figures.energy, start, most, known) != kNoRung) look_at({0, first, kRungsAtOnce});
       }
     }
   }

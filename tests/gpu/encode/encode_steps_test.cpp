@@ -38,9 +38,8 @@ TEST_F(EncodeSteps, FiguresAndCostsOfAllRungsAreThoseOfTheCpu) {
       const Boxed boxed(volume, before);
       SurveyCall call;
       call.box = boxed.box;
-      call.most = call.ask.most();
       std::vector<BlockFigures> figures(boxed.box.count());
-      std::vector<RungCost> costs(figures.size() * call.most);
+      std::vector<RungCost> costs(figures.size() * call.ask.most());
       call.figures = figures.data();
       call.costs = costs.data();
       encode_detail::BlockStage stage;
@@ -55,7 +54,7 @@ TEST_F(EncodeSteps, FiguresAndCostsOfAllRungsAreThoseOfTheCpu) {
         ASSERT_EQ(static_cast<double>(figures[b].largest), transform_.largest()) << b;
         ASSERT_EQ(figures[b].energy, transform_.energy()) << b;
         for (std::uint32_t k = 0; k < figures[b].rungs; ++k) {
-          const RungCost& cost = costs[call.most * b + k];
+          const RungCost& cost = costs[call.ask.most() * b + k];
           const std::int32_t step =
               rung_step(figures[b].first_step, figures[b].first_rung + static_cast<std::int32_t>(k));
           if (cost.bits == 0) continue;
@@ -79,9 +78,8 @@ TEST_F(EncodeSteps, RungsAboutAStepAreThoseAmongAll) {
     encode_detail::BlockStage stage;
     for (const std::int32_t wanted : {-200, -10, 0, 6, 13, 40, 200}) {
       call.ask = {false, wanted};
-      call.most = call.ask.most();
       std::vector<BlockFigures> figures(boxed.box.count());
-      std::vector<RungCost> costs(figures.size() * call.most);
+      std::vector<RungCost> costs(figures.size() * call.ask.most());
       call.figures = figures.data();
       call.costs = costs.data();
       for (std::uint32_t b = 0; b < boxed.box.count(); b += 5) {
@@ -91,8 +89,8 @@ TEST_F(EncodeSteps, RungsAboutAStepAreThoseAmongAll) {
         EXPECT_LE(figures[b].first_rung, start);
         EXPECT_GT(figures[b].first_rung + 8, start);
         transform_.set(boxed.block(b));
-        for (std::uint32_t k = 0; k < call.most; ++k) {
-          const RungCost& cost = costs[call.most * b + k];
+        for (std::uint32_t k = 0; k < call.ask.most(); ++k) {
+          const RungCost& cost = costs[call.ask.most() * b + k];
           const std::int32_t step =
               rung_step(figures[b].first_step, figures[b].first_rung + static_cast<std::int32_t>(k));
           if (cost.bits == 0) continue;

@@ -41,10 +41,9 @@ class NearSteps : public testing::Test {
     std::vector<RungCost> rungs(box.count() * RungAsk{}.most());
     SurveyCall survey;
     survey.box = box;
-    survey.most = survey.ask.most();
     survey.figures = found.figures.data();
     survey.costs = rungs.data();
-    NearCall call{box, &tables_, &codes_, ask, found.figures.data(), found.costs.data()};
+    NearCall call{box, &tables_, &codes_, {true, 0, ask}, found.figures.data(), rungs.data(), found.costs.data()};
     encode_detail::BlockStage stage;
     encode_detail::LatticeStage near_stage;
     for (std::uint32_t b = 0; b < box.count(); ++b) {
