@@ -71,7 +71,7 @@ class Bench {
                                    survey_near({true, 0, {NearBlocks::all}}, "all near rungs and floats in order");
     make_asks(all, step);
     const std::size_t other_streams = encode();
-    through_host(step);
+    through_host(about.ask);
     const bool same = other_costs + other_near + other_streams == 0;
     std::printf("%-12s %zu blocks have other costs, %zu other near rungs, %zu other streams or values: %s\n",
                 name_.c_str(), other_costs, other_near, other_streams, same ? "same bits" : "OTHER BITS");
@@ -310,7 +310,7 @@ class Bench {
   }
 
   // As a conversion does it: boxes of 8 MiB out of pageable memory, by all cores, and figures back.
-  void through_host(std::int32_t step) const {
+  void through_host(const RungAsk& ask) const {
     const auto coder =
         make_device_coder(0, [](const Error& error) { std::printf("the coder has failed: %s\n", error.what()); });
     const std::int64_t n = field_.blocks_along();
@@ -334,7 +334,7 @@ class Bench {
             }
             const auto loaded = coder->load(values, {lo, hi}, {lo, hi});
             if (!loaded) return;
-            loaded->begin_survey({false, step});
+            loaded->begin_survey(ask);
             if (!loaded->end_survey()) return;
           }
         });

@@ -72,9 +72,11 @@ class NearSurvey {
     if (!has_some) return true;
     rounded.set(values);
     const std::int32_t coarsest = coarsest_near_exponent(rounded.exponent());
+    const auto start = static_cast<std::uint32_t>(near_rung_about(coarsest, ask_.wanted));
     for (std::uint32_t k = 0; k < figures.near; ++k) {
       const NearCost& cost = costs_[ask_.most() * b + k];
-      if (cost.bytes == 0 && !all_looked_at_) continue;
+      const bool needed = all_looked_at_ || figures.first_near + k == start;
+      if (cost.bytes == 0 && !needed) continue;
       const auto expected = rounded.cost(coarsest - static_cast<std::int32_t>(figures.first_near + k));
       if (cost.bytes != (expected ? expected->bytes : kNoNearBytes)) return false;
       if (expected && cost.squared_error != expected->squared_error) return false;

@@ -47,8 +47,8 @@ struct NearAsk {
   static constexpr std::uint32_t kAbout = 6;
 };
 
-/// Keys between which the cut lies: squared error that a byte saves. Of the rungs asked for, those that no search
-/// between them comes to need not be looked at.
+/// Keys between which the cut lies: squared error that a byte saves. Rungs that no search for such a cut comes to need
+/// not be looked at.
 struct SearchKeys {
   double low = 0;
   double high = 0;        ///< 0: all rungs are looked at
@@ -72,7 +72,9 @@ struct RungAsk {
   WEIR_HOST_DEVICE std::uint32_t start(std::int32_t first_step) const {
     return static_cast<std::uint32_t>(rung_about(first_step, wanted));
   }
-  /// The first one that is looked at.
+  /// Whether it is known which cuts are searched for.
+  WEIR_HOST_DEVICE bool searches() const { return !all && keys.known(); }
+  /// The first one asked for.
   WEIR_HOST_DEVICE std::uint32_t first(std::int32_t first_step) const {
     constexpr std::uint32_t kFirst = kLadderMeanRungs;
     if (all) return kFirst;
@@ -107,12 +109,12 @@ struct BlockFigures {
   float mean = 0;
   float largest = 0;
   std::int16_t first_step = 0;   ///< of the ladder
-  std::uint8_t first_rung = 0;   ///< of those looked at
-  std::uint8_t rungs = 0;        ///< that were looked at
+  std::uint8_t first_rung = 0;   ///< of those asked for
+  std::uint8_t rungs = 0;        ///< that were asked for
   std::uint8_t transformed = 0;  ///< 0: the values are too large or too small for that
   std::uint8_t lattice = 0;      ///< whether they may lie on a lattice; who has time looks closer
-  std::uint8_t first_near = 0;   ///< of the near rungs looked at
-  std::uint8_t near = 0;         ///< that were looked at
+  std::uint8_t first_near = 0;   ///< of the near rungs asked for
+  std::uint8_t near = 0;         ///< that were asked for
   /// Of the stream of floats in their own order, at most kRawStreamBytes; 0: not looked at.
   std::uint16_t ordered_bytes = 0;
   std::uint16_t unused[3] = {};

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <memory>
+#include <random>
 #include <utility>
 #include <vector>
 
@@ -20,6 +21,19 @@ namespace {
 
 using test::BlockVolume;
 using test::FakeRuntime;
+
+// A smooth field with noise, most of whose blocks lie partly outside it.
+BlockVolume wavy(const Index3& extent) {
+  BlockVolume volume{"wavy", extent, {}};
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> noise(-0.01F, 0.01F);
+  for (std::int64_t i = 0; i < weir::volume(extent); ++i) {
+    const Index3 v = index_at(i, extent);
+    volume.values.push_back(std::sin(0.2F * static_cast<float>(v.x)) * std::cos(0.17F * static_cast<float>(v.y)) +
+                            0.1F * static_cast<float>(v.z) + noise(random));
+  }
+  return volume;
+}
 
 class FoundLadders : public testing::Test {
  protected:
@@ -49,14 +63,16 @@ class FoundLadders : public testing::Test {
       for (const NearCost& cost : found->near) looked_at_ += cost.bytes != 0 ? 1 : 0;
       for (std::int64_t b = 0; b < weir::volume(count); ++b) {
         LeafValues values;
+        std::vector<float> inside;
         for (std::int64_t i = 0; i < 512; ++i) {
-          const Index3 voxel =
-              min(voxels.hi - Index3{1, 1, 1}, index_at(b, count) * 8 + Index3{i >> 6, i >> 3 & 7, i & 7});
-          values[static_cast<std::size_t>(i)] =
-              volume.values[static_cast<std::size_t>(linear_index(voxel, volume.extent))];
+          const Index3 place = index_at(b, count) * 8 + Index3{i >> 6, i >> 3 & 7, i & 7};
+          const Index3 voxel = min(voxels.hi - Index3{1, 1, 1}, place);
+          const float value = volume.values[static_cast<std::size_t>(linear_index(voxel, volume.extent))];
+          values[static_cast<std::size_t>(i)] = value;
+          if (voxel == place) inside.push_back(value);
         }
         if (!std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); })) continue;
-        const LeafRow row = summarize_leaf(values, 0);
+        const LeafRow row = summarize_leaf(inside, 0);
         if (row.uniform()) continue;
         const auto ladder = builder.build_from(found->block(static_cast<std::size_t>(b)), row, near);
         if (!ladder) continue;
@@ -73,6 +89,7 @@ class FoundLadders : public testing::Test {
   std::vector<BlockVolume> volumes_ = [] {
     std::vector<BlockVolume> all = test::block_volumes();
     for (BlockVolume& volume : test::mixed_volumes()) all.push_back(std::move(volume));
+    for (const Index3& extent : {Index3{65, 66, 1}, Index3{64, 67, 10}}) all.push_back(wavy(extent));
     return all;
   }();
 };

@@ -24,6 +24,21 @@ struct BlockBox {
   std::uint32_t blocks[3] = {};
 
   WEIR_HOST_DEVICE std::uint32_t count() const { return blocks[0] * blocks[1] * blocks[2]; }
+  /// The first voxel of a block along an axis.
+  WEIR_HOST_DEVICE std::int32_t first(std::uint32_t block, unsigned axis) const {
+    const std::uint32_t layer = blocks[0] * blocks[1];
+    const std::uint32_t at = axis == 0   ? block % layer % blocks[0]
+                             : axis == 1 ? block % layer / blocks[0]
+                                         : block / layer;
+    return corner[axis] + static_cast<std::int32_t>(8 * at);
+  }
+  /// Whether there are values for all of a block's voxels.
+  WEIR_HOST_DEVICE bool covers(std::uint32_t block) const {
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      if (first(block, axis) < 0 || first(block, axis) > extent[axis] - 8) return false;
+    }
+    return true;
+  }
 };
 
 /// Where the blocks of a box lie among those of their volume.
@@ -87,7 +102,7 @@ struct NearCall {
   const CodeTables* codes = nullptr;
   RungAsk ask;
   BlockFigures* figures = nullptr;  ///< of each block, as the survey has left them
-  const RungCost* rungs = nullptr;  ///< as well
+  const RungCost* rungs = nullptr;  ///< costs of their rungs, as the survey has left them
   NearCost* costs = nullptr;        ///< ask.near.most() of each block
 };
 

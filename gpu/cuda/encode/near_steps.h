@@ -195,6 +195,7 @@ WEIR_HOST_DEVICE void survey_near_rungs(const Warp& warp, const NearCall& call, 
   typename Warp::template Own<double> errors;
   std::uint32_t first_error = most;  // of the kAtOnce rungs whose errors the lanes have
   const auto look_at = [&](std::uint32_t k) {
+    warp.each([](unsigned) {});  // all have read the costs, one of which is written now
     if (k - first_error >= kAtOnce) {
       first_error = k < most - kAtOnce ? k / kAtOnce * kAtOnce : most - kAtOnce;
       near_errors(warp, stage, values, coarsest, first + first_error, errors);
@@ -216,7 +217,8 @@ WEIR_HOST_DEVICE void survey_near_rungs(const Warp& warp, const NearCall& call, 
           bytes < kRawStreamBytes ? NearCost{errors(lane) * size * size, bytes, 0} : NearCost{0, kNoNearBytes, 0};
     });
   };
-  if (ask.all || !call.ask.keys.known()) {
+  const bool searches = call.ask.searches() && call.box.covers(block) && known.rungs > 0;
+  if (!searches) {
     for (std::uint32_t k = 0; k < most; ++k) look_at(k);
   } else {
     const std::uint32_t start = static_cast<std::uint32_t>(near_rung_about(coarsest, ask.wanted)) - first;
@@ -225,8 +227,8 @@ WEIR_HOST_DEVICE void survey_near_rungs(const Warp& warp, const NearCall& call, 
     const auto at = [&](std::uint32_t k) { return known_rung(costs[k]); };
     std::uint32_t next = start;
     look_at(next);
-    const bool searched = !is_sure_to_lead(call.ask.keys, known_rung(rung), at(start));
-    while (searched && (next = next_rung(call.ask.keys, known.energy, start, most, at)) != kNoRung) look_at(next);
+    const bool may_be_bought = !is_sure_to_lead(call.ask.keys, known_rung(rung), at(start));
+    while (may_be_bought && (next = next_rung(call.ask.keys, known.energy, start, most, at)) != kNoRung) look_at(next);
   }
   const std::uint32_t ordered = ask.all || sparse ? encode_detail::ordered_bytes(warp, tables, *call.codes, stage) : 0U;
   warp.each([&](unsigned lane) {

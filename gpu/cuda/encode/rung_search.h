@@ -1,6 +1,7 @@
 // How far the device looks at the rungs of a block, where it is known between which keys the cut lies: as far as the
-// search of compressor/packed/ladder_window.h comes, or a little further. Nothing depends on it but time: a search that
-// comes to a rung that was not looked at is the host's. For host and device.
+// search of compressor/packed/ladder_window.h comes, or a little further. Of a block whose voxels all lie in the
+// volume: of others the search goes by the error of those that do, which the device does not know. Nothing depends on
+// it but time: a block whose search comes to a rung that was not looked at is the host's. For host and device.
 #pragma once
 
 #include <cstdint>

@@ -89,8 +89,8 @@ WEIR_HOST_DEVICE inline ColumnError quantise_column(const CostTables& tables, co
   return error;
 }
 
-// kRungsAtOnce rungs that are looked at together, one a group of lanes: [first, first + kRungsAtOnce), of which `gap`
-// more are left out from the one of group `before_gap` on.
+// Rungs that are looked at together, one by each group of lanes: group g looks at rung first + g, and from group
+// `before_gap` on `gap` rungs further.
 struct RungBatch {
   std::uint32_t first = 0;
   std::uint32_t before_gap = kRungsAtOnce;
@@ -204,11 +204,11 @@ WEIR_HOST_DEVICE void survey_block(const Warp& warp, const SurveyCall& call, con
       const auto look_at = [&](const RungBatch& batch) {
         return cost_rungs(warp, tables, stage, figures, finest, batch, most, costs);
       };
-      if (call.ask.all || !call.ask.keys.known()) {
+      if (!call.ask.searches() || !call.box.covers(block)) {
         std::uint32_t rung = 0;
         while (rung < most && look_at({rung})) rung += kRungsAtOnce;
       } else {
-        // Nearly every search ends among the first ones; the others are those to both sides of them.
+        // Nearly every search ends among the first four; the others are `first` coarser ones, and finer ones.
         const std::uint32_t start = call.ask.start(figures.first_step) - figures.first_rung;
         const std::uint32_t coarser = start < 2 ? 0U : start - 2;
         const std::uint32_t first = coarser < most - kRungsAtOnce ? coarser : most - kRungsAtOnce;

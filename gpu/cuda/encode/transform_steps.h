@@ -37,11 +37,7 @@ struct ValueRange8 {
 
 template <class Warp>
 WEIR_HOST_DEVICE void gather_block(const Warp& warp, const BlockBox& box, std::uint32_t block, float* stage) {
-  const std::uint32_t column = block % (box.blocks[0] * box.blocks[1]);
-  const std::int32_t first[3] = {
-      box.corner[0] + static_cast<std::int32_t>(8 * (column % box.blocks[0])),
-      box.corner[1] + static_cast<std::int32_t>(8 * (column / box.blocks[0])),
-      box.corner[2] + static_cast<std::int32_t>(8 * (block / (box.blocks[0] * box.blocks[1])))};
+  const std::int32_t first[3] = {box.first(block, 0), box.first(block, 1), box.first(block, 2)};
   const auto inside = [&](unsigned axis, unsigned at) {
     const std::int32_t v = first[axis] + static_cast<std::int32_t>(at);
     return v < 0 ? 0 : v < box.extent[axis] ? v : box.extent[axis] - 1;
