@@ -176,9 +176,14 @@ template <class Warp>
 WEIR_HOST_DEVICE void survey_near_rungs(const Warp& warp, const NearCall& call, const CostTables& tables,
                                         std::uint32_t block, encode_detail::LatticeStage& stage) {
   using namespace encode_detail;
+  const NearAsk& ask = call.ask.near;
+  const std::uint32_t most = ask.most();
+  NearCost* costs = call.costs + std::size_t{most} * block;
+  warp.each([&](unsigned lane) {
+    if (lane < most) costs[lane] = {};
+  });
   const BlockFigures& known = call.figures[block];
   if (known.transformed == 0 || known.lattice != 0 || !(known.energy > 0)) return;
-  const NearAsk& ask = call.ask.near;
   gather_block(warp, call.box, block, stage.values);
   const NearValues values = near_values(warp, stage.values);
   const bool sparse = 2 * values.zeros > 512;
@@ -186,11 +191,6 @@ WEIR_HOST_DEVICE void survey_near_rungs(const Warp& warp, const NearCall& call, 
   const unsigned predictor = rounded_predictor(warp, values, stage);
   const std::int32_t coarsest = coarsest_near_exponent(values.exponent);
   const std::uint32_t first = ask.first(coarsest);
-  const std::uint32_t most = ask.most();
-  NearCost* costs = call.costs + std::size_t{most} * block;
-  warp.each([&](unsigned lane) {
-    if (lane < most) costs[lane] = {};
-  });
   constexpr std::uint32_t kAtOnce = kLanes / kGroup;
   typename Warp::template Own<double> errors;
   std::uint32_t first_error = most;  // of the kAtOnce rungs whose errors the lanes have

@@ -96,7 +96,9 @@ WEIR_HOST_DEVICE void summarize_block(const Warp& warp, const SummaryCall& call,
   const ScannedBits scan = scan_stage(warp, stage.values);
   if (scan.non_finite > 0) {
     warp.each([&](unsigned lane) {
-      if (lane == 0) out.finite = static_cast<std::uint16_t>(512 - scan.non_finite);
+      if (lane != 0) return;
+      out = {};
+      out.finite = static_cast<std::uint16_t>(512 - scan.non_finite);
     });
     return;
   }

@@ -38,9 +38,10 @@ class SharedTables {
     for (unsigned i = thread.index(); i < kPackedTables * kSymbolBuckets; i += thread.count()) {
       buckets_[i] = bucket(tables + i / kSymbolBuckets * kPackedSymbols, (i % kSymbolBuckets) << kBucketShift);
     }
-    for (unsigned t = thread.index(); t < kLevelSums; t += thread.count()) {
-      reinterpret_cast<std::uint16_t*>(levels_)[t] =
-          static_cast<std::uint16_t>(scan.level[t] * kSymbolBuckets | extra_bits(t));
+    for (unsigned t = thread.index(); t < kLevelBytes / 2;
+         t += thread.count()) {  // load() copies what lies behind, too
+      const unsigned level = t < kLevelSums ? scan.level[t] * kSymbolBuckets | extra_bits(t) : 0;
+      reinterpret_cast<std::uint16_t*>(levels_)[t] = static_cast<std::uint16_t>(level);
     }
   }
 
