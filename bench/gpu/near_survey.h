@@ -26,8 +26,7 @@ class NearSurvey {
   NearSurvey(const Field& field, const float* values, const CostTables* tables, const CodeTables* codes,
              const RungAsk& ask)
       : field_(field),
-        ask_(ask.near),
-        all_looked_at_(!ask.keys.known()),
+        ask_(ask),
         figures_(static_cast<std::size_t>(field.blocks())),
         costs_(ask.near.most() * figures_.size()) {
     const DeviceArray<BlockFigures> figures(figures_.size());
@@ -68,21 +67,21 @@ class NearSurvey {
                const ValueEncoder& coder) const {
     const BlockFigures& figures = figures_[b];
     const bool has_some = figures.transformed != 0 && figures.lattice == 0 && figures.energy > 0;
-    if (figures.near != (has_some ? ask_.most() : 0U)) return false;
+    if (figures.near != (has_some ? ask_.near.most() : 0U)) return false;
     if (!has_some) return true;
     rounded.set(values);
     const std::int32_t coarsest = coarsest_near_exponent(rounded.exponent());
-    const auto start = static_cast<std::uint32_t>(near_rung_about(coarsest, ask_.wanted));
+    const auto start = static_cast<std::uint32_t>(near_rung_about(coarsest, ask_.near.wanted));
     for (std::uint32_t k = 0; k < figures.near; ++k) {
-      const NearCost& cost = costs_[ask_.most() * b + k];
-      const bool needed = all_looked_at_ || figures.first_near + k == start;
+      const NearCost& cost = costs_[ask_.near.most() * b + k];
+      const bool needed = !ask_.searches() || figures.first_near + k == start;
       if (cost.bytes == 0 && !needed) continue;
       const auto expected = rounded.cost(coarsest - static_cast<std::int32_t>(figures.first_near + k));
       if (cost.bytes != (expected ? expected->bytes : kNoNearBytes)) return false;
       if (expected && cost.squared_error != expected->squared_error) return false;
     }
     const bool sparse = 2 * std::count(values.begin(), values.end(), 0.0F) > 512;
-    if ((figures.ordered_bytes != 0) != (ask_.all || sparse)) return false;
+    if ((figures.ordered_bytes != 0) != (ask_.near.all || sparse)) return false;
     if (figures.ordered_bytes == 0) return true;
     BlockConstants constants;
     constants.tables = built_in_tables();
@@ -91,8 +90,7 @@ class NearSurvey {
   }
 
   const Field& field_;
-  NearAsk ask_;
-  bool all_looked_at_;
+  RungAsk ask_;
   std::vector<BlockFigures> figures_;
   std::vector<NearCost> costs_;
   double seconds_ = 0;
