@@ -8,6 +8,7 @@
 
 #include "format/base/host_device.h"
 #include "format/packed/block_coder.h"
+#include "format/packed/stream_length.h"
 
 namespace weir::encode_detail {
 
