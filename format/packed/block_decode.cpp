@@ -98,9 +98,9 @@ class ListedValues {
     const unsigned flags = bits.read(states);
     if (bits.bytes_used() > front_bytes) return false;
     const std::byte* const words = front + bits.bytes_used();
-    RansDecoder started;
+    StreamStates started;
     if (!started.start(words, stream_end, states, flags)) return false;
-    CoderPosition position{{started.state(0), started.state(1)}, started.words().at()};
+    CoderPosition position{{started.state(0), started.state(1)}, started.at()};
     if (!coder_.decode(contexts, words, end, position)) return false;
     const packed_detail::CodedNumber number =
         packed_detail::read_number(bits, states, position.state[0], position.state[1], list().count, number_bits);

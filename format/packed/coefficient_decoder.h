@@ -1,13 +1,9 @@
-// Decodes the coded values of a packed block: interleaved rANS over contexts of decoded neighbours (FORMAT.md, "Coded
-// values"; Duda 2013, Giesen 2014). For host and device.
+// What the decoders of the coded values of a packed block share: interleaved rANS over contexts of decoded neighbours
+// (FORMAT.md, "Coded values"; Duda 2013, Giesen 2014). For host and device.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
-
-#if defined(__SSE2__) && !defined(__CUDA_ARCH__)
-#include <emmintrin.h>
-#endif
 
 #include "format/base/host_device.h"
 #include "format/packed/block_constants.h"
@@ -57,55 +53,8 @@ class BitReader {
   std::uint32_t at_ = 0;
 };
 
-/// The words of a stream's coders, read from its end towards `front`; the next one is loaded ahead.
-class StreamWords {
- public:
-  WEIR_HOST_DEVICE void start(const std::byte* front, const std::byte* at) {
-    front_ = front;
-    at_ = at;
-    load();
-  }
-  WEIR_HOST_DEVICE void renormalise(std::uint32_t& x) {
-    if (x >= kLeastState) return;
-    if (at_ - front_ < 2) {
-      whole_ = false;
-      x |= kLeastState;
-      return;
-    }
-    x = x << 16U | next_;
-    at_ -= 2;
-    load();
-  }
-  /// Up to 32 bits of a state as they are.
-  WEIR_HOST_DEVICE std::uint32_t bypass(std::uint32_t& x, unsigned bits) {
-    std::uint32_t value = 0;
-    for (unsigned got = 0; got < bits;) {
-      const unsigned take = bits - got < 16 ? bits - got : 16;
-      value |= (x & ((1U << take) - 1U)) << got;
-      x >>= take;
-      renormalise(x);
-      got += take;
-    }
-    return value;
-  }
-  /// False once a word was missing.
-  WEIR_HOST_DEVICE bool whole() const { return whole_; }
-  WEIR_HOST_DEVICE const std::byte* at() const { return at_; }
-
- private:
-  WEIR_HOST_DEVICE void load() {
-    if (at_ - front_ < 2) return;
-    next_ = static_cast<std::uint32_t>(at_[-2]) | static_cast<std::uint32_t>(at_[-1]) << 8U;
-  }
-
-  const std::byte* front_ = nullptr;
-  const std::byte* at_ = nullptr;
-  std::uint32_t next_ = 0;
-  bool whole_ = true;
-};
-
-/// The states of a stream and its words.
-class RansDecoder {
+/// The states of a stream before its first value, and its words.
+class StreamStates {
  public:
   /// False where the stream is too short.
   WEIR_HOST_DEVICE bool start(const std::byte* front, const std::byte* end, unsigned states, unsigned short_flags) {
@@ -118,46 +67,17 @@ class RansDecoder {
       for (unsigned b = 0; b < bytes; ++b) state |= static_cast<std::uint32_t>(at[b]) << (8 * b);
       state_[s] = state;
     }
-    words_.start(front, at);
+    at_ = at;
     return true;
   }
 
-  WEIR_HOST_DEVICE unsigned symbol(unsigned s, const std::uint16_t* table) {
-    std::uint32_t& x = state_[s];
-    const std::uint32_t slot = x & ((1U << kFrequencyBits) - 1U);
-    const unsigned found = find(table, slot);
-    const std::uint32_t low = table[found];
-    const std::uint32_t high = found + 1 < kPackedSymbols ? table[found + 1] : 1U << kFrequencyBits;
-    x = (high - low) * (x >> kFrequencyBits) + slot - low;
-    words_.renormalise(x);
-    return found;
-  }
-
-  /// Up to 32 bits as they are.
-  WEIR_HOST_DEVICE std::uint32_t bypass(unsigned s, unsigned bits) { return words_.bypass(state_[s], bits); }
-
   WEIR_HOST_DEVICE std::uint32_t state(unsigned s) const { return state_[s]; }
-  WEIR_HOST_DEVICE const StreamWords& words() const { return words_; }
+  /// Behind the words, which are read from the last one on.
+  WEIR_HOST_DEVICE const std::byte* at() const { return at_; }
 
  private:
-  // The last entry of the table that is not above `slot`.
-  WEIR_HOST_DEVICE static unsigned find(const std::uint16_t* table, std::uint32_t slot) {
-#if defined(__SSE2__) && !defined(__CUDA_ARCH__)
-    const __m128i wanted = _mm_set1_epi16(static_cast<short>(slot + 1));
-    const __m128i low = _mm_loadu_si128(reinterpret_cast<const __m128i*>(table));
-    const __m128i high = _mm_loadu_si128(reinterpret_cast<const __m128i*>(table + 8));
-    const __m128i below = _mm_packs_epi16(_mm_cmpgt_epi16(wanted, low), _mm_cmpgt_epi16(wanted, high));
-    const auto mask = static_cast<unsigned>(_mm_movemask_epi8(below));  // ones from the lowest bit on
-    return static_cast<unsigned>(__builtin_ctz(mask + 1)) - 1;
-#else
-    unsigned found = 0;
-    for (unsigned j = 1; j < kPackedSymbols; ++j) found += table[j] <= slot ? 1U : 0U;
-    return found;
-#endif
-  }
-
   std::uint32_t state_[2] = {kLeastState, kLeastState};
-  StreamWords words_;
+  const std::byte* at_ = nullptr;
 };
 
 /// What coded values are decoded by.

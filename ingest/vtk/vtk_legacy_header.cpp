@@ -186,7 +186,7 @@ class LegacyParser {
       }
       if (words_.size() != 4) wrong("the name, components, tuples and type of an array belong there");
       // The name was put in lower case as a key.
-      VtkLegacyArray array{text_.first_word(), cells_, {}, words_[3], 0, {}};
+      VtkLegacyArray array{{text_.first_word(), cells_, {}, words_[3], {}}, 0};
       const std::uint64_t components = count(1);
       const std::uint64_t tuples = count(2);
       if (in_attributes_ && tuples != values_expected()) wrong(cat("DIMENSIONS make ", values_expected(), " tuples"));
@@ -200,7 +200,7 @@ class LegacyParser {
 
   VtkLegacyArray named_array(std::size_t type_word = 2) const {
     if (words_.size() <= type_word) wrong("a name and a type belong there");
-    return {words_[1], cells_, {}, words_[type_word], 0, {}};
+    return {{words_[1], cells_, {}, words_[type_word], {}}, 0};
   }
 
   static const LegacyType* type_of(std::string_view name) {

@@ -8,18 +8,13 @@
 #include <vector>
 
 #include "format/base/scalar_type.h"
+#include "ingest/vtk/vtk_array.h"
 #include "ingest/vtk/vtk_image.h"
 
 namespace weir {
 
-struct VtkLegacyArray {
-  std::string name;  ///< "PointData/a" and "CellData/a" where points and cells have an array "a"
-  bool cells = false;
-  ScalarType type = ScalarType::float32;
-  std::string type_name;        ///< as written
-  std::uint64_t offset = 0;     ///< of the first value or, in text, of the first word, in the file
-  std::string obstacle;         ///< why it cannot be converted; empty where it can
-  std::int64_t components = 1;  ///< numbers a voxel, side by side
+struct VtkLegacyArray : VtkArray {
+  std::uint64_t offset = 0;  ///< of the first value or, in text, of the first word, in the file
 };
 
 struct VtkLegacyHeader {

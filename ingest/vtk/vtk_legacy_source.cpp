@@ -2,16 +2,13 @@
 
 #include <utility>
 
-#include "format/base/error.h"
 #include "format/base/text.h"
 #include "format/io/file_system.h"
 #include "ingest/headers/header_text.h"
 #include "ingest/headers/named_choice.h"
-#include "ingest/source/extent.h"
 #include "ingest/streams/file_stream.h"
 #include "ingest/streams/spool_file.h"
 #include "ingest/values/raw_values.h"
-#include "ingest/vectors/voxel_components.h"
 #include "ingest/vtk/text_values.h"
 #include "ingest/vtk/vtk_legacy_header.h"
 
@@ -41,32 +38,16 @@ bool recognises_vtk_legacy(std::string_view path, std::span<const std::byte> hea
 }
 
 std::unique_ptr<VolumeSource> open_vtk_legacy(const std::string& path, const SourceOptions& options) {
-  if (!options.index.empty()) {
-    throw Error(ErrorKind::usage,
-                compose(path, ": ", option("index"), " is for arrays of more than three axes; leave it out"));
-  }
+  refuse_vtk_index(path, options);
   auto file = std::make_unique<InputFile>(path, options.direct_io);
   const VtkLegacyHeader header = read_legacy_header(*file);
   const std::vector<NamedVolume> volumes = volumes_of_kind(header.arrays, options.dataset, options.component);
   const VtkLegacyArray& array = header.arrays[choose_volume(path, "array", volumes, options.dataset)];
-  const std::string where = cat(path, ": array ", in_quotes(array.name));
-  SourceInfo info;
-  info.path = path;
-  info.format = "vtk-legacy";
-  info.dataset = array.name;
-  info.file_bytes = file->size();
-  info.mtime_ns = file->mtime_ns();
-  info.files = {file->state()};
-  place_vtk_image(header.image, array.cells, info);
-  const VoxelComponents components = choose_components(array.components, options.component, where);
-  if (options.component) info.details.component = component_text(*options.component);
-  info.lengths = components.count > 1 && components.choice.magnitude;
-  const std::uint64_t bytes =
-      checked_volume_bytes(info.extent, scalar_bytes(array.type) * static_cast<std::size_t>(components.count), where);
-  RawLayout layout{header.binary ? array.offset : 0, array.type, header.binary, {}, components};
+  VtkVolume volume = vtk_volume(*file, "vtk-legacy", header.image, array, options);
+  RawLayout layout{header.binary ? array.offset : 0, array.type, header.binary, {}, volume.components};
   options.complete(layout.mapping);
-  if (!header.binary) file = spool_text(*file, array, bytes, options, where);
-  return make_raw_values(std::move(file), layout, std::move(info));
+  if (!header.binary) file = spool_text(*file, array, volume.bytes, options, volume.where);
+  return make_raw_values(std::move(file), layout, std::move(volume.info));
 }
 
 std::vector<DatasetInfo> list_vtk_legacy(const std::string& path, const SourceOptions&) {

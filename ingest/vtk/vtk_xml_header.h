@@ -8,23 +8,18 @@
 #include <vector>
 
 #include "format/base/scalar_type.h"
+#include "ingest/vtk/vtk_array.h"
 #include "ingest/vtk/vtk_image.h"
 #include "ingest/vtk/vtk_xml_skeleton.h"
 
 namespace weir {
 
-struct VtkXmlArray {
+struct VtkXmlArray : VtkArray {
   enum class Format { ascii, binary, appended };
 
-  std::string name;  ///< "PointData/a" and "CellData/a" where points and cells have an array "a"
-  bool cells = false;
-  ScalarType type = ScalarType::float32;
-  std::string type_name;  ///< as written
-  std::int64_t components = 1;
   Format format = Format::ascii;
   std::uint64_t begin = 0;  ///< of the text in the file, or in the appended data
   std::uint64_t end = 0;    ///< of the text in the file; 0 for appended data
-  std::string obstacle;     ///< why it cannot be converted; empty where it can
 };
 
 struct VtkXmlHeader {

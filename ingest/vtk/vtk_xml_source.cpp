@@ -3,13 +3,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "format/base/error.h"
 #include "format/base/text.h"
 #include "ingest/headers/header_text.h"
 #include "ingest/headers/named_choice.h"
-#include "ingest/source/extent.h"
 #include "ingest/values/raw_values.h"
-#include "ingest/vectors/voxel_components.h"
 #include "ingest/vtk/file_text.h"
 #include "ingest/vtk/vtk_xml_data.h"
 #include "ingest/vtk/vtk_xml_header.h"
@@ -57,31 +54,15 @@ bool recognises_vtk_xml(std::string_view path, std::span<const std::byte> head) 
 }
 
 std::unique_ptr<VolumeSource> open_vtk_xml(const std::string& path, const SourceOptions& options) {
-  if (!options.index.empty()) {
-    throw Error(ErrorKind::usage,
-                compose(path, ": ", option("index"), " is for arrays of more than three axes; leave it out"));
-  }
+  refuse_vtk_index(path, options);
   auto file = std::make_unique<InputFile>(path, options.direct_io);
   const VtkXmlHeader header = read_xml_header(*file);
   const VtkXmlArray& array = choose_array(header, path, options);
-  const std::string where = cat(path, ": array ", in_quotes(array.name));
-  SourceInfo info;
-  info.path = path;
-  info.format = "vtk-xml";
-  info.dataset = array.name;
-  info.file_bytes = file->size();
-  info.mtime_ns = file->mtime_ns();
-  info.files = {file->state()};
-  place_vtk_image(header.image, array.cells, info);
-  const VoxelComponents components = choose_components(array.components, options.component, where);
-  if (options.component) info.details.component = component_text(*options.component);
-  info.lengths = components.count > 1 && components.choice.magnitude;
-  const std::uint64_t bytes =
-      checked_volume_bytes(info.extent, scalar_bytes(array.type) * static_cast<std::size_t>(components.count), where);
-  PlainValues plain = plain_vtk_values(std::move(file), header, array, bytes, options, where);
-  RawLayout layout{plain.offset, array.type, plain.big_endian, {}, components};
+  VtkVolume volume = vtk_volume(*file, "vtk-xml", header.image, array, options);
+  PlainValues plain = plain_vtk_values(std::move(file), header, array, volume.bytes, options, volume.where);
+  RawLayout layout{plain.offset, array.type, plain.big_endian, {}, volume.components};
   options.complete(layout.mapping);
-  return make_raw_values(std::move(plain.file), layout, std::move(info));
+  return make_raw_values(std::move(plain.file), layout, std::move(volume.info));
 }
 
 std::vector<DatasetInfo> list_vtk_xml(const std::string& path, const SourceOptions&) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "compressor/conversion.h"
+#include "tests/compressor/support/budget_of.h"
 #include "tests/compressor/support/crash_file_system.h"
 #include "tests/compressor/support/memory_volume.h"
 
@@ -67,14 +68,6 @@ inline ConversionOptions with(const Budget& budget) {
   options.budget = budget;
   return options;
 }
-inline Budget budget_of(Budget::Kind kind, double value) {
-  Budget budget;
-  budget.kind = kind;
-  budget.rate = kind == Budget::Kind::rate ? value : budget.rate;
-  budget.target = value;
-  return budget;
-}
-
 /// A budget of each kind, by name.
 struct NamedBudget {
   std::string name;

@@ -171,12 +171,12 @@ WEIR_HOST_DEVICE Outcome decode_stream(const DecodeCall& call, const FoundStream
     const unsigned states = states_of(end);
     const unsigned flags = bits.read(states);
     if (bits.bytes_used() > front_bytes) return Outcome::damaged;
-    RansDecoder starts;
+    StreamStates starts;
     if (!starts.start(front + bits.bytes_used(), stream_end, states, flags)) return Outcome::damaged;
     Coders coders;
     coders.first = starts.state(0);
     coders.second = starts.state(1);
-    coders.words.start(front + bits.bytes_used(), starts.words().at(), shared + own + kWindowBytes<Slot>);
+    coders.words.start(front + bits.bytes_used(), starts.at(), shared + own + kWindowBytes<Slot>);
     counted = decode_magnitudes(steps, tables, residual, end, coders, Window<Slot>(shared, own), out, task.before);
     if (counted.over != 0) return sizeof(Slot) < 4 ? Outcome::wide : Outcome::damaged;
     if (coders.first >> 16U != 1 || coders.second >> 16U != 1) return Outcome::damaged;

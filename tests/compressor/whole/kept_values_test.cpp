@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "format/base/process_memory.h"
+#include "tests/compressor/support/budget_of.h"
 #include "tests/compressor/support/converted.h"
 
 namespace weir::kept_values_test {
@@ -88,14 +89,6 @@ TEST(KeptValuesOfMaskedData, BlocksOfOneNaNTakeNoRoom) {
   options.memory = resident_bytes() + 72 * kMiB;  // for about 6 MiB of values
   test::convert(volume, options);
   EXPECT_EQ(volume.bytes_read(), std::uint64_t{200} * 160 * 200 * sizeof(float));
-}
-
-Budget budget_of(Budget::Kind kind, double value) {
-  Budget budget;
-  budget.kind = kind;
-  if (kind == Budget::Kind::rate) budget.rate = value;
-  if (kind != Budget::Kind::rate) budget.target = value;
-  return budget;
 }
 
 INSTANTIATE_TEST_SUITE_P(Encodings, KeptValues,

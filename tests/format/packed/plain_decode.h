@@ -16,6 +16,88 @@ namespace weir::packed_test::plain {
 
 using namespace packed_detail;
 
+/// The words of a stream's coders, read from its end towards `front`; the next one is loaded ahead.
+class StreamWords {
+ public:
+  void start(const std::byte* front, const std::byte* at) {
+    front_ = front;
+    at_ = at;
+    load();
+  }
+  void renormalise(std::uint32_t& x) {
+    if (x >= kLeastState) return;
+    if (at_ - front_ < 2) {
+      whole_ = false;
+      x |= kLeastState;
+      return;
+    }
+    x = x << 16U | next_;
+    at_ -= 2;
+    load();
+  }
+  /// Up to 32 bits of a state as they are.
+  std::uint32_t bypass(std::uint32_t& x, unsigned bits) {
+    std::uint32_t value = 0;
+    for (unsigned got = 0; got < bits;) {
+      const unsigned take = bits - got < 16 ? bits - got : 16;
+      value |= (x & ((1U << take) - 1U)) << got;
+      x >>= take;
+      renormalise(x);
+      got += take;
+    }
+    return value;
+  }
+  /// False once a word was missing.
+  bool whole() const { return whole_; }
+  const std::byte* at() const { return at_; }
+
+ private:
+  void load() {
+    if (at_ - front_ < 2) return;
+    next_ = static_cast<std::uint32_t>(at_[-2]) | static_cast<std::uint32_t>(at_[-1]) << 8U;
+  }
+
+  const std::byte* front_ = nullptr;
+  const std::byte* at_ = nullptr;
+  std::uint32_t next_ = 0;
+  bool whole_ = true;
+};
+
+/// One value after the other, by the states in turn.
+class RansDecoder {
+ public:
+  /// False where the stream is too short.
+  bool start(const std::byte* front, const std::byte* end, unsigned states, unsigned short_flags) {
+    StreamStates started;
+    if (!started.start(front, end, states, short_flags)) return false;
+    for (unsigned s = 0; s < 2; ++s) state_[s] = started.state(s);
+    words_.start(front, started.at());
+    return true;
+  }
+
+  unsigned symbol(unsigned s, const std::uint16_t* table) {
+    std::uint32_t& x = state_[s];
+    const std::uint32_t slot = x & ((1U << kFrequencyBits) - 1U);
+    unsigned found = 0;  // the last entry of the table that is not above `slot`
+    for (unsigned j = 1; j < kPackedSymbols; ++j) found += table[j] <= slot ? 1U : 0U;
+    const std::uint32_t low = table[found];
+    const std::uint32_t high = found + 1 < kPackedSymbols ? table[found + 1] : 1U << kFrequencyBits;
+    x = (high - low) * (x >> kFrequencyBits) + slot - low;
+    words_.renormalise(x);
+    return found;
+  }
+
+  /// Up to 32 bits as they are.
+  std::uint32_t bypass(unsigned s, unsigned bits) { return words_.bypass(state_[s], bits); }
+
+  std::uint32_t state(unsigned s) const { return state_[s]; }
+  const StreamWords& words() const { return words_; }
+
+ private:
+  std::uint32_t state_[2] = {kLeastState, kLeastState};
+  StreamWords words_;
+};
+
 /// Decodes the magnitudes of places 1 to kEndUnit * end - 1 into `magnitudes` by index, which has 513 entries and is
 /// zero. Returns how many are not zero; ~0 where the stream is invalid.
 inline std::uint32_t decode_magnitudes(const BlockScan& scan, RansDecoder& coder, const CoderContexts& contexts,

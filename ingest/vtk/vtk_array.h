@@ -1,0 +1,40 @@
+// An array of a VTK image, whatever the format of the file, and the volume that it is.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "format/base/scalar_type.h"
+#include "ingest/files/input_file.h"
+#include "ingest/source/source_options.h"
+#include "ingest/source/volume_source.h"
+#include "ingest/vectors/voxel_components.h"
+#include "ingest/vtk/vtk_image.h"
+
+namespace weir {
+
+struct VtkArray {
+  std::string name;  ///< "PointData/a" and "CellData/a" where points and cells have an array "a"
+  bool cells = false;
+  ScalarType type = ScalarType::float32;
+  std::string type_name;        ///< as written
+  std::string obstacle;         ///< why it cannot be converted; empty where it can
+  std::int64_t components = 1;  ///< numbers a voxel, side by side
+};
+
+struct VtkVolume {
+  SourceInfo info;
+  VoxelComponents components;
+  std::uint64_t bytes = 0;  ///< of all values, as they are stored without packing
+  std::string where;        ///< what messages begin with
+};
+
+/// `array` of `file`, which has no obstacle, as `options` ask for it. `format` is SourceInfo::format. Throws Error
+/// where the image has no place, the components asked for are not there, or the values are too many.
+VtkVolume vtk_volume(const InputFile& file, const char* format, const VtkImage& image, const VtkArray& array,
+                     const SourceOptions& options);
+
+/// Throws Error(usage): there is nothing that --index could choose.
+void refuse_vtk_index(const std::string& path, const SourceOptions& options);
+
+}  // namespace weir
