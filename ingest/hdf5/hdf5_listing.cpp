@@ -1,10 +1,10 @@
 #include <algorithm>
-#include <array>
 #include <span>
 #include <utility>
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "ingest/axes/axis_details.h"
 #include "ingest/hdf5/file/hdf5_attribute.h"
 #include "ingest/hdf5/file/hdf5_file.h"
 #include "ingest/hdf5/file/hdf5_walk.h"
@@ -12,7 +12,6 @@
 #include "ingest/hdf5/meaning/axis_roles.h"
 #include "ingest/hdf5/meaning/dataset_facts.h"
 #include "ingest/hdf5/meaning/dimension_scales.h"
-#include "ingest/hdf5/meaning/field_meaning.h"
 #include "ingest/hdf5/meaning/volume_slice.h"
 
 namespace weir {
@@ -35,24 +34,10 @@ std::string packing_text(const ValueMapping& mapping) {
 }
 
 // `axes` without that of components.
-void describe_axes(std::span<const AxisPlace> axes, Attributes& attributes) {
+void add_axes(std::span<const AxisPlace> axes, Attributes& attributes) {
   if (axes.size() < kVolumeRank) return;
-  const AxisRoles roles = axis_roles(axes);
-  std::string spacing;
-  std::string origin;
-  std::array<const AxisPlace*, kVolumeRank> volume{};
-  for (std::size_t i = 0; i < kVolumeRank; ++i) {
-    const AxisPlace& axis = axes[roles.volume.at(kVolumeRank - 1 - i)];
-    volume.at(i) = &axis;
-    const char* const comma = i == 0 ? "" : ",";
-    if (axis.is_time) return;  // no place
-    spacing += cat(comma, axis.spacing.value_or(1.0));
-    origin += cat(comma, axis.origin.value_or(0.0));
-    add(attributes, cat("axis ", std::string("xyz").substr(i, 1)), axis_note(axis, i));
-  }
-  add(attributes, "order", order_note(volume));
-  if (spacing != "1,1,1") add(attributes, "spacing x,y,z", spacing);
-  if (origin != "0,0,0") add(attributes, "origin x,y,z", origin);
+  const auto& [z, y, x] = axis_roles(axes).volume;
+  for (auto& listed : listed_axes({&axes[x], &axes[y], &axes[z]})) attributes.push_back(std::move(listed));
 }
 
 DatasetInfo described(const Hdf5Object& object, const DatasetFacts& facts) {
@@ -87,7 +72,7 @@ DatasetInfo described(const Hdf5Object& object, const DatasetFacts& facts) {
     for (const std::size_t i : roles.others) info.index_axes.push_back({axes[i].label, axes[i].extent});
     info.index_by_name = roles.interleaved();
   }
-  describe_axes(axes, info.attributes);
+  add_axes(axes, info.attributes);
   info.components = facts.components.count;
   info.obstacle = facts.obstacle;
   info.leading_axes = facts.obstacle.empty() ? leading_axes(facts.axes) : 0;

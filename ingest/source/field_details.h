@@ -42,7 +42,6 @@ struct FieldDetails {
   std::string values_note;               ///< what the file says of its values and weir does not apply; else empty
   std::string data_note;                 ///< which bytes of a header's data file are not read; else empty
   std::string chunks_note;               ///< how many chunks are not stored, and what they read as; else empty
-  std::string coordinates_note;          ///< which axes have coordinates that weir does not read; else empty
   std::string units_note;                ///< which axis is in which units, where spacings are in several; else empty
 };
 

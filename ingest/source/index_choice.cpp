@@ -10,6 +10,9 @@
 namespace weir {
 namespace {
 
+/// Volumes of one call, at most: as many files as a directory is good for.
+constexpr std::uint64_t kMostPositions = 1'000'000;
+
 // "" is no number and no error: what it stands for is left open.
 bool read_end(std::string_view text, std::optional<std::int64_t>& end) {
   if (text.empty()) return true;
@@ -104,6 +107,11 @@ std::vector<std::vector<std::int64_t>> chosen_positions(const std::string& where
                                 ", which has the positions 0 to ", extent - 1, "; add ", name, "=0"));
     }
     const auto [first, end] = checked_bounds(where, name, of_axis[axis] == nullptr ? only : *of_axis[axis], extent);
+    const auto along = static_cast<std::uint64_t>(end - first);
+    if (along > kMostPositions / positions.size()) {
+      throw usage_error(compose(where, ": ", option("index"), " stands for more than ", kMostPositions,
+                                " volumes: ", along, " along ", name, "; give ranges of positions, FIRST:END"));
+    }
     std::vector<std::vector<std::int64_t>> longer;
     for (const std::vector<std::int64_t>& before : positions) {
       for (std::int64_t position = first; position < end; ++position) {

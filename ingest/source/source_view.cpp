@@ -132,7 +132,6 @@ std::unique_ptr<VolumeSource> place_source(std::unique_ptr<VolumeSource> source,
       if (!axis.reversed) axis.note.clear();
     }
     placed.details.units_note.clear();
-    placed.details.coordinates_note.clear();
   }
   return std::make_unique<SourceView>(std::move(source), std::move(placed));
 }

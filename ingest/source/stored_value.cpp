@@ -28,9 +28,10 @@ bool holds_integer(const StoredValue& value) {
       value);
 }
 
-bool holds_real(const StoredValue& value, double largest) {
+// Whether `value`, where it is finite, rounds to a finite one: `end` lies half a step above the largest of these.
+bool holds_real(const StoredValue& value, double end) {
   const double v = as_double(value);
-  return !std::isfinite(v) || std::fabs(v) <= largest;
+  return !std::isfinite(v) || std::fabs(v) < end;
 }
 
 }  // namespace
@@ -76,11 +77,11 @@ bool holds(ScalarType type, const StoredValue& value) {
     case ScalarType::int64:
       return holds_integer<std::int64_t>(value);
     case ScalarType::float16:
-      return holds_real(value, 65504);
+      return holds_real(value, 65520);
     case ScalarType::bfloat16:
-      return holds_real(value, 0x1.FEp127);
+      return holds_real(value, 0x1.FFp127);
     case ScalarType::float32:
-      return holds_real(value, static_cast<double>(std::numeric_limits<float>::max()));
+      return holds_real(value, 0x1.FFFFFFp127);
     case ScalarType::float64:
       return true;
   }

@@ -8,6 +8,8 @@
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "format/io/file_mapping.h"
+#include "format/layout/nanovdb_layout.h"
+#include "format/nanovdb/nvdb_checksum.h"
 #include "format/nanovdb/nvdb_grid.h"
 #include "ingest/files/input_file.h"
 #include "ingest/headers/header_text.h"
@@ -99,6 +101,11 @@ std::unique_ptr<VolumeSource> open_nvdb(const std::string& path, const SourceOpt
   const std::string where = cat(path, ": grid ", in_quotes(chosen.volume.name));
   if (domain.empty()) throw Error(ErrorKind::input, cat(where, " has no active voxel; nothing to convert"));
   checked_volume_bytes(domain.extent(), sizeof(float), where);
+  const bool has_checksum = grid.head_checksum() != static_cast<std::uint32_t>(nvdb::kNoChecksum);
+  if (options.notice && has_checksum && computed_head_checksum(grid) != grid.head_checksum()) {
+    options.notice(compose(where, " has another head than its checksum is of: the file may be damaged; weir verify ",
+                           "and nanovdb_validate say what of it"));
+  }
 
   SourceInfo info;
   info.path = path;

@@ -7,10 +7,11 @@
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "ingest/axes/axis_details.h"
 #include "ingest/headers/header_text.h"
 #include "ingest/source/convert_command.h"
-#include "ingest/values/axis_placement.h"
 #include "ingest/zarr/meaning/multiscales.h"
+#include "ingest/zarr/meaning/outer_store.h"
 #include "ingest/zarr/metadata/zarr_json.h"
 
 namespace weir {
@@ -32,39 +33,40 @@ std::optional<std::string> finest_level(const ZarrNode& node) {
   return joined_key(node.key, without_slashes(images.front().levels.front().path));
 }
 
-/// Whether the array `name` beside `node` has as many elements along its one axis as the axis of that name, as xarray
-/// writes coordinates.
-bool has_coordinates(ZarrStore& store, const ZarrNode& node, const std::string& name, std::int64_t extent) {
-  const std::string group = node.key.substr(0, node.key.rfind('/') == std::string::npos ? 0 : node.key.rfind('/'));
-  if (name.empty() || name.find('/') != std::string::npos || joined_key(group, name) == node.key) return false;
-  try {
-    const auto found = zarr_node(store, joined_key(group, name));
-    return found && found->array && json_member(found->metadata, "shape") == nlohmann::json::array({extent});
-  } catch (const Error& error) {
-    if (error.kind() == ErrorKind::interrupted) throw;
-    return false;  // an array that cannot be read is none of this one's affairs
-  }
-}
+/// What groups say of the arrays in them: those of the store, or, where that is one array, those around it. One thread
+/// at a time.
+class Surroundings {
+ public:
+  /// `store` outlives it.
+  Surroundings(ZarrStore& store, const std::string& path)
+      : outer_(outer_store(store, path)),
+        levels_(outer_.store ? *outer_.store : store),
+        coordinates_(outer_.store ? *outer_.store : store) {}
 
-std::string coordinates_note(ZarrStore& store, const ZarrNode& node, const ZarrArray& array) {
-  if (array.shape.size() < kAxesOfSpace) return {};
-  std::string names;
-  bool of_space = false;
-  for (std::size_t axis = 0; axis < array.shape.size(); ++axis) {
-    if (!has_coordinates(store, node, array.axis_names[axis], array.shape[axis])) continue;
-    names += cat(names.empty() ? "" : ", ", array.axis_names[axis]);
-    of_space = of_space || axis + kAxesOfSpace >= array.shape.size();
-  }
-  return of_space ? cat("has coordinates ", names, ", which are not read from Zarr") : std::string();
-}
+  std::optional<FoundLevel> level_of(const ZarrNode& node) { return levels_.find(key_of(node)); }
 
-ChosenArray meant_array(ZarrStore& store, ZarrNode node, LevelFinder& levels) {
-  ChosenArray chosen{std::move(node), {}, {}};
-  chosen.array = zarr_array(store, chosen.node);
-  const auto level = levels.find(chosen.node.key);
-  chosen.meaning = array_meaning(chosen.array, level);
-  if (!level) chosen.meaning.coordinates_note = coordinates_note(store, chosen.node, chosen.array);
-  return chosen;
+  ArrayMeaning meaning_of(const ZarrNode& node, const ZarrArray& array) {
+    const auto level = level_of(node);
+    ArrayAxes axes = array_axes(array, level);
+    if (level || array.shape.size() < kAxesOfSpace) return array_meaning(array, std::move(axes));
+    coordinates_.place(key_of(node), axes.places);
+    ArrayMeaning meaning = array_meaning(array, std::move(axes));
+    meaning.auxiliary_time = coordinates_.auxiliary_time(key_of(node), node.attributes);
+    return meaning;
+  }
+
+ private:
+  std::string key_of(const ZarrNode& node) const { return joined_key(outer_.key, node.key); }
+
+  OuterStore outer_;
+  LevelFinder levels_;
+  CoordinateArrays coordinates_;
+};
+
+ChosenArray meant_array(ZarrStore& store, ZarrNode node, Surroundings& around) {
+  ZarrArray array = zarr_array(store, node);
+  ArrayMeaning meaning = around.meaning_of(node, array);
+  return {std::move(node), std::move(array), std::move(meaning)};
 }
 
 std::string names_text(const std::vector<ZarrNode>& arrays) {
@@ -76,14 +78,14 @@ std::string names_text(const std::vector<ZarrNode>& arrays) {
   return text;
 }
 
-ChosenArray named_array(ZarrStore& store, const std::string& path, const std::string& dataset, LevelFinder& levels) {
+ChosenArray named_array(ZarrStore& store, const std::string& path, const std::string& dataset, Surroundings& around) {
   const std::string key = without_slashes(dataset);
   auto node = zarr_node(store, key);
   if (node && !node->array) {
     const auto finest = finest_level(*node);
     node = finest ? zarr_node(store, *finest) : std::nullopt;
   }
-  if (node && node->array) return meant_array(store, std::move(*node), levels);
+  if (node && node->array) return meant_array(store, std::move(*node), around);
   const std::vector<ZarrNode> arrays = zarr_arrays(store);
   throw input_error(
       path, cat("has no array ", in_quotes(dataset), "; it has ", arrays.empty() ? "none" : names_text(arrays)));
@@ -102,18 +104,6 @@ Error several_arrays(const std::string& path, const std::vector<DatasetInfo>& vo
       compose(path, ": holds ", volumes.size(), " volumes; choose one with ", option("dataset"), ": ", commands));
 }
 
-void add_placement(const ArrayMeaning& meaning, DatasetInfo& info) {
-  const std::size_t rank = meaning.axes.size();
-  if (rank < 3) return;
-  const auto last = [rank](const std::vector<double>& of) { return Vector3{of[rank - 1], of[rank - 2], of[rank - 3]}; };
-  const Vector3 spacing = last(meaning.scale);
-  const Vector3 origin = last(meaning.translation);
-  if (spacing != Vector3{1, 1, 1}) info.attributes.emplace_back("spacing x,y,z", vector_text(spacing));
-  if (origin != Vector3{0, 0, 0}) info.attributes.emplace_back("origin x,y,z", vector_text(origin));
-  const ScaleAxis& x = meaning.axes.back();
-  if (!x.unit.empty()) info.attributes.emplace_back("unit of space", x.unit);
-}
-
 /// `error` without the document that it begins with.
 std::string reason_of(const Error& error, const std::string& document) {
   const std::string text = error.what();
@@ -121,7 +111,7 @@ std::string reason_of(const Error& error, const std::string& document) {
   return text.starts_with(prefix) ? text.substr(prefix.size()) : text;
 }
 
-DatasetInfo describe_array(ZarrStore& store, const ZarrNode& node, LevelFinder& levels) {
+DatasetInfo describe_array(ZarrStore& store, const ZarrNode& node, Surroundings& around) {
   DatasetInfo info;
   info.name = node.key;
   const nlohmann::json& type = json_member(node.metadata, node.version == 3 ? "data_type" : "dtype");
@@ -129,21 +119,23 @@ DatasetInfo describe_array(ZarrStore& store, const ZarrNode& node, LevelFinder& 
   const std::string document = store.shown(node.document);
   try {
     info.extents = json_extents(json_member(node.metadata, "shape"), "shape", 0, document);
-    const ChosenArray chosen = meant_array(store, node, levels);
+    const ChosenArray chosen = meant_array(store, node, around);
     info.type = cat(chosen.array.values().big_endian ? "big-endian " : "", scalar_name(chosen.array.type));
     info.layout = chosen.array.layout_text();
-    for (const ScaleAxis& axis : chosen.meaning.axes) {
-      if (!axis.name.empty()) info.axis_names.push_back(axis.name);
+    for (const AxisPlace& axis : chosen.meaning.axes.places) {
+      if (!axis.label.empty()) info.axis_names.push_back(axis.label);
     }
-    if (!info.axis_names.empty()) info.attributes.emplace_back("axes", axes_text(chosen.array, chosen.meaning));
+    if (!info.axis_names.empty()) info.attributes.emplace_back("axes", chosen.meaning.axes.text());
     info.attributes.emplace_back("fill value", chosen.array.fill_text);
-    if (!chosen.meaning.units.empty()) info.attributes.emplace_back("units", chosen.meaning.units);
-    add_placement(chosen.meaning, info);
-    for (const std::string& note : {chosen.meaning.place_note, chosen.meaning.coordinates_note}) {
-      if (!note.empty()) info.attributes.emplace_back("note", note);
+    if (!chosen.meaning.values.units.empty()) info.attributes.emplace_back("units", chosen.meaning.values.units);
+    if (info.extents.size() >= kAxesOfSpace) {
+      const VolumeAxes axes = chosen.meaning.volume_axes();
+      for (auto& listed : listed_axes(axes)) info.attributes.push_back(std::move(listed));
+      if (!axes[0]->units.empty()) info.attributes.emplace_back("unit of space", axes[0]->units);
     }
+    if (!chosen.meaning.axes.note.empty()) info.attributes.emplace_back("note", chosen.meaning.axes.note);
     info.obstacle = chosen.meaning.obstacle;
-    info.index_axes = chosen.meaning.leading(chosen.array);
+    info.index_axes = chosen.meaning.leading();
     const bool single = std::all_of(info.index_axes.begin(), info.index_axes.end(),
                                     [](const LeadingAxis& axis) { return axis.extent == 1; });
     info.leading_axes = info.obstacle.empty() && !single ? info.index_axes.size() : 0;
@@ -160,7 +152,7 @@ struct ListedArrays {
   std::vector<DatasetInfo> infos;
 };
 
-ListedArrays listed_arrays(ZarrStore& store, const std::string& path, LevelFinder& levels) {
+ListedArrays listed_arrays(ZarrStore& store, const std::string& path, Surroundings& around) {
   ListedArrays listed{zarr_arrays(store), {}};
   if (listed.nodes.empty()) {
     throw input_error(path, "holds no array of Zarr (zarr.json or .zarray); name the directory or zip file of one");
@@ -168,16 +160,16 @@ ListedArrays listed_arrays(ZarrStore& store, const std::string& path, LevelFinde
   const auto root = zarr_node(store, {});
   const auto finest = root && !root->array ? finest_level(*root) : std::nullopt;
   for (const ZarrNode& node : listed.nodes) {
-    DatasetInfo info = describe_array(store, node, levels);
-    const auto level = levels.find(node.key);
-    info.by_name_only = finest ? node.key != *finest : level && level->level > 0;
+    DatasetInfo info = describe_array(store, node, around);
+    const auto level = around.level_of(node);
+    info.by_name_only = !node.key.empty() && (finest ? node.key != *finest : level && level->level > 0);
     listed.infos.push_back(std::move(info));
   }
   return listed;
 }
 
-ChosenArray only_array(ZarrStore& store, const std::string& path, LevelFinder& levels) {
-  ListedArrays listed = listed_arrays(store, path, levels);
+ChosenArray only_array(ZarrStore& store, const std::string& path, Surroundings& around) {
+  ListedArrays listed = listed_arrays(store, path, around);
   std::vector<DatasetInfo> volumes;
   std::optional<std::size_t> only;
   std::string obstacle;
@@ -191,7 +183,7 @@ ChosenArray only_array(ZarrStore& store, const std::string& path, LevelFinder& l
     }
   }
   if (volumes.size() > 1) throw several_arrays(path, volumes);
-  if (only) return meant_array(store, std::move(listed.nodes[*only]), levels);
+  if (only) return meant_array(store, std::move(listed.nodes[*only]), around);
   throw input_error(path, listed.nodes.size() == 1
                               ? obstacle
                               : cat("none of its ", listed.nodes.size(), " arrays is a volume; the first is ", obstacle,
@@ -201,19 +193,19 @@ ChosenArray only_array(ZarrStore& store, const std::string& path, LevelFinder& l
 }  // namespace
 
 ChosenArray choose_array(ZarrStore& store, const std::string& path, const std::string& dataset) {
-  LevelFinder levels(store);
-  if (!dataset.empty()) return named_array(store, path, dataset, levels);
+  Surroundings around(store, path);
+  if (!dataset.empty()) return named_array(store, path, dataset, around);
   const auto root = zarr_node(store, {});
-  if (root && root->array) return meant_array(store, *root, levels);
+  if (root && root->array) return meant_array(store, *root, around);
   if (root) {
-    if (const auto finest = finest_level(*root)) return named_array(store, path, *finest, levels);
+    if (const auto finest = finest_level(*root)) return named_array(store, path, *finest, around);
   }
-  return only_array(store, path, levels);
+  return only_array(store, path, around);
 }
 
 std::vector<DatasetInfo> list_arrays(ZarrStore& store, const std::string& path) {
-  LevelFinder levels(store);
-  return listed_arrays(store, path, levels).infos;
+  Surroundings around(store, path);
+  return listed_arrays(store, path, around).infos;
 }
 
 }  // namespace weir

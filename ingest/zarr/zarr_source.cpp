@@ -11,6 +11,7 @@
 #include "ingest/chunks/chunk_boxes.h"
 #include "ingest/files/file_states.h"
 #include "ingest/files/input_directory.h"
+#include "ingest/source/reversed_source.h"
 #include "ingest/zarr/array_choice.h"
 #include "ingest/zarr/storage/zarr_chunks.h"
 #include "ingest/zarr/store/open_store.h"
@@ -108,6 +109,13 @@ class ZarrSource final : public VolumeSource {
   ChunkBoxes boxes_;
 };
 
+// A volume over time is made for who says how far apart its planes are to be.
+void check_obstacle(const ArrayMeaning& meaning, const SourceOptions& options, const std::string& where) {
+  if (meaning.obstacle.empty() || (meaning.over_time && options.spacing)) return;
+  if (!meaning.over_time) throw input_error(where, meaning.obstacle);
+  throw input_error(where, compose(meaning.obstacle, "; to take the time for a length, give ", option("spacing")));
+}
+
 }  // namespace
 
 bool recognises_zarr(std::string_view path, std::span<const std::byte> head) {
@@ -123,8 +131,8 @@ std::unique_ptr<VolumeSource> open_zarr(const std::string& path, const SourceOpt
   std::unique_ptr<ZarrStore> store = open_zarr_store(path, options.memory);
   const ChosenArray chosen = choose_array(*store, path, options.dataset);
   const std::string where = store->shown(chosen.node.key);
-  if (!chosen.meaning.obstacle.empty()) throw input_error(where, chosen.meaning.obstacle);
-  const auto index = checked_index(chosen.array, chosen.meaning, options.index, where);
+  check_obstacle(chosen.meaning, options, where);
+  const auto index = checked_index(chosen.meaning, options.index, where);
   SourceInfo info;
   info.path = path;
   info.format = "zarr";
@@ -132,7 +140,10 @@ std::unique_ptr<VolumeSource> open_zarr(const std::string& path, const SourceOpt
   describe_volume(chosen.array, chosen.meaning, index, info);
   options.complete(info.mapping);
   const ChunkGeometry geometry(chosen.array, index, where);
-  return std::make_unique<ZarrSource>(std::move(store), chosen, geometry, std::move(info), options);
+  std::array<bool, 3> falls{};
+  for (std::size_t i = 0; i < falls.size(); ++i) falls.at(i) = chosen.meaning.volume_axes().at(i)->falls;
+  return reverse_axes(std::make_unique<ZarrSource>(std::move(store), chosen, geometry, std::move(info), options),
+                      falls);
 }
 
 std::vector<DatasetInfo> list_zarr(const std::string& path, const SourceOptions& options) {

@@ -33,7 +33,7 @@ void check_array(const weir::ZarrArray& array) {
   for (std::size_t i = 0; i < axes; ++i) {
     if (array.chunk[i] < 1 || array.unit()[i] < 1 || array.chunk[i] % array.unit()[i] != 0) std::abort();
   }
-  const weir::ArrayMeaning meaning = weir::array_meaning(array, std::nullopt);
+  const weir::ArrayMeaning meaning = weir::array_meaning(array, weir::array_axes(array, std::nullopt));
   if (array.layout_text().empty() || !meaning.obstacle.empty()) return;
   const std::vector<std::int64_t> index(axes - 3, 0);
   const weir::ChunkGeometry geometry(array, index, "fuzz");

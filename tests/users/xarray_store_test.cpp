@@ -1,4 +1,5 @@
-// A Zarr store as xarray writes it, converted by its user: what xarray masks is missing, what is not read is said.
+// A Zarr store as xarray writes it, converted by its user: what xarray masks is missing, and coordinates place the
+// voxels.
 #include "ingest/zarr/codecs/library_codecs.h"
 #include "tests/users/user_script.h"
 
@@ -19,7 +20,7 @@ axes = ("z", "y", "x")
 packed = {"dtype": "int16", "scale_factor": 0.01, "add_offset": 300.0, "_FillValue": -32768}
 xarray.Dataset({"T": (axes, a)}).to_zarr("t.zarr", encoding={"T": packed})
 xarray.Dataset({"n": (axes, np.arange(64).reshape(4, 4, 4))}).to_zarr("n.zarr")
-xarray.Dataset({"T": (axes, a)}, {"z": np.arange(16.0) * 10, "x": np.arange(16.0)}).to_zarr("c.zarr", encoding={"T": packed})
+xarray.Dataset({"T": (axes, a)}, {"z": np.arange(16.0) * 10, "x": np.arange(16.0) * 2 + 100}).to_zarr("c.zarr", encoding={"T": packed})
 )");
   }
 };
@@ -43,17 +44,12 @@ TEST_F(XarrayStore, ZeroOfAnArrayWithoutFillValue_IsData) {
   EXPECT_EQ(sidecar("n.nvdb")["missing"]["count"], 0);
 }
 
-TEST_F(XarrayStore, CoordinatesThatAreNotRead_AreSaid) {
-  const std::string said =
-      "warning c.zarr: T: has coordinates z, x, which are not read from Zarr; --spacing and --origin set them\n";
-  const std::vector<std::string> command{"convert",    "c.zarr",           "--dataset",  "T",
-                                         "--lossless", "--missing-policy", "background", "--overwrite"};
-  const CommandResult made = weir(command);
+TEST_F(XarrayStore, Coordinates_PlaceTheVoxels) {
+  const CommandResult made =
+      weir({"convert", "c.zarr", "--dataset", "T", "--lossless", "--missing-policy", "background", "--overwrite"});
   ASSERT_EQ(made.exit_code, 0) << made.err;
-  EXPECT_NE(made.err.find(said), std::string::npos) << made.err;
-  std::vector<std::string> placed = command;
-  placed.insert(placed.end(), {"--spacing", "1,1,10"});
-  EXPECT_EQ(weir(placed).err.find("coordinates"), std::string::npos);
+  EXPECT_EQ(sidecar("c.nvdb")["grid"]["voxel_size"], (nlohmann::json{2, 1, 10}));
+  EXPECT_EQ(sidecar("c.nvdb")["grid"]["origin"], (nlohmann::json{100, 0, 0}));
 }
 
 }  // namespace

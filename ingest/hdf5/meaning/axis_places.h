@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "ingest/axes/axis_place.h"
 #include "ingest/hdf5/file/hdf5_object.h"
-#include "ingest/hdf5/meaning/axis_place.h"
 
 namespace weir {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "ingest/hdf5/meaning/axis_place.h"
+#include "ingest/axes/axis_place.h"
 
 namespace weir {
 

@@ -6,7 +6,7 @@
 
 #include "format/base/ascii.h"
 #include "format/base/text.h"
-#include "ingest/hdf5/meaning/space_axis.h"
+#include "ingest/axes/space_axis.h"
 #include "ingest/source/component_choice.h"
 
 namespace weir {

@@ -82,7 +82,7 @@ Hdf5Object only_volume(hid_t file, const std::string& path, const SourceOptions&
     throw input_error(path, compose(unread.name, ": ", unread.why, ", and may hold a volume, too; choose one with ",
                                     option("dataset"), ", or copy the file again"));
   });
-  if (datasets == 0) throw Error(ErrorKind::input, cat(path, ": holds no dataset"));
+  if (datasets == 0) throw Error(ErrorKind::input, cat(path, ": holds no dataset; name a file that has one"));
   if (candidates.empty()) {
     throw Error(ErrorKind::input, datasets == 1
                                       ? cat(path, ": ", obstacle)

@@ -1,9 +1,6 @@
 #include "ingest/hdf5/meaning/dimension_scales.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
-#include <cmath>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -12,10 +9,11 @@
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "ingest/axes/coordinates.h"
+#include "ingest/axes/time_axis.h"
 #include "ingest/hdf5/file/hdf5_attribute.h"
 #include "ingest/hdf5/file/hdf5_error.h"
 #include "ingest/hdf5/file/hdf5_handle.h"
-#include "ingest/hdf5/meaning/time_axis.h"
 
 namespace weir {
 namespace {
@@ -55,15 +53,6 @@ std::string last_part(hid_t object) {
   return std::string(path.substr(path.rfind('/') + 1));
 }
 
-// The shortest text that reads back the same, as float32 where the file has no more.
-std::string coordinate_text(double value, double precision) {
-  std::array<char, 32> text{};
-  const bool single = precision >= static_cast<double>(std::numeric_limits<float>::epsilon());
-  const auto end = single ? std::to_chars(text.data(), text.data() + text.size(), static_cast<float>(value))
-                          : std::to_chars(text.data(), text.data() + text.size(), value);
-  return {text.data(), end.ptr};
-}
-
 std::string first_text(hid_t object, const char* name) {
   const std::vector<std::string> texts = text_attribute(object, name);
   return texts.empty() ? "" : texts[0];
@@ -101,9 +90,7 @@ void place_by_scale(hid_t scale, bool grows, AxisPlace& axis) {
   if (axis.spacing) return;
   std::vector<double> coordinates = coordinate_values(scale);
   if (std::cmp_not_equal(coordinates.size(), axis.extent)) return;
-  place_by_coordinates(coordinates, precision_of(scale), axis);
-  if (axis.is_time || !axis.spacing) axis.coordinates = std::move(coordinates);
-  if (axis.is_time) axis.falls = false;
+  place_by_coordinates(std::move(coordinates), precision_of(scale), axis);
 }
 
 }  // namespace
@@ -124,35 +111,6 @@ std::vector<double> coordinate_values(hid_t dataset) {
                       cat("its coordinates cannot be read: ", reason, "; the file is cut short or damaged"));
   }
   return values;
-}
-
-void place_by_coordinates(std::span<const double> coordinates, double precision, AxisPlace& axis) {
-  if (coordinates.empty() ||
-      !std::all_of(coordinates.begin(), coordinates.end(), [](double c) { return std::isfinite(c); })) {
-    return;
-  }
-  const double first = coordinates.front();
-  const double last = coordinates.back();
-  if (coordinates.size() == 1) {
-    axis.origin = first;
-    return;
-  }
-  const std::string from_to =
-      cat(" from ", coordinate_text(first, precision), " to ", coordinate_text(last, precision));
-  const double spacing = (last - first) / static_cast<double>(coordinates.size() - 1);
-  const double tolerance =
-      kRegularTolerance * std::fabs(spacing) + precision * std::max(std::fabs(first), std::fabs(last));
-  for (std::size_t i = 0; i < coordinates.size(); ++i) {
-    const double regular = first + static_cast<double>(i) * spacing;
-    if (spacing == 0.0 || !std::isfinite(spacing) || std::fabs(coordinates[i] - regular) > tolerance) {
-      axis.note = cat("irregular coordinates", from_to, ", taken as indices");
-      return;
-    }
-  }
-  axis.spacing = std::fabs(spacing);
-  axis.origin = std::min(first, last);
-  axis.falls = spacing < 0.0;
-  if (axis.falls) axis.note = cat("falls", from_to);
 }
 
 bool is_bare_dimension(hid_t dataset) {

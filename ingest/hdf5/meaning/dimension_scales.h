@@ -4,19 +4,12 @@
 
 #include <hdf5.h>
 
-#include <cstddef>
 #include <span>
 #include <vector>
 
-#include "ingest/hdf5/meaning/axis_place.h"
+#include "ingest/axes/axis_place.h"
 
 namespace weir {
-
-/// Coordinates of an axis that are looked at, at most: 8 MiB of them.
-inline constexpr std::size_t kMaxCoordinates = std::size_t{1} << 20U;
-/// How far a coordinate may lie from where regular spacing puts it, in spacings: coordinates in degrees or
-/// kilometres are often rounded to a few digits.
-inline constexpr double kRegularTolerance = 1e-3;
 
 /// Fills labels by the names of the scales of `dataset` (attribute DIMENSION_LIST), else by DIMENSION_LABELS; units and
 /// is_time by the scales' attributes; spacing and origin, where they are not set, by their values. Irregular
@@ -30,8 +23,5 @@ bool is_bare_dimension(hid_t dataset);
 /// The numbers of a dataset of up to kMaxCoordinates of them, in one axis or none; empty where it is another. Throws
 /// Error(input) where they cannot be read. The caller holds Hdf5Lock.
 std::vector<double> coordinate_values(hid_t dataset);
-
-/// What place_by_scales makes of the coordinates of one axis.
-void place_by_coordinates(std::span<const double> coordinates, double precision, AxisPlace& axis);
 
 }  // namespace weir

@@ -1,23 +1,18 @@
 #include "ingest/hdf5/meaning/field_meaning.h"
 
-#include <array>
 #include <cstddef>
-#include <set>
 #include <utility>
 #include <vector>
 
 #include "format/base/text.h"
+#include "ingest/axes/axis_details.h"
 #include "ingest/hdf5/file/hdf5_attribute.h"
 #include "ingest/hdf5/file/hdf5_object.h"
 #include "ingest/hdf5/meaning/dimension_scales.h"
 #include "ingest/hdf5/meaning/openpmd.h"
-#include "ingest/hdf5/meaning/space_axis.h"
 
 namespace weir {
 namespace {
-
-/// More coordinates of an irregular axis would make the sidecar larger than a small volume.
-constexpr std::size_t kMostKeptCoordinates = 16384;
 
 std::string text_of(hid_t object, const char* name) {
   const std::vector<std::string> texts = text_attribute(object, name);
@@ -70,60 +65,9 @@ FieldDetails field_details(hid_t file, const Hdf5Object& object, std::span<const
   FieldDetails details;
   details.long_name = long_name_of(object.handle.get());
   details.time = time_of(file, object, axes, slice);
-  for (std::size_t i = 0; i < kVolumeRank; ++i) {
-    const AxisPlace& axis = axes[slice.roles.volume.at(kVolumeRank - 1 - i)];
-    AxisDetails& kept = details.axes.at(i);
-    kept.units = axis.units;
-    kept.reversed = axis.falls;
-    kept.note = axis_note(axis, i);
-    const bool irregular = !axis.note.empty() && !axis.falls;
-    if (irregular && axis.coordinates.size() <= kMostKeptCoordinates) kept.coordinates = axis.coordinates;
-  }
   const auto& [z, y, x] = slice.roles.volume;
-  details.orientation = axes[x].orientation;
-  details.order_note = order_note(std::array{&axes[x], &axes[y], &axes[z]});
-  details.units_note = units_note(std::array{&axes[x], &axes[y], &axes[z]});
+  describe_axes({&axes[x], &axes[y], &axes[z]}, details);
   return details;
-}
-
-namespace {
-
-// degrees_north and degrees_east are one unit.
-std::string unit_of(const AxisPlace& axis) { return axis.units.starts_with("degree") ? "degrees" : axis.units; }
-
-}  // namespace
-
-std::string units_note(std::span<const AxisPlace* const, 3> axes) {
-  std::string text;
-  std::set<std::string> units;
-  for (std::size_t i = 0; i < axes.size(); ++i) {
-    const AxisPlace& axis = *axes[i];
-    if (!axis.spacing || axis.units.empty()) continue;  // a place in no units
-    units.insert(unit_of(axis));
-    text += cat(text.empty() ? "axis " : ", ", "xyz"[i], axis.label.empty() ? "" : " (", axis.label,
-                axis.label.empty() ? "" : ")", text.empty() ? " is in " : " in ", axis.units);
-  }
-  return units.size() > 1 ? text : "";
-}
-
-std::string order_note(std::span<const AxisPlace* const, 3> axes) {
-  std::string text;
-  std::size_t others = 0;
-  for (std::size_t i = 0; i < axes.size(); ++i) {
-    const auto named = space_direction(axes[i]->label);
-    if (!named || *named == i) continue;
-    ++others;
-    text += cat(text.empty() ? "" : ", ", axes[i]->label, " lies along ", "xyz"[i]);
-  }
-  if (others < 2) return "";
-  return cat("its axes are ", axes[2]->label, ", ", axes[1]->label, ", ", axes[0]->label,
-             ", slowest first, and x is the fastest: the file's ", text);
-}
-
-std::string axis_note(const AxisPlace& axis, std::size_t of_volume) {
-  if (!axis.falls) return axis.note;
-  constexpr std::array<const char*, kVolumeRank> kElements{"columns", "rows", "planes"};
-  return cat(axis.note, ": ", kElements.at(of_volume), " are read in reverse order, so that positions rise");
 }
 
 std::string long_name_of(hid_t object) {

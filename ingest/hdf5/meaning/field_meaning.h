@@ -5,8 +5,8 @@
 #include <span>
 #include <string>
 
+#include "ingest/axes/axis_place.h"
 #include "ingest/hdf5/file/hdf5_object.h"
-#include "ingest/hdf5/meaning/axis_place.h"
 #include "ingest/hdf5/meaning/volume_slice.h"
 #include "ingest/source/field_details.h"
 
@@ -17,18 +17,6 @@ namespace weir {
 /// iteration, in seconds. The caller holds Hdf5Lock.
 FieldDetails field_details(hid_t file, const Hdf5Object& object, std::span<const AxisPlace> axes,
                            const VolumeSlice& slice);
-
-/// "axis x (xh) is in km, y (yh) in km, z (zh) in m", where a volume's axes x, y, z that have a spacing have it in
-/// different units; else empty.
-std::string units_note(std::span<const AxisPlace* const, 3> axes);
-
-/// "its axes are called x, y, z, slowest first: the file's z lies along x, ...", where the names of at least two of a
-/// volume's axes x, y, z are those of others among them; else empty.
-std::string order_note(std::span<const AxisPlace* const, 3> axes);
-
-/// What is said of `axis`, a volume's x, y or z by `of_volume` (0, 1, 2), of which spacing and origin are not all: that
-/// its coordinates are irregular, or that they fall. Empty where that is nothing.
-std::string axis_note(const AxisPlace& axis, std::size_t of_volume);
 
 /// Attribute long_name, else WRF's description; empty where there is neither. The caller holds Hdf5Lock.
 std::string long_name_of(hid_t object);

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "ingest/axes/axis_place.h"
 #include "ingest/hdf5/file/hdf5_handle.h"
-#include "ingest/hdf5/meaning/axis_place.h"
 
 namespace weir {
 

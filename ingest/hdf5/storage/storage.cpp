@@ -69,7 +69,7 @@ Storage storage_of(hid_t dataset) {
   if (storage.obstacle.empty() && H5Sget_simple_extent_npoints(space.get()) > 0 &&
       (storage.kind == StorageKind::contiguous || storage.kind == StorageKind::chunked) &&
       H5Dget_storage_size(dataset) == 0) {
-    storage.obstacle = "no value was ever written to it";
+    storage.obstacle = "no value was ever written to it; convert it when its values are there";
   }
   return storage;
 }

@@ -13,8 +13,10 @@
 namespace weir {
 namespace {
 
+constexpr const char* kAttributesV2 = ".zattrs";
+
 nlohmann::json attributes_v2(ZarrStore& store, const std::string& key) {
-  const std::string document = joined_key(key, ".zattrs");
+  const std::string document = joined_key(key, kAttributesV2);
   const auto text = store.text(document);
   return text ? parse_zarr_json(*text, store.shown(document)) : nlohmann::json::object();
 }
@@ -29,7 +31,11 @@ struct ZarrWalk {
 
 void add_arrays(ZarrWalk& walk, const std::string& key, std::size_t depth) {
   auto node = zarr_node(walk.store, key);
-  if (node) walk.bytes += walk.store.look(node->document).value_or(ZarrObjectState{}).bytes;
+  const auto bytes_of = [&](const std::string& document) {
+    return walk.store.look(document).value_or(ZarrObjectState{}).bytes;
+  };
+  if (node) walk.bytes += bytes_of(node->document);
+  if (node && node->version == 2) walk.bytes += bytes_of(joined_key(key, kAttributesV2));
   if (++walk.nodes > kMostZarrNodes || depth > kMostZarrDepth || walk.bytes > kMostWalkedBytes) {
     throw input_error(walk.store.shown({}), cat("has more than ", kMostZarrNodes, " groups and arrays, ",
                                                 kMostZarrDepth, " groups in each other or ", kMostWalkedBytes,

@@ -1,5 +1,6 @@
 #include "ingest/zarr/metadata/zarr_array.h"
 
+#include <algorithm>
 #include <array>
 
 #include "format/base/text.h"
@@ -17,11 +18,11 @@ std::string extents_text(const std::vector<std::int64_t>& extents) {
 
 std::string ZarrChunkKeys::key(std::span<const std::int64_t> position) const {
   std::string text = prefix ? "c" : "";
-  for (const std::int64_t p : position) {
+  for (const std::int64_t p : position.subspan(std::min(unnamed, position.size()))) {
     if (!text.empty()) text += separator;
     text += cat(p);
   }
-  return text;
+  return text.empty() ? "0" : text;
 }
 
 std::string ZarrArray::layout_text() const {

@@ -45,10 +45,11 @@ struct ZarrSharding {
 
 /// How the key of a chunk is made of its position in the grid.
 struct ZarrChunkKeys {
-  bool prefix = false;   ///< "c" stands before the numbers, as in version 3
-  char separator = '.';  ///< between all parts
+  bool prefix = false;      ///< "c" stands before the numbers, as in version 3
+  char separator = '.';     ///< between all parts
+  std::size_t unnamed = 0;  ///< positions in front that are not in the key, of axes that the array does not have
 
-  /// "0.0.1" or "c/0/0/1".
+  /// "0.0.1" or "c/0/0/1"; "0" or "c" where there are no positions.
   std::string key(std::span<const std::int64_t> position) const;
 };
 

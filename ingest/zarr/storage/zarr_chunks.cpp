@@ -53,11 +53,14 @@ std::shared_ptr<const OpenShard> ZarrChunks::inner_shard(const OpenShard& outer,
   });
 }
 
+std::string ZarrChunks::corner_text(const ChunkPlace& place) const {
+  return position_text({place.corner.begin() + static_cast<std::ptrdiff_t>(objects_.keys.unnamed), place.corner.end()});
+}
+
 void ZarrChunks::add_unstored(const Box& chunks, UnstoredChunks& unstored) const {
   if (unstored.count == 0) {
     const ChunkPlace place = geometry_.place_of(chunks.lo);
-    unstored.first =
-        cat(objects_.store.shown(objects_.key_of(place.object)), ": chunk at ", position_text(place.corner));
+    unstored.first = cat(objects_.store.shown(objects_.key_of(place.object)), ": chunk at ", corner_text(place));
   }
   unstored.count += static_cast<std::uint64_t>(chunks.voxels());
 }
@@ -104,7 +107,7 @@ UnstoredChunks ZarrChunks::count_unstored() {
 
 Error ZarrChunks::wrong_chunk(const ChunkPlace& place, const Message& what) const {
   return input_error(objects_.store.shown(objects_.key_of(place.object)),
-                     compose("chunk at ", position_text(place.corner), ": ", what, "; the file is damaged"));
+                     compose("chunk at ", corner_text(place), ": ", what, "; the file is damaged"));
 }
 
 std::optional<std::size_t> ZarrChunks::fetch(const ChunkPlace& place, std::span<std::byte> into) {

@@ -61,6 +61,8 @@ class ZarrChunks final : public StoredChunks {
   void add_unstored(const Box& chunks, UnstoredChunks& unstored) const;
   /// The bytes of the chunk to the front of `into`; nullopt where the shard has none.
   std::optional<std::size_t> fetch(const ChunkPlace& place, std::span<std::byte> into);
+  /// Its first element, of the axes that the array has.
+  std::string corner_text(const ChunkPlace& place) const;
   Error wrong_chunk(const ChunkPlace& place, const Message& what) const;
 
   ChunkObjects objects_;

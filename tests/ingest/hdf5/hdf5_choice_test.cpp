@@ -95,7 +95,7 @@ with h5py.File("empty.h5", "w") as f: f.create_group("g")
                                         ": none of its 2 datasets is a volume; the nearest is /lat: 2 axes (3 x 4); a "
                                         "volume has three; weir inspect lists them");
   EXPECT_EQ(refused("flat.h5", {}), scratch_.path("flat.h5") + ": /lat: 2 axes (3 x 4); a volume has three");
-  EXPECT_EQ(refused("empty.h5", {}), scratch_.path("empty.h5") + ": holds no dataset");
+  EXPECT_EQ(refused("empty.h5", {}), scratch_.path("empty.h5") + ": holds no dataset; name a file that has one");
 }
 
 TEST_F(Hdf5Choice, MissingDatasetErrorSuggestsOtherNames) {
@@ -241,8 +241,8 @@ with h5py.File("a.h5", "w") as f:
   EXPECT_EQ(said("line"), "1 axis (4); a volume has three");
   EXPECT_EQ(said("null"), "a single value; a volume has three axes");
   EXPECT_EQ(said("empty"), "empty: 0 x 3 x 4");
-  EXPECT_EQ(said("unwritten"), "no value was ever written to it");
-  EXPECT_EQ(said("unwritten chunks"), "no value was ever written to it");
+  EXPECT_EQ(said("unwritten"), "no value was ever written to it; convert it when its values are there");
+  EXPECT_EQ(said("unwritten chunks"), "no value was ever written to it; convert it when its values are there");
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ with h5py.File("a.h5", "w") as f:
   ASSERT_EQ(listed.size(), 4U);
   EXPECT_EQ(listed[0].name, "/filtered");
   EXPECT_EQ(listed[0].layout, "chunked 2 x 2 x 2, szip, fletcher32");
-  EXPECT_EQ(listed[0].obstacle, "no value was ever written to it");
+  EXPECT_EQ(listed[0].obstacle, "no value was ever written to it; convert it when its values are there");
 
   EXPECT_EQ(listed[1].name, "/plain");
   EXPECT_EQ(listed[1].extents, (std::vector<std::int64_t>{5, 7, 9}));

@@ -69,5 +69,13 @@ TEST(IndexChoice, Refusals_NameTheAxisAndItsPositions) {
   EXPECT_EQ(refusal("time=0,time=1"), "a.h5: --index names time twice");
 }
 
+TEST(IndexChoice, MoreVolumesThanACallIsFor_AreRefusedBeforeTheyAreListed) {
+  const std::vector<LeadingAxis> axes{{"time", 4'000'000'000}, {"member", 2}};
+  EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { chosen_positions("a.zarr", axes, parsed("*,*")); }),
+            "a.zarr: --index stands for more than 1000000 volumes: 4000000000 along time; give ranges of positions, "
+            "FIRST:END");
+  EXPECT_EQ(chosen_positions("a.zarr", axes, parsed("7:10,*")).size(), 6U);
+}
+
 }  // namespace
 }  // namespace weir::index_choice_test

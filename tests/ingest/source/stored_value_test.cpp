@@ -44,6 +44,13 @@ TEST(StoredValue, HoldsTellsWhetherATypeCanStoreAValue) {
   EXPECT_FALSE(holds(ScalarType::float16, StoredValue{1e5}));
   EXPECT_TRUE(holds(ScalarType::bfloat16, StoredValue{3.38e38}));
   EXPECT_FALSE(holds(ScalarType::bfloat16, StoredValue{3.4e38}));
+  // The shortest text of the largest float32, of float16 and of bfloat16, as others write it.
+  EXPECT_TRUE(holds(ScalarType::float32, StoredValue{-3.4028235e+38}));
+  EXPECT_TRUE(holds(ScalarType::float32, StoredValue{0x1.FFFFFEFFFFFFFp127}));
+  EXPECT_FALSE(holds(ScalarType::float32, StoredValue{0x1.FFFFFFp127})) << "rounds to infinity";
+  EXPECT_TRUE(holds(ScalarType::float16, StoredValue{6.551e4}));
+  EXPECT_FALSE(holds(ScalarType::float16, StoredValue{65520.0}));
+  EXPECT_TRUE(holds(ScalarType::bfloat16, StoredValue{3.39e38}));
   EXPECT_TRUE(holds(ScalarType::float32, StoredValue{-kInf}));
   EXPECT_FALSE(holds(ScalarType::float32, StoredValue{1e39}));
   EXPECT_TRUE(holds(ScalarType::float64, StoredValue{1e39}));

@@ -2,6 +2,9 @@
 
 #include <filesystem>
 
+#include "format/layout/nanovdb_layout.h"
+#include "format/nanovdb/nvdb_grid.h"
+#include "format/nanovdb/nvdb_header.h"
 #include "ingest/source_registry.h"
 #include "tests/ingest/support/header_file.h"
 #include "tests/stock/stock_nvdb.h"
@@ -116,6 +119,28 @@ TEST(NvdbSource, UnreadableFilesAreRefusedWithAReason) {
   path = write_headed(scratch, "b.nvdb", "garbage, garbage");
   EXPECT_EQ(message_of_error(ErrorKind::input, [&] { open_source(path, {}); }),
             path + ": at byte 0: magic number 0x2c65676162726167 is not NanoVDB0 or NanoVDB2; not a NanoVDB file");
+}
+
+TEST(NvdbSource, HeadThatDoesNotFitItsChecksum_IsSaid) {
+  const Scratch scratch;
+  const StockNvdb stock(GridType::float32);
+  std::vector<std::string> said;
+  SourceOptions options;
+  options.notice = [&](const Message& line) { said.push_back(line.text()); };
+  auto bytes = stock.file();
+  open_source(scratch.write("a.nvdb", bytes), options);
+  EXPECT_EQ(said, std::vector<std::string>{});
+  const NvdbGrid grid = NvdbGrid::open(bytes, "a.nvdb", all_nvdb_segments(bytes, "a.nvdb").at(0));
+  bytes[static_cast<std::size_t>(grid.grid_offset()) + nvdb::grid::kName] ^= std::byte{1};
+  const std::string path = scratch.write("b.nvdb", bytes);
+  options.dataset.clear();
+  open_source(path, options);
+  ASSERT_EQ(said.size(), 1U);
+  EXPECT_TRUE(said[0].starts_with(path + ": grid ")) << said[0];
+  EXPECT_TRUE(
+      said[0].ends_with(" has another head than its checksum is of: the file may be damaged; weir verify and "
+                        "nanovdb_validate say what of it"))
+      << said[0];
 }
 
 TEST(NvdbSource, MissingIsAnExactValue) {

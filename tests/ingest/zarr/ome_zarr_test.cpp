@@ -59,6 +59,29 @@ TEST(OmeZarr, FinestLevelIsRead_WithItsSpacingOriginUnitsAndTime) {
   }
 }
 
+TEST(OmeZarr, LevelNamedByItsOwnPath_LiesWhereTheImageSaysIt) {
+  for (const bool v3 : {false, true}) {
+    const ZarrFiles files;
+    write_image(files, v3);
+    for (const std::string end : {"", "/", v3 ? "/zarr.json" : "/.zarray"}) {
+      SourceOptions options;
+      options.index_choices = {*parse_axis_choice("t=1"), *parse_axis_choice("c=0")};
+      const auto source = open_source(files.path("1") + end, options);
+      const SourceInfo& info = source->info();
+      EXPECT_EQ(info.dataset, "");
+      EXPECT_EQ(info.spacing, (std::array{1.0, 1.0, 2.0})) << end;
+      EXPECT_EQ(info.details.axes[2].units, "micrometer");
+      ASSERT_TRUE(info.details.time);
+      EXPECT_EQ(info.details.time->value, 0.1);
+      EXPECT_EQ(ZarrFiles::read_all(*source), std::vector<float>{2});
+    }
+    const std::vector<DatasetInfo> listed = list_zarr(files.path("1"), {});
+    ASSERT_EQ(listed.size(), 1U);
+    EXPECT_FALSE(listed[0].by_name_only) << "there is no other";
+    EXPECT_EQ(listed[0].axis_names, (std::vector<std::string>{"t", "c", "z", "y", "x"}));
+  }
+}
+
 TEST(OmeZarr, DefaultNames_HaveThePositionsThatWereChosen) {
   for (const bool v3 : {false, true}) {
     const ZarrFiles files;

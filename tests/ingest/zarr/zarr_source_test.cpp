@@ -66,6 +66,19 @@ TEST(ZarrSource, HierarchyNamedByItsHead_HasTheSameRecordAsByItsDirectory) {
   }
 }
 
+TEST(ZarrSource, AttributesOfVersion2_CountAsMetadata) {
+  const ZarrFiles files;
+  files.write(".zgroup", R"({"zarr_format":2})");
+  const std::string large = cat(R"({"history":")", std::string(12U << 20U, 'a'), R"("})");
+  for (const char* name : {"a", "b", "c"}) {
+    files.write(cat(name, "/.zarray"), zarray("[1,1,4]", "[1,1,2]"));
+    files.write(cat(name, "/.zattrs"), large);
+  }
+  EXPECT_EQ(files.message(ErrorKind::input),
+            "run.zarr: has more than 10000 groups and arrays, 32 groups in each other or 33554432 bytes of metadata; "
+            "name a group or an array in it");
+}
+
 TEST(ZarrSource, FillValueNull_IsRefusedWhereAChunkIsNotStored) {
   const ZarrFiles files;
   files.write(".zarray", zarray("[1,1,4]", "[1,1,2]", "|u1", "null"));

@@ -95,31 +95,6 @@ TEST(ZarrValues, FillValueOfXarrayInVersion2_HoldsNoData) {
   EXPECT_EQ(values[1], 1.5F);
 }
 
-// As xarray writes them: arrays beside it, called as its axes are.
-TEST(ZarrValues, CoordinatesOfItsAxes_AreSaidAsTheyAreNotRead) {
-  const ZarrFiles files;
-  files.write(".zgroup", R"({"zarr_format":2})");
-  files.write("run/.zgroup", R"({"zarr_format":2})");
-  files.write("run/T/.zarray", zarray("[1,2,3,4]", "[1,2,3,4]", "|u1", "null"));
-  files.write("run/T/.zattrs", R"({"_ARRAY_DIMENSIONS":["time","z","lat","lon"]})");
-  files.write("run/T/0.0.0.0", std::string(24, 'a'));
-  SourceOptions options;
-  options.dataset = "run/T";
-  const auto note = [&] { return open_source(files.path(), options)->info().details.coordinates_note; };
-  EXPECT_EQ(note(), "");
-  files.write("run/time/.zarray", zarray("[1]", "[1]"));
-  EXPECT_EQ(note(), "") << "of no axis of space";
-  files.write("run/lat/.zarray", zarray("[4]", "[4]"));
-  EXPECT_EQ(note(), "") << "of another length";
-  files.write("run/lat/.zarray", zarray("[3]", "[3]"));
-  files.write("run/lon/.zarray", zarray("[4]", "[4]"));
-  const std::string said = "has coordinates time, lat, lon, which are not read from Zarr";
-  EXPECT_EQ(note(), said);
-  EXPECT_EQ(list_zarr(files.path(), {})[0].attributes.back(), (std::pair<std::string, std::string>{"note", said}));
-  options.spacing = {1, 1, 1};
-  EXPECT_EQ(note(), "");
-}
-
 TEST(ZarrValues, SignedIntegersMeantAsUnsigned_AreReadSo) {
   const ZarrFiles files;
   files.write("zarr.json", zarr_json("[1,1,4]", "[1,1,3]", R"([{"name":"bytes"}])", "int8", "-56",

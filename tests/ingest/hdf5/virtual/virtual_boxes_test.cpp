@@ -169,7 +169,8 @@ whole("bad source.h5", [(S[...], V("bad.h5", "v", (4, 4, 4)))])
   EXPECT_EQ(said("no dataset.h5"), source + "none cannot be opened: object 'none' doesn't exist");
   EXPECT_EQ(said("small.h5"), source + "small: has 24 elements where 32 are mapped");
   EXPECT_EQ(said("flat.h5"), source + "flat: has 8 elements where 32 are mapped");
-  EXPECT_EQ(said("unwritten.h5"), source + "unwritten: no value was ever written to it");
+  EXPECT_EQ(said("unwritten.h5"),
+            source + "unwritten: no value was ever written to it; convert it when its values are there");
   EXPECT_EQ(said("packed.h5"), source +
                                    "packed: packed by the filter sperr (32028), and no plugin for it is found; "
                                    "set HDF5_PLUGIN_PATH to the directory that has it");

@@ -1,4 +1,4 @@
-#include "ingest/hdf5/meaning/dimension_scales.h"
+#include "ingest/axes/coordinates.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-namespace weir::dimension_scales_test {
+namespace weir::coordinates_test {
 namespace {
 
 constexpr double kDouble = std::numeric_limits<double>::epsilon();
@@ -18,14 +18,14 @@ AxisPlace placed(const std::vector<double>& coordinates, double precision = kDou
   return axis;
 }
 
-TEST(DimensionScales, RegularCoordinatesGiveSpacingAndOrigin) {
+TEST(Coordinates, RegularCoordinatesGiveSpacingAndOrigin) {
   const AxisPlace axis = placed({-1, -0.5, 0, 0.5});
   EXPECT_EQ(axis.spacing, 0.5);
   EXPECT_EQ(axis.origin, -1);
   EXPECT_EQ(axis.note, "");
 }
 
-TEST(DimensionScales, RoundedCoordinatesAreRegular) {
+TEST(Coordinates, RoundedCoordinatesAreRegular) {
   EXPECT_EQ(placed({0, 0.3333, 0.6667, 1}).note, "");
   std::vector<double> far;  // time in seconds since an epoch, as float32: neighbours are 64 apart
   for (int i = 0; i < 10; ++i) far.push_back(static_cast<double>(static_cast<float>(1.0e9 + i * 3600.0)));
@@ -33,7 +33,7 @@ TEST(DimensionScales, RoundedCoordinatesAreRegular) {
   EXPECT_NE(placed(far).note, "");
 }
 
-TEST(DimensionScales, IrregularOnesAreTakenAsIndices) {
+TEST(Coordinates, IrregularOnesAreTakenAsIndices) {
   for (const std::vector<double>& coordinates :
        {std::vector<double>{0, 1, 3}, {0, 1, 0}, {5, 5, 5}, {0, 1.002, 2}, {-1.5e308, 0, 1.5e308}}) {
     const AxisPlace axis = placed(coordinates);
@@ -43,7 +43,7 @@ TEST(DimensionScales, IrregularOnesAreTakenAsIndices) {
   }
 }
 
-TEST(DimensionScales, FallingOnesGiveThePlacesOfElementsInReverseOrder) {
+TEST(Coordinates, FallingOnesGiveThePlacesOfElementsInReverseOrder) {
   const AxisPlace axis = placed({1000, 750, 500});
   EXPECT_EQ(axis.spacing, 250);
   EXPECT_EQ(axis.origin, 500);
@@ -53,13 +53,13 @@ TEST(DimensionScales, FallingOnesGiveThePlacesOfElementsInReverseOrder) {
   EXPECT_FALSE(placed({1000, 750, 600}).falls) << "irregular: indices are the places";
 }
 
-TEST(DimensionScales, SingleCoordinateGivesAnOriginOnly) {
+TEST(Coordinates, SingleCoordinateGivesAnOriginOnly) {
   const AxisPlace axis = placed({7});
   EXPECT_EQ(axis.spacing, std::nullopt);
   EXPECT_EQ(axis.origin, 7);
 }
 
-TEST(DimensionScales, MissingOrNonFiniteCoordinatesAreIgnored) {
+TEST(Coordinates, MissingOrNonFiniteCoordinatesAreIgnored) {
   for (const std::vector<double>& coordinates :
        {std::vector<double>{}, {std::nan("")}, {0, std::numeric_limits<double>::infinity()}}) {
     const AxisPlace axis = placed(coordinates);
@@ -70,4 +70,4 @@ TEST(DimensionScales, MissingOrNonFiniteCoordinatesAreIgnored) {
 }
 
 }  // namespace
-}  // namespace weir::dimension_scales_test
+}  // namespace weir::coordinates_test

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "ingest/hdf5/meaning/axis_place.h"
+#include "ingest/axes/axis_place.h"
 
 namespace weir {
 

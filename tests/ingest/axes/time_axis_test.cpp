@@ -1,4 +1,4 @@
-#include "ingest/hdf5/meaning/time_axis.h"
+#include "ingest/axes/time_axis.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "ingest/hdf5/meaning/space_axis.h"
+#include "ingest/axes/space_axis.h"
 
 #include <algorithm>
 #include <array>

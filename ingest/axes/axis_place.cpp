@@ -1,4 +1,4 @@
-#include "ingest/hdf5/meaning/axis_place.h"
+#include "ingest/axes/axis_place.h"
 
 #include "format/base/text.h"
 

@@ -1,0 +1,134 @@
+#include "ingest/zarr/meaning/coordinate_arrays.h"
+
+#include <cstdint>
+#include <limits>
+#include <utility>
+
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "ingest/axes/coordinates.h"
+#include "ingest/axes/time_axis.h"
+#include "ingest/zarr/meaning/array_values.h"
+#include "ingest/zarr/metadata/zarr_json.h"
+#include "ingest/zarr/storage/zarr_numbers.h"
+
+namespace weir {
+namespace {
+
+std::string group_of(const std::string& key) {
+  const std::size_t slash = key.rfind('/');
+  return slash == std::string::npos ? std::string() : key.substr(0, slash);
+}
+
+// The node at `key` where it is an array that can be parsed as JSON; one that cannot is none of another's affairs.
+std::optional<ZarrNode> array_at(ZarrStore& store, const std::string& key) {
+  try {
+    auto node = zarr_node(store, key);
+    if (node && node->array) return node;
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::input) throw;
+  }
+  return std::nullopt;
+}
+
+// The array `name` in the nearest group around that at `key`; nullopt where there is none but that itself.
+std::optional<ZarrNode> array_near(ZarrStore& store, const std::string& key, const std::string& name) {
+  if (name.empty() || name.find('/') != std::string::npos || key.empty()) return std::nullopt;
+  for (std::string group = group_of(key);; group = group_of(group)) {
+    const std::string near = joined_key(group, name);
+    if (near != key) {
+      if (auto found = array_at(store, near)) return found;
+    }
+    if (group.empty()) return std::nullopt;
+  }
+}
+
+// An array of coordinates that can be read, and what its values mean.
+struct ReadableArray {
+  ZarrArray array;
+  ValueMapping mapping;
+};
+
+// Throws Error(input) where it cannot be read, as names cannot.
+ReadableArray readable(const ZarrStore& store, const ZarrNode& node) {
+  ZarrArray array = zarr_array(store, node);
+  ArrayValues values = array_values(array);
+  const std::string where = store.shown(node.key);
+  if (!values.obstacle.empty()) throw input_error(where, values.obstacle);
+  const std::int64_t chunk = array.unit().empty() ? 1 : array.unit().front();
+  if (std::cmp_greater(chunk, 2 * kMaxCoordinates)) {
+    throw input_error(where,
+                      cat("its chunks have ", chunk, " elements, and at most ", 2 * kMaxCoordinates, " are read"));
+  }
+  return {std::move(array), std::move(values.mapping)};
+}
+
+double precision_of(ScalarType type) {
+  const bool single = type == ScalarType::float32 || type == ScalarType::float16 || type == ScalarType::bfloat16;
+  return single ? static_cast<double>(std::numeric_limits<float>::epsilon()) : std::numeric_limits<double>::epsilon();
+}
+
+void place_by_array(ZarrStore& store, const ZarrNode& found, AxisPlace& axis) {
+  const auto attribute = [&](const char* name) { return json_string(found.attributes, name); };
+  axis.has_coordinates = true;
+  axis.units = attribute("units");
+  axis.calendar = attribute("calendar");
+  axis.is_time = is_time_axis({axis.label, axis.units, attribute("axis"), attribute("standard_name"), false});
+  if (std::cmp_greater(axis.extent, kMaxCoordinates)) {
+    axis.note = cat("more than ", kMaxCoordinates, " coordinates, taken as indices");
+    return;
+  }
+  std::optional<ReadableArray> coordinates;
+  try {
+    coordinates = readable(store, found);
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::input) throw;
+    axis.note = cat("its coordinates cannot be read (", error.what(), "), taken as indices");
+    return;
+  }
+  const double precision = precision_of(coordinates->array.type);
+  place_by_coordinates(zarr_numbers(store, found.key, std::move(coordinates->array), coordinates->mapping), precision,
+                       axis);
+}
+
+}  // namespace
+
+const AxisPlace& CoordinateArrays::placed(const ZarrNode& found, const AxisPlace& axis) {
+  if (const auto kept = placed_.find(found.key); kept != placed_.end()) return kept->second;
+  AxisPlace placed = axis;
+  place_by_array(store_, found, placed);
+  kept_ += placed.coordinates.size();
+  if (kept_ > kMaxCoordinates) {
+    placed_.clear();
+    kept_ = placed.coordinates.size();
+  }
+  return placed_[found.key] = std::move(placed);
+}
+
+void CoordinateArrays::place(const std::string& key, std::span<AxisPlace> axes) {
+  for (AxisPlace& axis : axes) {
+    const auto found = array_near(store_, key, axis.label);
+    if (found && json_member(found->metadata, "shape") == nlohmann::json::array({axis.extent})) {
+      axis = placed(*found, axis);
+    }
+  }
+}
+
+std::optional<AuxiliaryTime> CoordinateArrays::auxiliary_time(const std::string& key,
+                                                              const nlohmann::json& attributes) {
+  for (const std::string& name : split(json_string(attributes, "coordinates"), ' ')) {
+    const auto found = array_near(store_, key, name);
+    if (!found) continue;
+    const nlohmann::json& shape = json_member(found->metadata, "shape");
+    const std::string units = json_string(found->attributes, "units");
+    const bool of_one_axis = shape.is_array() && (shape.empty() || (shape.size() == 1 && shape[0].is_number_integer() &&
+                                                                    shape[0] > 0 && shape[0] <= kMaxCoordinates));
+    if (!of_one_axis || units.find(" since ") == std::string::npos) continue;
+    ReadableArray times = readable(store_, *found);
+    return AuxiliaryTime{zarr_numbers(store_, found->key, std::move(times.array), times.mapping), units,
+                         json_string(found->attributes, "calendar")};
+  }
+  return std::nullopt;
+}
+
+}  // namespace weir

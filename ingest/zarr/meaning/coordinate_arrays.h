@@ -1,0 +1,49 @@
+// Where the elements of an array lie, by the arrays beside it that are called as its axes are: as xarray writes the
+// coordinates of NetCDF and CF.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "ingest/axes/axis_place.h"
+#include "ingest/zarr/meaning/zarr_nodes.h"
+#include "ingest/zarr/store/zarr_store.h"
+
+namespace weir {
+
+/// A time that is no axis's, or not called as it is: one value, or one for each element of an axis of time.
+struct AuxiliaryTime {
+  std::vector<double> values;
+  std::string units;     ///< "hours since 2000-01-01"
+  std::string calendar;  ///< of CF; else empty
+};
+
+/// Reads coordinates, and keeps what was made of them: the arrays of one group share them. One thread at a time.
+class CoordinateArrays {
+ public:
+  /// `store` outlives it.
+  explicit CoordinateArrays(ZarrStore& store) : store_(store) {}
+
+  /// Gives `axes`, those of the array at `key` by their names, the units, places, times and notes that arrays of one
+  /// axis say which are called so and have as many elements: in the array's group, or else in the nearest group around
+  /// it. Throws Error(input) where their values are damaged; those that cannot be understood get a note.
+  void place(const std::string& key, std::span<AxisPlace> axes);
+
+  /// That attribute `coordinates` (CF 5) of the array at `key` names, of units "... since ...". nullopt where it names
+  /// none.
+  std::optional<AuxiliaryTime> auxiliary_time(const std::string& key, const nlohmann::json& attributes);
+
+ private:
+  const AxisPlace& placed(const ZarrNode& found, const AxisPlace& axis);
+
+  ZarrStore& store_;
+  std::map<std::string, AxisPlace> placed_;  ///< by the key of the array of coordinates
+  std::size_t kept_ = 0;                     ///< coordinates in them
+};
+
+}  // namespace weir

@@ -1,0 +1,174 @@
+// Coordinates as xarray writes them: arrays of one axis beside the volume, called as its axes are.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "ingest/zarr/zarr_source.h"
+#include "tests/ingest/zarr/support/zarr_files.h"
+
+namespace weir::zarr_coordinates_test {
+namespace {
+
+constexpr std::string_view kGroup = R"({"zarr_format":2})";
+
+/// run.zarr/run/T of the axes time 2, z 2, lat 3, lon 4, values 0, 1, ... at time 0 and 100, 101, ... at time 1.
+class ZarrCoordinates : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    files_.write(".zgroup", kGroup);
+    files_.write("run/.zgroup", kGroup);
+    files_.write("run/T/.zarray", zarray("[2,2,3,4]", "[1,2,3,4]", "|u1", "null"));
+    files_.write("run/T/.zattrs", R"({"_ARRAY_DIMENSIONS":["time","z","lat","lon"]})");
+    for (std::uint8_t time = 0; time < 2; ++time) {
+      std::vector<std::uint8_t> values(24);
+      for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<std::uint8_t>(100 * time + i);
+      files_.write_values(cat("run/T/", +time, ".0.0.0"), values);
+    }
+  }
+  void write_axis(const std::string& name, const std::vector<double>& values, const std::string& attributes = "{}",
+                  const std::string& group = "run") const {
+    files_.write(cat(group, "/", name, "/.zarray"),
+                 zarray(cat("[", values.size(), "]"), cat("[", values.size(), "]"), "<f8", "null"));
+    files_.write(cat(group, "/", name, "/.zattrs"), attributes);
+    files_.write_values(cat(group, "/", name, "/0"), values);
+  }
+  std::unique_ptr<VolumeSource> open(std::int64_t time = 1) const {
+    SourceOptions options;
+    options.dataset = "run/T";
+    options.index = {time};
+    return open_source(files_.path(), options);
+  }
+  SourceInfo info(std::int64_t time = 1) const { return open(time)->info(); }
+
+  ZarrFiles files_;
+};
+
+TEST_F(ZarrCoordinates, ThatAreEquallySpaced_GiveSpacingOriginAndUnits) {
+  write_axis("z", {10, 20}, R"({"units":"m"})");
+  write_axis("lat", {-1, 0.5, 2}, R"({"units":"degrees_north"})");
+  write_axis("lon", {100, 101, 102, 103}, R"({"units":"degrees_east"})");
+  const SourceInfo found = info();
+  EXPECT_EQ(found.spacing, (std::array<double, 3>{1, 1.5, 10}));
+  EXPECT_EQ(found.origin, (std::array<double, 3>{100, -1, 10}));
+  EXPECT_EQ(found.details.axes[1].units, "degrees_north");
+  EXPECT_EQ(found.details.axes[1].note, "");
+  EXPECT_EQ(found.details.units_note, "axis x (lon) is in degrees_east, y (lat) in degrees_north, z (z) in m");
+}
+
+TEST_F(ZarrCoordinates, ThatFall_AreReadInReverseOrder) {
+  write_axis("lat", {60, 45, 30});
+  const auto source = open();
+  EXPECT_EQ(source->info().spacing, (std::array<double, 3>{1, 15, 1}));
+  EXPECT_EQ(source->info().origin, (std::array<double, 3>{0, 30, 0}));
+  EXPECT_EQ(source->info().details.axes[1].note,
+            "falls from 60 to 30: rows are read in reverse order, so that positions rise");
+  EXPECT_TRUE(source->info().details.axes[1].reversed);
+  const std::vector<float> values = ZarrFiles::read_all(*source);
+  EXPECT_EQ(std::vector<float>(values.begin(), values.begin() + 12),
+            (std::vector<float>{108, 109, 110, 111, 104, 105, 106, 107, 100, 101, 102, 103}));
+}
+
+TEST_F(ZarrCoordinates, ThatAreIrregular_AreKeptAndSaid) {
+  write_axis("lat", {0, 1, 5});
+  const SourceInfo found = info();
+  EXPECT_EQ(found.spacing[1], 1.0);
+  EXPECT_EQ(found.details.axes[1].note, "irregular coordinates from 0 to 5, taken as indices");
+  EXPECT_EQ(found.details.axes[1].coordinates, (std::vector<double>{0, 1, 5}));
+  const auto listed = list_zarr(files_.path(), {}).front().attributes;
+  EXPECT_NE(std::find(listed.begin(), listed.end(),
+                      std::pair<std::string, std::string>{"axis y", found.details.axes[1].note}),
+            listed.end());
+}
+
+TEST_F(ZarrCoordinates, OfATime_SayWhenTheVolumeIs) {
+  write_axis("time", {6, 9}, R"({"units":"hours since 2000-01-01","calendar":"noleap"})");
+  for (const std::int64_t time : {0, 1}) {
+    const auto at = info(time).details.time;
+    ASSERT_TRUE(at);
+    EXPECT_EQ(at->value, time == 0 ? 6 : 9);
+    EXPECT_EQ(at->units, "hours since 2000-01-01");
+    EXPECT_EQ(at->calendar, "noleap");
+  }
+}
+
+TEST_F(ZarrCoordinates, NamedByAnAttribute_SayWhenTheVolumeIs) {
+  files_.write("run/T/.zattrs", R"({"_ARRAY_DIMENSIONS":["member","z","lat","lon"],"coordinates":"label valid"})");
+  files_.write("run/valid/.zarray", zarray("[]", "[]", "<i8", "0"));
+  files_.write("run/valid/.zattrs", R"({"units":"days since 1990-01-01"})");
+  files_.write_values("run/valid/0", std::vector<std::int64_t>{17});
+  const auto at = info().details.time;
+  ASSERT_TRUE(at);
+  EXPECT_EQ(at->value, 17);
+  EXPECT_EQ(at->units, "days since 1990-01-01");
+}
+
+TEST_F(ZarrCoordinates, OfAnotherLength_AreNone) {
+  write_axis("lat", {5, 6, 7, 8});
+  EXPECT_EQ(info().origin, (std::array<double, 3>{}));
+}
+
+TEST_F(ZarrCoordinates, AreThoseOfTheNearestGroup) {
+  write_axis("lat", {2, 4, 6}, "{}", ".");
+  EXPECT_EQ(info().spacing[1], 2);
+  write_axis("lat", {3, 6, 9}, "{}", "run");
+  EXPECT_EQ(info().spacing[1], 3);
+}
+
+TEST_F(ZarrCoordinates, OfAnArrayNamedByItsOwnPath_AreThoseBesideIt) {
+  write_axis("lat", {2, 4, 6}, "{}", ".");
+  write_axis("lon", {1, 4, 7, 10});
+  SourceOptions options;
+  options.index = {0};
+  EXPECT_EQ(open_source(files_.path("run/T"), options)->info().spacing, (std::array<double, 3>{3, 2, 1}));
+}
+
+TEST_F(ZarrCoordinates, ThatCannotBeUnderstood_AreTakenAsIndicesAndThatIsSaid) {
+  files_.write("run/lat/.zarray", zarray("[3]", "[3]", "<U4", R"("")"));
+  EXPECT_EQ(info().details.axes[1].note.substr(0, 32), "its coordinates cannot be read (");
+  write_axis("lat", {3, 6, 9}, R"({"scale_factor":"none"})");
+  EXPECT_EQ(info().details.axes[1].note,
+            cat("its coordinates cannot be read (", files_.path("run/lat"),
+                ": its attribute scale_factor is \"none\" and not one finite number other than 0, so what its values "
+                "mean is unknown; correct or remove it), taken as indices"));
+  files_.write("run/lat/.zarray", zarray("[3]", "[3000000]", "<f8", "null"));
+  EXPECT_EQ(info().details.axes[1].note.substr(0, 32), "its coordinates cannot be read (");
+}
+
+TEST_F(ZarrCoordinates, ThatAreDamaged_AreAnError) {
+  write_axis("lat", {3, 6, 9});
+  files_.write("run/lat/0", "too short");
+  EXPECT_EQ(message_of_error(ErrorKind::input, [&] { open(); }).substr(files_.path().size()),
+            "/run/lat/0: chunk at 0: holds 9 bytes, not 24; the file is damaged");
+}
+
+TEST_F(ZarrCoordinates, OfSeveralChunksInShardsAndPacked_AreRead) {
+  files_.write("run/lat/zarr.json", zarr_json("[3]", "[2]", R"([{"name":"bytes","configuration":{"endian":"big"}}])",
+                                              "int16", "-1", R"(,"attributes":{"scale_factor":0.5,"add_offset":10})"));
+  files_.write("run/lat/c/0", std::string{0, 2, 0, 4});
+  files_.write("run/lat/c/1", std::string{0, 6, 0, 0});
+  EXPECT_EQ(info().spacing[1], 1);
+  EXPECT_EQ(info().origin[1], 11);
+  std::filesystem::remove(files_.path("run/lat/c/1"));
+  EXPECT_EQ(info().details.axes[1].note, "irregular coordinates from 11 to 9.5, taken as indices");
+}
+
+TEST_F(ZarrCoordinates, OfATimeAmongTheLastThree_MakeNoVolume) {
+  files_.write("run/rain/.zarray", zarray("[2,3,4]", "[2,3,4]", "|u1", "null"));
+  files_.write("run/rain/.zattrs", R"({"_ARRAY_DIMENSIONS":["time","lat","lon"]})");
+  files_.write("run/rain/0.0.0", std::string(24, 'a'));
+  SourceOptions options;
+  options.dataset = "run/rain";
+  EXPECT_EQ(message_of_error(ErrorKind::input, [&] { open_source(files_.path(), options); }),
+            files_.path("run/rain") +
+                ": 2 axes of space and a time at its end (time 2, lat 3, lon 4); a volume has three of space; to take "
+                "the time for a length, give --spacing");
+  options.spacing = {1, 1, 1};
+  EXPECT_EQ(open_source(files_.path(), options)->info().extent, (Index3{4, 3, 2}));
+  // T is the only volume.
+  options = {};
+  options.index = {0};
+  EXPECT_EQ(open_source(files_.path(), options)->info().dataset, "run/T");
+}
+
+}  // namespace
+}  // namespace weir::zarr_coordinates_test
