@@ -108,8 +108,10 @@ Error ended_with(const Error& error, Journal& journal) {
     // What was saved before it counts.
   }
   if (!journal.resumable()) return error;
-  return {error.kind(), compose(interrupted ? Message("interrupted") : error.message(), "; what is done is kept in ",
-                                journal.directory(), ", the same command continues it")};
+  return {error.kind(),
+          compose(interrupted ? Message("interrupted") : error.message(), "; what is done is kept in ",
+                  journal.directory(), ", the same command continues it"),
+          error.system_failure()};
 }
 
 }  // namespace weir

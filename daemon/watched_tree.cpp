@@ -2,12 +2,15 @@
 #include "daemon/config/config_names.h"
 
 #include <algorithm>
+#include <array>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "daemon/jobs/conversion_task.h"
 #include "daemon/store/file_identity.h"
 #include "daemon/watch/choosing_watch.h"
 #include "daemon/watch/path_filter.h"
+#include "daemon/watch/repeated_events.h"
 #include "format/base/error.h"
 
 namespace weir {
@@ -18,6 +21,8 @@ using std::chrono::milliseconds;
 
 /// Until the state file is tried again.
 constexpr milliseconds kRetry{1000};
+/// Between two records of a file that is being written to.
+constexpr std::chrono::seconds kBetweenRecords{5};
 /// Until a file is looked at again that could not be looked at.
 constexpr std::chrono::seconds kUnreachable{5};
 /// A transaction takes as many events and looks as this time holds: few flushes of the disk, and answers meanwhile.
@@ -34,6 +39,9 @@ bool is_text(const std::string& path) {
     return false;
   }
 }
+
+/// Jobs that are forgotten with their sources.
+constexpr std::array kForgotten{JobState::discovered, JobState::waiting, JobState::failed, JobState::quarantined};
 
 // Between two looks at whether a job is over whose source was written to meanwhile.
 constexpr std::chrono::seconds kAfterRun{1};
@@ -86,6 +94,10 @@ std::string WatchedTree::waits_for(const std::string& path) const {
 void WatchedTree::take(const FileEvent& event) {
   events_.push_back(event);
   if (!watch_->figures().looked) first_events_ = events_.size();
+  if (events_.size() >= repeats_dropped_at_) {
+    first_events_ = drop_repeated_events(events_, first_events_);
+    repeats_dropped_at_ = std::max(kManyEvents, 2 * events_.size());
+  }
   if (store_fault_.empty()) schedule(milliseconds(0));  // else at the time of the next try
 }
 
@@ -112,12 +124,12 @@ void WatchedTree::work() {
   const std::size_t first = std::min(events.size(), first_events_);
   try {
     store_.together([&] {
-      if (!known_looked_at_) look_at_known_jobs();
+      if (!std::exchange(known_listed_, true)) list_known_jobs();
+      look_at_known_jobs();
       const Time begin = Clock::now();
       work_off(events, first);
       looking = Clock::now() - begin;
     });
-    known_looked_at_ = true;
     store_fault_.clear();
   } catch (const CorruptDatabase&) {
     throw;
@@ -127,6 +139,7 @@ void WatchedTree::work() {
     written_.clear();
     ready_ = false;
     superseded_.clear();
+    known_listed_ = false;
     // What was looked at is due again; what was thought to be known is new again. The events themselves are there yet.
     for (const FileEvent& event : events) looked_at_.erase(event.path);
     for (const std::string& path : looked_at_) {
@@ -145,7 +158,7 @@ void WatchedTree::work() {
   for (const auto& say : std::exchange(written_, {})) say();
   for (const std::int64_t job : std::exchange(superseded_, {})) reports_.superseded(job);
   if (std::exchange(ready_, false)) reports_.ready();
-  if (!events_.empty()) {
+  if (!events_.empty() || !known_.empty()) {
     schedule(milliseconds(0));
   } else if (!agenda_.empty()) {
     schedule(std::max(milliseconds(0), std::chrono::ceil<milliseconds>(agenda_.begin()->first - Clock::now())));
@@ -160,15 +173,31 @@ void WatchedTree::fit_batch(Clock::duration looking) {
   batch_ = static_cast<std::size_t>(std::clamp(fit, double{kLeastBatch}, double{kMostBatch}));
 }
 
-// Jobs of files that are not there any more, or that the configuration no longer takes.
-void WatchedTree::look_at_known_jobs() {
+void WatchedTree::list_known_jobs() {
+  known_.clear();
   const PathFilter filter(config_);
-  for (const JobState state : {JobState::discovered, JobState::waiting, JobState::failed, JobState::quarantined}) {
+  for (const JobState state : kForgotten) {
     const JobFilter jobs{state, config_.label};
     for (const Job& job : store_.jobs(jobs, 0, store_.count(jobs))) {
       const std::string relative = job.source.substr(std::min(job.source.size(), config_.directory.size() + 1));
-      if (!filter.accepts_file(relative) || is_gone(job.source)) store_.remove(job.id);
+      if (filter.accepts_file(relative)) {
+        known_.push_back(job.id);
+      } else {
+        store_.remove(job.id);
+      }
     }
+  }
+  // Of a directory that is not mounted yet all seems to be gone.
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(config_.directory, ignored)) known_.clear();
+}
+
+void WatchedTree::look_at_known_jobs() {
+  const Time begin = Clock::now();
+  for (; !known_.empty() && Clock::now() - begin < kTransactionTime; known_.pop_back()) {
+    const std::optional<Job> job = store_.job(known_.back());
+    if (!job || std::ranges::find(kForgotten, job->state) == kForgotten.end()) continue;
+    if (is_gone(job->source)) store_.remove(job->id);
   }
 }
 
@@ -237,6 +266,7 @@ void WatchedTree::look(const std::string& path, Time now) {
     return;
   }
   if (is_store_head(path)) stores_.seen(path, sample.identity);
+  if (keeps_growing(path, sample, now)) return;
   const JobStore::Observation seen = store_.observe(config_.label, path, sample.identity, options_);
   if (seen.change == JobStore::Change::created) {
     written_.emplace_back([this, path, id = seen.job.id, bytes = sample.identity.bytes] {
@@ -259,7 +289,20 @@ void WatchedTree::look(const std::string& path, Time now) {
     quarantine(path, seen.job.id, "the name is not UTF-8; rename the file");
     return;
   }
+  tracked_.at(path).recorded = now;
   apply(path, tracked_.at(path).completion.look(sample, now), seen.job);
+}
+
+// A file that is being written to changes up to fifty times a second, and each write to the state file is flushed to
+// its disk: meanwhile that hears of it every few seconds.
+bool WatchedTree::keeps_growing(const std::string& path, const FileSample& sample, Time now) {
+  Tracked& tracked = tracked_.at(path);
+  if (is_store_head(path) || !tracked.recorded || now - *tracked.recorded >= kBetweenRecords) return false;
+  const CompletionAnswer answer = tracked.completion.look(sample, now);
+  if (answer.state != CompletionAnswer::State::waiting) return false;
+  tracked.waits_for = answer.reason;
+  track_until(path, std::min(answer.until, *tracked.recorded + kBetweenRecords));
+  return true;
 }
 
 // Gives a job that is known, and whose source looks as it did, its turn once more where there is reason to; whether it

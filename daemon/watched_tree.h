@@ -14,6 +14,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -64,14 +65,16 @@ class WatchedTree {
   using Time = std::chrono::steady_clock::time_point;
   static constexpr std::chrono::seconds kArrivalWindow{600};
   static constexpr std::size_t kStoresAtOnce = 2;
+  static constexpr std::size_t kManyEvents = 10'000;
   struct Tracked {
     FileCompletion completion;
     Time look = Time::max();
-    std::string waits_for{};   ///< why it was not complete at the last look
-    bool arrived = false;      ///< it came, or was written to, since the first look at the directory
-    bool written = false;      ///< a program was seen to write to it
-    bool permitted = false;    ///< its mode or owner was set
-    bool unreachable = false;  ///< it could not be looked at, which was said
+    std::string waits_for{};         ///< why it was not complete at the last look
+    bool arrived = false;            ///< it came, or was written to, since the first look at the directory
+    bool written = false;            ///< a program was seen to write to it
+    bool permitted = false;          ///< its mode or owner was set
+    bool unreachable = false;        ///< it could not be looked at, which was said
+    std::optional<Time> recorded{};  ///< when the state file last heard of it, as a source that is not complete
   };
 
   void take(const FileEvent& event);
@@ -79,8 +82,13 @@ class WatchedTree {
   void work();
   /// The first `first` of `events` are of the first look at the directory.
   void work_off(const std::vector<FileEvent>& events, std::size_t first);
+  /// Of the jobs that are known at the start, removes those that the configuration no longer takes, and has the others
+  /// looked at.
+  void list_known_jobs();
+  /// Removes those whose files are not there any more, as many as a transaction's time holds.
   void look_at_known_jobs();
   void look(const std::string& path, Time now);
+  bool keeps_growing(const std::string& path, const FileSample& sample, Time now);
   void fit_batch(std::chrono::steady_clock::duration looking);
   bool tries_again(const std::string& path, const Job& job);
   void apply(const std::string& path, const CompletionAnswer& answer, const Job& job);
@@ -102,9 +110,11 @@ class WatchedTree {
   std::set<std::string> again_;   ///< of events_, those of look_again: nothing arrived
   std::size_t first_events_ = 0;  ///< so many of events_ are of the first look at the directory
   RecentRate arrivals_{kArrivalWindow, std::chrono::steady_clock::now()};
-  std::set<std::string> looked_at_;  ///< paths, in the last transaction
-  std::size_t batch_ = 100;          ///< events and looks in the next one, at most
-  bool known_looked_at_ = false;
+  std::set<std::string> looked_at_;               ///< paths, in the last transaction
+  std::size_t batch_ = 100;                       ///< events and looks in the next one, at most
+  std::size_t repeats_dropped_at_ = kManyEvents;  ///< so many events are gone through for equal ones
+  std::vector<std::int64_t> known_;               ///< jobs to look at once
+  bool known_listed_ = false;
   std::string store_fault_;  ///< why what was seen cannot be written down; empty: it can
   bool scheduled_ = false;
   /// For after the transaction: what is logged and counted of it, whether a job is ready, which are superseded.

@@ -1,11 +1,9 @@
 #include "daemon/jobs/conversion_job.h"
 
 #include <algorithm>
-#include <array>
 #include <boost/asio/post.hpp>
 #include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <system_error>
@@ -28,14 +26,10 @@ namespace fs = std::filesystem;
 constexpr int kInput = static_cast<int>(ErrorKind::input);
 constexpr int kIo = static_cast<int>(ErrorKind::io);
 
-// Exit code 5 is any failure of a device; weir's message of a full one ends so (io_error), whatever a path in it says.
-bool says_disk_full(const std::string& reason) {
-  const auto says = [&](int error) {
-    return std::ranges::any_of(std::array{command_line_wording, key_wording}, [&](OptionWording wording) {
-      return reason.ends_with(cat(": ", std::strerror(error), disk_full_remedy().worded(wording)));
-    });
-  };
-  return says(ENOSPC) || says(EDQUOT);
+// Of what a full file system refused: a file there, or a directory.
+std::string directory_at(const std::string& path) {
+  std::error_code ignored;
+  return fs::is_directory(path, ignored) ? path : fs::path(path).parent_path().string();
 }
 
 // The source's own identity says nothing of the planes of a stack and of the files that a header names.
@@ -179,6 +173,8 @@ void ConversionJob::heard(std::string_view line) {
   }
   if (told.contains("failed")) {
     failed_ = told.value("failed", "");
+    const int error = told.value("errno", 0);
+    if (error == ENOSPC || error == EDQUOT) report_.full_directory = directory_at(told.value("path", task_.output));
     return;
   }
   if (told.contains("planned")) {
@@ -324,7 +320,7 @@ void ConversionJob::fail(int exit_code, const std::string& reason) {
     end(TaskEnd::source_gone);
   } else if ((now && *now != task_.identity) || (exit_code == kInput && says_changed(reason))) {
     end(TaskEnd::source_changed);
-  } else if (exit_code == kIo && says_disk_full(reason)) {
+  } else if (exit_code == kIo && !report_.full_directory.empty()) {
     end(TaskEnd::disk_full);
   } else {
     end(TaskEnd::failed);

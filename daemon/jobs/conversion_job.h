@@ -32,6 +32,7 @@ enum class TaskEnd {
 struct TaskReport {
   TaskEnd end = TaskEnd::done;
   JobResult result;
+  std::string full_directory;        ///< on the file system that had no room, where it ended so; else empty
   std::uint64_t planned_bytes = 0;   ///< of the output that was to be written last; 0: not known
   bool converted = false;            ///< false where all outputs had been made before
   bool rendering = false;            ///< done, and thumbnails follow: another report comes when they are there

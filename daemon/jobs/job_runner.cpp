@@ -131,8 +131,11 @@ std::optional<Job> JobRunner::next_job(const WatchConfig& watch) const {
   for (const Job& job : store_.candidates(watch.label, watch.priority, looked)) {
     if (running_.contains(job.id)) continue;
     if (full_disks_.empty()) return job;
-    const std::uint64_t device = room_in(output_directory(watch, job.source)).device;
-    if (full_disks_.admits(device, job.id, job.identity.bytes)) return job;
+    const auto has_room = [&](const std::string& directory) {
+      return full_disks_.admits(room_in(directory).device, job.id, job.identity.bytes);
+    };
+    const std::string& work_dir = config_.service.work_dir;
+    if (has_room(output_directory(watch, job.source)) && (work_dir.empty() || has_room(work_dir))) return job;
   }
   return std::nullopt;
 }

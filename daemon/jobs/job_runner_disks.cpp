@@ -8,9 +8,11 @@
 namespace weir {
 
 void JobRunner::disk_full(const RunningJob& run, const TaskReport& report) {
-  const std::string directory = std::filesystem::path(run.work->task().output).parent_path().string();
+  const std::string& directory = report.full_directory;
   const DiskRoom room = room_in(directory);
-  if (report.planned_bytes > room.total) {  // waiting makes no disk larger
+  const bool of_output =
+      room.device == room_in(std::filesystem::path(run.work->task().output).parent_path().string()).device;
+  if (of_output && report.planned_bytes > room.total) {  // waiting makes no disk larger
     TaskReport never = report;
     never.result.reason =
         cat(directory, ": ", format_bytes(report.planned_bytes), " are needed, and its whole file system has ",
@@ -19,8 +21,8 @@ void JobRunner::disk_full(const RunningJob& run, const TaskReport& report) {
     return;
   }
   figures_.attempt_failed("disk-full");
-  full_disks_.add(room.device, directory, room.free, run.job.id, run.job.identity.bytes, report.planned_bytes,
-                  std::chrono::steady_clock::now());
+  full_disks_.add(room.device, directory, room.free, run.job.id, run.job.identity.bytes,
+                  of_output ? report.planned_bytes : 0, std::chrono::steady_clock::now());
   log_.error("disk-full", {{"job", run.job.id}, {"directory", directory}, {"reason", report.result.reason}});
   writes_.add([this, id = run.job.id, reason = report.result.reason] { store_.postpone(id, reason); });
 }

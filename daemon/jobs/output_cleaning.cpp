@@ -105,10 +105,12 @@ std::string entry_of(const Checkpoint& checkpoint, const char* name) {
   return at == checkpoint.identity.end() ? std::string() : at->second;
 }
 
-// Whether the source is, as far as its first file says, still what it was.
+// Whether the source is, as far as its first file says, still what it was; or cannot be looked at, as where a file
+// server does not answer.
 bool is_of_this_source(const Checkpoint& checkpoint) {
-  const auto source = identify(entry_of(checkpoint, "source"));
-  if (!source) return false;
+  const std::string path = entry_of(checkpoint, "source");
+  const auto source = identify(path);
+  if (!source) return !is_gone(path);
   // Size and time are those of all its files together.
   if (!entry_of(checkpoint, "source files").empty()) return true;
   return cat(source->bytes) == entry_of(checkpoint, "source bytes") &&
@@ -250,7 +252,8 @@ CleaningReport clean_outputs(const std::string& directory, const std::string& so
     if (entry_of(*interrupted, "format") == "stack" || !lies_below(entry_of(*interrupted, "source"), own)) return false;
     std::error_code ignored;
     const bool old = fs::file_time_type::clock::now() - fs::last_write_time(work, ignored) > kKeptFor;
-    return old || !is_of_this_source(*interrupted);
+    const bool mounted = fs::is_directory(own, ignored);  // else all of it seems to be gone
+    return old || (mounted && !is_of_this_source(*interrupted));
   };
   // Listed first: what is removed while a directory is read may be listed or not.
   std::map<fs::path, std::vector<fs::path>> by_output;

@@ -188,20 +188,20 @@ std::map<std::string, JobCounts> JobListing::counts() const {
 std::vector<Job> JobListing::candidates(const std::string& watch, Priority priority, std::size_t limit) const {
   const std::int64_t now = clock_();
   const char* order = priority == Priority::newest ? "DESC" : "ASC";
-  // A time further ahead than any delay was set before the clock went back.
+  // What changed after now did so before the clock went back.
   Statement rows = database_.prepare(cat(kColumns,
-                                         "WHERE watch = ? AND state = 'waiting' AND (due_ms <= ? OR due_ms > ?) "
+                                         "WHERE watch = ? AND state = 'waiting' AND (due_ms <= ? OR changed_ms > ?) "
                                          "ORDER BY mtime_ns ",
                                          order, ", id ", order, " LIMIT ?"));
-  rows.bind(watch).bind(now).bind(now + kLongestDelay_ms).bind(std::uint64_t{limit});
+  rows.bind(watch).bind(now).bind(now).bind(std::uint64_t{limit});
   return read_jobs(database_, std::move(rows));
 }
 
 std::optional<std::int64_t> JobListing::next_due_ms() const {
   const std::int64_t now = clock_();
   Statement row = database_.prepare(
-      "SELECT min(due_ms) FROM jobs INDEXED BY jobs_due WHERE state = 'waiting' AND due_ms > ? AND due_ms <= ?");
-  row.bind(now).bind(now + kLongestDelay_ms).step();
+      "SELECT min(due_ms) FROM jobs INDEXED BY jobs_due WHERE state = 'waiting' AND due_ms > ? AND changed_ms <= ?");
+  row.bind(now).bind(now).step();
   if (row.is_null(0)) return std::nullopt;
   return row.integer(0) - now;
 }

@@ -37,9 +37,6 @@ struct JobProblem {
 
 using JobCounts = std::array<std::uint64_t, kJobStates>;  ///< indexed by JobState
 
-/// Delay before another attempt, at most.
-inline constexpr std::int64_t kLongestDelay_ms = 600'000;
-
 /// Those that a person has to look at.
 inline constexpr std::initializer_list<JobState> kProblemStates{JobState::failed, JobState::quarantined};
 /// In SQL: "state = 'waiting'"; of several "state IN (...)".

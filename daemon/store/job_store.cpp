@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <csignal>
 
 #include "daemon/store/state_file.h"
 #include "format/base/error.h"
@@ -12,6 +13,8 @@ namespace weir {
 namespace {
 
 constexpr std::int64_t kFirstDelay_ms = 5'000;
+constexpr std::int64_t kLongestDelay_ms = 600'000;
+constexpr int kKilledExit = 128 + SIGKILL;     ///< mostly by the system, that is out of memory
 constexpr std::int64_t kClockStep_ms = 1'000;  ///< smaller steps back are the clock's being kept right
 constexpr int kJournalPages = 1000;            ///< 4 MiB
 constexpr std::size_t kLogTailBytes = 4096;
@@ -38,6 +41,7 @@ bool is_problem(JobState state) {
 
 // Times later than `now` become `now`.
 void end_the_future(const Database& database, std::int64_t now) {
+  database.prepare("UPDATE jobs SET due_ms = 0 WHERE changed_ms > ?").bind(now).step();
   for (const char* time : {"changed_ms", "discovered_ms", "queued_ms"}) {
     database.prepare(cat("UPDATE jobs SET ", time, " = ? WHERE ", time, " > ?")).bind(now).bind(now).step();
   }
@@ -48,6 +52,11 @@ std::string tail(const std::string& log) {
 }
 
 }  // namespace
+
+int most_attempts(int exit_code) {
+  const bool of_surroundings = exit_code == static_cast<int>(ErrorKind::io) || exit_code == kKilledExit;
+  return of_surroundings ? 9 : 5;
+}
 
 std::int64_t backoff_ms(int attempts) {
   std::int64_t delay = kFirstDelay_ms;
@@ -201,7 +210,7 @@ bool JobStore::finish_rendering(std::int64_t id, const std::vector<JobOutput>& o
 JobState JobStore::state_after(int exit_code, int attempts) {
   const auto is = [&](ErrorKind kind) { return exit_code == static_cast<int>(kind); };
   if (is(ErrorKind::input)) return JobState::quarantined;
-  const bool over = is(ErrorKind::usage) || is(ErrorKind::budget) || attempts >= kMaxAttempts;
+  const bool over = is(ErrorKind::usage) || is(ErrorKind::budget) || attempts >= most_attempts(exit_code);
   return over ? JobState::failed : JobState::waiting;
 }
 

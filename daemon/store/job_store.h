@@ -33,7 +33,9 @@ namespace weir {
 
 /// Delay before the next attempt after `attempts` failed ones: 5 s, doubling, 10 min at most.
 std::int64_t backoff_ms(int attempts);
-inline constexpr int kMaxAttempts = 5;
+/// Attempts in all of a job that ends with `exit_code`. What fails by a device or a file server that is away, or for
+/// lack of memory, gets some twenty minutes; what fails by itself is soon given up.
+int most_attempts(int exit_code);
 
 class JobStore : public JobListing {
  public:
@@ -76,7 +78,7 @@ class JobStore : public JobListing {
   /// Of a done job whose thumbnails were to come: they are those of `outputs`, or none came.
   bool finish_rendering(std::int64_t id, const std::vector<JobOutput>& outputs);
   /// What becomes of a job whose attempt ended with that exit code, the `attempts`-th one: quarantined for exit code 3;
-  /// failed for 2 and 4, which another attempt cannot change; else waiting, and failed at the kMaxAttempts-th time.
+  /// failed for 2 and 4, which another attempt cannot change; else waiting, and failed at the last of most_attempts.
   static JobState state_after(int exit_code, int attempts);
   /// running -> state_after; waiting for backoff_ms.
   bool fail(std::int64_t id, const JobResult& result);

@@ -65,9 +65,13 @@ void SourceTable::end_look() {
 void SourceTable::saw(const std::string& path, const FileIdentity& identity) {
   const auto [at, is_new] = known_.try_emplace(path);
   Known& known = at->second;
-  const bool told_by_events = !is_new && !known.identity && (events_tell_ || known.look == look_);
+  const bool during_look = known.look == look_;
   known.look = look_;
-  if (told_by_events) return;
+  if (!is_new && !known.identity && (events_tell_ || during_look)) {  // events told of it
+    // What changes from now on, and no event tells of, is found by the next look.
+    if (!during_look) known.identity = identity;
+    return;
+  }
   if (std::exchange(known.identity, identity) != identity) report(FileEventKind::found, path);
 }
 

@@ -37,8 +37,9 @@ class SourceTable {
   Root look_at_root();
 
   /// Begins a look at everything; what neither saw() nor happened() names before end_look is looked for once more and
-  /// then reported as removed. `events_tell`: files that events came of are left to events, as after end_look; else
-  /// those from before begin_look are reported once more, for events may have been lost.
+  /// then reported as removed. `events_tell`: files that events came of since the look before are left to
+  /// events, as after end_look; else those from before begin_look are reported once more, for events may have been
+  /// lost.
   void begin_look(bool events_tell);
   void end_look();
   /// A look shows that the file is there; reported as found where it was not known to be so.

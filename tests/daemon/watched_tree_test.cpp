@@ -9,7 +9,10 @@
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <set>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "format/base/text.h"
 #include "tests/support/temporary_directory.h"
@@ -35,6 +38,81 @@ TEST(WatchedTree, DoesNothingAfterItsDestruction) {
   std::this_thread::sleep_for(std::chrono::milliseconds(5));
   io.poll();
   EXPECT_TRUE(store.job(id).has_value()) << "it looked at its jobs";
+}
+
+/// A tree over a directory of its own, without a service.
+class WatchedTreeTest : public ::testing::Test {
+ protected:
+  WatchConfig watch() const {
+    WatchConfig watch;
+    watch.label = watch.directory = directory_ / "in";
+    watch.output = directory_ / "out";
+    return watch;
+  }
+  std::int64_t observe(const std::string& name) {
+    return store_.observe(watch().label, watch().directory + '/' + name, {8, 1, 1}, "").job.id;
+  }
+  WatchedTree tree() {
+    return {io_, turns_, watch(), store_, log_, WatchedTree::Reports{[] {}, [](std::int64_t) {}}};
+  }
+  /// Runs handlers until `holds`, or for ten seconds; whether it held.
+  template <typename Condition>
+  bool run_until(Condition holds) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+    while (!holds() && std::chrono::steady_clock::now() < end) io_.run_one_for(std::chrono::milliseconds(5));
+    return holds();
+  }
+
+  TemporaryDirectory directory_;
+  boost::asio::io_context io_;
+  JobStore store_{directory_ / "weir.db"};
+  EventLog log_{ServiceConfig{}};
+  DiskTurns turns_{io_};
+};
+
+TEST_F(WatchedTreeTest, JobsOfFilesThatAreGone_AreForgotten) {
+  std::filesystem::create_directory(watch().directory);
+  std::vector<std::int64_t> gone;
+  for (int i = 0; i < 300; ++i) gone.push_back(observe(cat("gone", i, "_2x2x2_uint8.raw")));
+  const std::int64_t done = observe("done_2x2x2_uint8.raw");
+  store_.enqueue(done);
+  store_.start(done);
+  store_.finish(done, {});
+  const WatchedTree tree = this->tree();
+  EXPECT_TRUE(run_until([&] { return !store_.job(gone.front()) && !store_.job(gone.back()); }));
+  EXPECT_TRUE(store_.job(done)) << "the record of its result";
+}
+
+TEST_F(WatchedTreeTest, JobsOfADirectoryThatIsNotMountedYet_AreKept) {
+  const std::int64_t id = observe("a_2x2x2_uint8.raw");
+  const WatchedTree tree = this->tree();
+  run_until([&] { return tree.status().reason.find("is not there") != std::string::npos; });
+  for (int i = 0; i < 20; ++i) io_.run_one_for(std::chrono::milliseconds(5));
+  EXPECT_TRUE(store_.job(id));
+}
+
+// Each record is flushed to the disk that the simulation writes to.
+TEST_F(WatchedTreeTest, FileThatIsWrittenTo_IsRecordedNowAndThen) {
+  std::filesystem::create_directory(watch().directory);
+  const WatchedTree tree = this->tree();
+  const std::string path = watch().directory + "/a_64x64x64_uint8.raw";
+  std::ofstream file(path, std::ios::binary);
+  std::set<std::uint64_t> sizes;
+  const auto recorded = [&] {
+    if (const auto job = store_.find(watch().label, path)) sizes.insert(job->identity.bytes);
+  };
+  for (int i = 0; i < 60; ++i) {
+    file << std::string(4096, 'a') << std::flush;
+    for (int n = 0; n < 8; ++n) io_.run_one_for(std::chrono::milliseconds(3));
+    recorded();
+  }
+  EXPECT_GE(sizes.size(), 1U);
+  EXPECT_LE(sizes.size(), 3U) << "of 60 that it had";
+  file << std::string((64U << 12U) - 60 * 4096, 'a');
+  file.close();
+  EXPECT_TRUE(run_until([&] { return store_.find(watch().label, path)->state == JobState::waiting; }));
+  recorded();
+  EXPECT_EQ(*sizes.rbegin(), 64U << 12U) << "as it is when it is complete";
 }
 
 std::size_t open_descriptors() {

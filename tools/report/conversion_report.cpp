@@ -32,7 +32,9 @@ std::string chosen_prefix(const Sidecar::Source& source) {
 
 void say_converted(const Sidecar& s, const Budget& budget, const std::string& output) {
   std::string error = error_text(s, s.error);
-  if (s.visible) error += cat(" (what the scene shows: ", error_text(s, s.visible->error), ')');
+  if (s.visible && s.visible->blocks == 0) error += " (the scene shows nothing of it)";
+  if (s.visible && s.visible->blocks > 0)
+    error += cat(" (what the scene shows: ", error_text(s, s.visible->error), ')');
   if (s.gradient) error += cat(", gradient: ", gradient_text(*s.gradient, s.source.units));
   const Sidecar::Zeros zeros = s.zeros.value_or(Sidecar::Zeros{});
   for (const std::string& also : {lost_zeros_text(zeros.lost, zeros.count), missing_text(s), nonfinite_text(s),
@@ -62,7 +64,11 @@ void announce_output(const ProgressOptions& progress, const std::string& output,
 }
 
 void announce_failure(const ProgressOptions& progress, const Error& error) {
-  const nlohmann::json line{{"failed", one_line(error.message().worded(key_wording))}};
+  nlohmann::json line{{"failed", one_line(error.message().worded(key_wording))}};
+  if (const auto& failure = error.system_failure()) {
+    line["errno"] = failure->errno_value;
+    line["path"] = failure->path;
+  }
   announce(progress, line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 

@@ -120,6 +120,8 @@ TEST_F(ResumeKill, FullDisk_ResumesToTheSameBytes) {
       run(options, files);
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), ErrorKind::io);
+      ASSERT_TRUE(error.system_failure()) << "also where the work is kept";
+      EXPECT_EQ(error.system_failure()->errno_value, ENOSPC);
       message = error.what();
     }
     if (message.empty()) {  // the removal of what is not needed any more

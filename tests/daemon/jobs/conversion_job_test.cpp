@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <csignal>
 #include <filesystem>
@@ -132,6 +133,27 @@ TEST_F(ConversionJobTest, ProcessThatComputesAndSaysNothing_IsAStall) {
   EXPECT_EQ(
       job.stall(std::chrono::seconds(60), std::chrono::seconds(0)),
       "convert computes for 0 s and has not begun to read values: the file may be damaged, cancel the job to end it");
+}
+
+// Whatever the message says behind it, as where the work is kept.
+TEST_F(ConversionJobTest, FullDisk_IsToldByTheErrorsNumberAndPath) {
+  ConversionTask full = task(write_source("a_8x8x8_uint8.raw", 512));
+  full.program = directory_ / "weir";
+  const auto report_of = [&](int error, const std::string& path) {
+    const nlohmann::json said{{"failed", "no room; what is done is kept"}, {"errno", error}, {"path", path}};
+    write_file(full.program, cat("#!/bin/sh\nfor a; do case $a in --progress-fd=*) fd=${a#*=};; esac; done\n", "echo '",
+                                 said.dump(), "' >&$fd\nexit 5\n"));
+    fs::permissions(full.program, fs::perms::owner_all);
+    return run(full);
+  };
+  for (const int error : {ENOSPC, EDQUOT}) {
+    const TaskReport report = report_of(error, directory_ / "work/.a.nvdb.work/rows");
+    EXPECT_EQ(report.end, TaskEnd::disk_full);
+    EXPECT_EQ(report.full_directory, directory_ / "work/.a.nvdb.work");
+    EXPECT_EQ(report.result.reason, "no room; what is done is kept");
+  }
+  EXPECT_EQ(report_of(ENOSPC, directory_.path()).full_directory, directory_.path());
+  EXPECT_EQ(report_of(EIO, directory_ / "out/a.nvdb").end, TaskEnd::failed);
 }
 
 TEST_F(ConversionJobTest, LosslessOverValidVoxelsAlone_HasAnInfinitePsnr) {

@@ -52,7 +52,7 @@ TEST_F(StoredJobs, Hasten_FailedJob_GetsOneMoreAttempt) {
   EXPECT_EQ(job(id).due_ms, 0);
   EXPECT_EQ(job(id).attempts, 1);
   EXPECT_FALSE(store_->hasten(id)) << "it is due already";
-  for (int attempt = 2; attempt <= kMaxAttempts; ++attempt) {
+  for (int attempt = 2; attempt <= most_attempts(5); ++attempt) {
     EXPECT_TRUE(store_->start(id));
     store_->fail(id, failure(5));
     now_ += 3'600'000;
@@ -90,7 +90,7 @@ TEST_F(StoredJobs, RetryFailedIo_RetriesOnlyJobsWithExitCode5) {
   JobResult device;
   device.exit_code = 5;
   const std::int64_t io = running("/in/io.raw");
-  for (int attempt = 1; attempt < kMaxAttempts; ++attempt) {
+  for (int attempt = 1; attempt < most_attempts(5); ++attempt) {
     store_->fail(io, device);
     now_ += 24 * 3'600'000;
     store_->start(io);

@@ -144,7 +144,7 @@ TEST_F(StoredJobs, RetryDelayDoublesUntilTheLastAttempt) {
     EXPECT_EQ(store_->next_due_ms(), std::nullopt);
   }
   store_->start(id);
-  store_->fail(id, failure(137, "killed"));
+  store_->fail(id, failure(139, "killed"));
   EXPECT_EQ(job(id).state, JobState::failed);
   EXPECT_EQ(job(id).attempts, 5);
   EXPECT_TRUE(store_->retry(id));
@@ -210,6 +210,36 @@ TEST_F(StoredJobs, ClockSetBack_DelaysNoJob) {
   EXPECT_EQ(candidates(Priority::oldest), Names{"/in/a.raw"});
   EXPECT_EQ(store_->next_due_ms(), std::nullopt);
   EXPECT_EQ(store_->queue_age_ms(), 0);
+  waiting("/in/b.raw");  // writes, with which all times are set back
+  EXPECT_EQ(candidates(Priority::oldest).size(), 2U);
+}
+
+TEST_F(StoredJobs, DelayLongerThanAnyBackoff_IsKept) {
+  const std::int64_t id = running("/in/a.raw");
+  ASSERT_TRUE(store_->postpone(id, "the source changed", 3'600'000));
+  EXPECT_EQ(candidates(Priority::oldest), Names{});
+  EXPECT_EQ(store_->next_due_ms(), 3'600'000);
+  now_ += 3'599'999;
+  EXPECT_EQ(candidates(Priority::oldest), Names{});
+  now_ += 1;
+  EXPECT_EQ(candidates(Priority::oldest), Names{"/in/a.raw"});
+}
+
+TEST_F(StoredJobs, FailureOfADeviceOrForLackOfMemory_GetsMoreAttempts) {
+  for (const int exit_code : {5, 128 + 9}) {
+    const std::int64_t id = running(cat("/in/", exit_code, ".raw"));
+    std::int64_t waited = 0;
+    for (int attempt = 1; attempt < 9; ++attempt) {
+      ASSERT_TRUE(store_->fail(id, failure(exit_code)));
+      ASSERT_EQ(job(id).state, JobState::waiting) << attempt;
+      waited += job(id).due_ms - now_;
+      now_ = job(id).due_ms;
+      ASSERT_TRUE(store_->start(id));
+    }
+    EXPECT_EQ(waited, 1'235'000);
+    EXPECT_TRUE(store_->fail(id, failure(exit_code)));
+    EXPECT_EQ(job(id).state, JobState::failed);
+  }
 }
 
 TEST_F(StoredJobs, TimesInTheFuture_AreSetBackToNow) {

@@ -1,0 +1,49 @@
+#include "daemon/watch/source_table.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace weir::source_table_test {
+namespace {
+
+class SourceTableTest : public ::testing::Test {
+ protected:
+  static WatchConfig watch() {
+    WatchConfig config;
+    config.label = config.directory = "/in";
+    return config;
+  }
+  /// A look by which events are there to tell what changes.
+  void look(const FileIdentity& identity) {
+    table_.begin_look(true);
+    table_.saw("a.raw", identity);
+    table_.end_look();
+  }
+
+  std::vector<FileEventKind> events_;
+  SourceTable table_{watch(), {[this](const FileEvent& event) { events_.push_back(event.kind); }, {}}};
+};
+
+// As by a write under another hard link, of which inotify says nothing.
+TEST_F(SourceTableTest, ChangeThatNoEventTold_IsFoundByTheSecondLookAfterTheLastEvent) {
+  table_.begin_look(true);
+  table_.end_look();
+  table_.happened(FileEventKind::created, "a.raw");
+  table_.happened(FileEventKind::closed, "a.raw");
+  events_.clear();
+  look({8, 1, 1});
+  EXPECT_TRUE(events_.empty()) << "events told of it";
+  look({8, 1, 1});
+  EXPECT_TRUE(events_.empty()) << "nothing has changed";
+  look({8, 2, 1});
+  EXPECT_EQ(events_, std::vector<FileEventKind>{FileEventKind::found});
+  table_.happened(FileEventKind::written, "a.raw");
+  events_.clear();
+  look({8, 3, 1});
+  EXPECT_TRUE(events_.empty()) << "the event told of it";
+}
+
+}  // namespace
+}  // namespace weir::source_table_test
