@@ -1,5 +1,7 @@
 #include "bindings/python/grid.h"
 
+#include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <utility>
 
@@ -17,7 +19,7 @@
 #include "gpu/volume/macrocell_grid.h"
 #include "ingest/source_registry.h"
 #include "tools/report/read_sidecar.h"
-#include "tools/report/volume_verification.h"
+#include "tools/verify/volume_verification.h"
 
 namespace weir::python {
 
@@ -62,12 +64,30 @@ Grid::Grid(const std::string& url, const py::function& fetch, const py::function
   run_watched(py::none(), open, file_->interrupt);
 }
 
+namespace {
+
+std::vector<Box> in_index_space(std::vector<Box> boxes, const NvdbGrid& grid) {
+  const Index3 lo = grid.index_bbox().lo;
+  for (Box& box : boxes) box = {lo + box.lo, lo + box.hi};
+  return boxes;
+}
+
+}  // namespace
+
 void Grid::Opened::with_boxes(const std::function<std::vector<Box>()>& boxes, const std::function<void()>& use) const {
   if (remote == nullptr) return use();
-  const Index3 lo = grid().index_bbox().lo;
-  std::vector<Box> wanted = boxes();
-  for (Box& box : wanted) box = {lo + box.lo, lo + box.hi};
-  remote->with_blocks(wanted, use);
+  remote->with_blocks(in_index_space(boxes(), grid()), use);
+}
+
+void Grid::Opened::with_planes(std::int64_t count, std::int64_t thickness,
+                               const std::function<std::vector<Box>(std::int64_t first, std::int64_t end)>& boxes,
+                               const std::function<void(std::int64_t first, std::int64_t end)>& use) const {
+  if (remote == nullptr) return use(0, count);
+  if (remote->fit_cache(in_index_space(boxes(0, count), grid()))) thickness = count;
+  for (std::int64_t first = 0; first < count; first += thickness) {
+    const std::int64_t end = std::min(first + thickness, count);
+    with_boxes([&] { return boxes(first, end); }, [&] { use(first, end); });
+  }
 }
 
 std::shared_ptr<Grid::Opened> Grid::with_file(const char* what) const {
@@ -127,12 +147,22 @@ py::array_t<float> Grid::read(const Triple& lo, const Triple& hi, int level) con
   const auto file = shared();
   const Box box{index3(lo), index3(hi)};
   py::array_t<float> array = make_array(box.extent());
-  const auto voxels = [&] {
-    const std::int64_t edge = std::int64_t{1} << level;
-    return std::vector{Box{box.lo * edge, min(box.hi * edge, file->source->info().extent)}};
+  const std::int64_t edge = std::int64_t{1} << level;
+  const auto planes = [&](std::int64_t first, std::int64_t end) {
+    return Box{{box.lo.x, box.lo.y, box.lo.z + first}, {box.hi.x, box.hi.y, box.lo.z + end}};
   };
+  const auto voxels = [&](std::int64_t first, std::int64_t end) {
+    const Box part = planes(first, end);
+    return std::vector{Box{part.lo * edge, min(part.hi * edge, file->source->info().extent)}};
+  };
+  const auto plane = static_cast<std::size_t>(box.extent().x * box.extent().y);
   const auto read = [&, values = values_of(array)](Watch& watch) {
-    file->with_boxes(voxels, [&] { read_level(*file->source, level, box, values, watch.cancelled()); });
+    const auto use = [&](std::int64_t first, std::int64_t end) {
+      const auto part =
+          values.subspan(static_cast<std::size_t>(first) * plane, static_cast<std::size_t>(end - first) * plane);
+      read_level(*file->source, level, planes(first, end), part, watch.cancelled());
+    };
+    file->with_planes(box.extent().z, std::max<std::int64_t>(1, kLowerDim / edge), voxels, use);
   };
   run_watched(py::none(), read, file->interrupt);
   return array;
@@ -145,9 +175,21 @@ py::array_t<float> Grid::read_strided(const Triple& first, const Triple& step, c
   const Index3 number = index3(count);
   const std::array<Stride, 3> axes{{{from.x, by.x, number.x}, {from.y, by.y, number.y}, {from.z, by.z, number.z}}};
   py::array_t<float> array = make_array(number);
+  const auto planes = [&](std::int64_t begin, std::int64_t end) {
+    std::array<Stride, 3> part = axes;
+    part[2] = {axes[2].at(begin), axes[2].step, end - begin};
+    return part;
+  };
+  const auto plane = static_cast<std::size_t>(number.x * number.y);
   const auto read = [&, values = values_of(array)](Watch& watch) {
-    file->with_boxes([&] { return strided_boxes(axes, {}); },
-                     [&] { python::read_strided(*file->source, axes, values, watch.cancelled()); });
+    const auto use = [&](std::int64_t begin, std::int64_t end) {
+      const auto part =
+          values.subspan(static_cast<std::size_t>(begin) * plane, static_cast<std::size_t>(end - begin) * plane);
+      python::read_strided(*file->source, planes(begin, end), part, watch.cancelled());
+    };
+    file->with_planes(
+        number.z, std::max<std::int64_t>(1, kLowerDim / std::abs(by.z)),
+        [&](std::int64_t begin, std::int64_t end) { return strided_boxes(planes(begin, end), {}); }, use);
   };
   run_watched(py::none(), read, file->interrupt);
   return array;

@@ -127,6 +127,12 @@ void RemoteGrid::make_room() {
   if (file_->held() > cache_) file_->forget_from(heads_end_);
 }
 
+bool RemoteGrid::fit_cache(std::span<const Box> boxes) const {
+  std::uint64_t bytes = 0;
+  for (const WantedRegion& wanted : wanted_regions(boxes)) bytes += wanted.region.bytes;
+  return bytes <= cache_;
+}
+
 void RemoteGrid::with_blocks(std::span<const Box> boxes, const std::function<void()>& use) {
   const std::vector<WantedRegion> wanted = wanted_regions(boxes);  // by the table of regions, which always stays
   {

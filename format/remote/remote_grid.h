@@ -28,6 +28,8 @@ class RemoteGrid {
   const NvdbGrid& grid() const { return grid_; }
   std::uint64_t bytes() const { return file_->bytes().size(); }  ///< of the file
 
+  /// Whether the regions that `boxes` (index space) touch take no more than the cache, all of each counted.
+  bool fit_cache(std::span<const Box> boxes) const;
   /// Calls `use` while the blocks that touch `boxes` (index space) are there. Of a region that is looked at for the
   /// first time, one request reads the head and up to three the streams, or a single one all of it where a third or
   /// more is asked for; requests of several regions are made at once. Thread-safe. Throws as the reader and

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import re
 import threading
 from typing import TYPE_CHECKING, Any, Callable, Iterator, Optional, Sequence
 
@@ -17,6 +18,12 @@ Range = tuple[int, int]
 #: Longer ranges are read in pieces of so many bytes, at once.
 _PIECE = 8 << 20
 _AT_ONCE = 8
+#: Seconds before a request that failed is made once more.
+_WAITS = (0.2, 0.4, 0.8)
+#: Seconds that a server may ask to wait.
+_LONGEST_WAIT = 30
+#: What a file system says of one version of a file: its size and tag, or times.
+_OF_VERSION = ("size", "ETag", "etag", "generation", "mtime", "created", "modified", "LastModified", "last_modified")
 #: No sidecar is longer.
 _LONGEST_SIDECAR = 4 << 20
 
@@ -126,6 +133,10 @@ class _Read:
                 self._changed.notify_all()
 
 
+class _BrokenConnection(IoError):
+    """The body of an answer ended before its end."""
+
+
 class HttpFile(RemoteFile):
     """A file by http or https, from a server that answers requests for ranges."""
 
@@ -147,6 +158,15 @@ class HttpFile(RemoteFile):
         self._pool = _connections(self._given_up)
 
     def _read_piece(self, piece: Range) -> bytes:
+        for wait in _WAITS:
+            try:
+                return self._ask_for(piece)
+            except _BrokenConnection:
+                if self._given_up.wait(wait):
+                    raise
+        return self._ask_for(piece)
+
+    def _ask_for(self, piece: Range) -> bytes:
         offset, count = piece
         headers = {"Range": f"bytes={offset}-{offset + count - 1}", "Accept-Encoding": "identity"}
         if self._version is not None:
@@ -160,14 +180,15 @@ class HttpFile(RemoteFile):
                 raise InputError(f"{self._url}: its server sends whole files only (status 200); copy the file to this machine")
             _check_status(self._url, response)
             self._check_range(response, offset, count)
-            data = self._body(response)
+            data = self._body(response, count + 1)
         if len(data) != count:
             raise InputError(f"{self._url}: {len(data)} bytes instead of {count} at byte {offset}; is it complete?")
         return self._count(data)
 
     def _check_range(self, response: urllib3.HTTPResponse, offset: int, count: int) -> None:
         said = response.headers.get("Content-Range", "")
-        if response.status != 206 or not said.startswith(f"bytes {offset}-"):
+        first, last = _range_in(said)
+        if response.status != 206 or first != offset or last >= offset + count:
             raise IoError(
                 f"{self._url}: its server answers bytes {offset} to {offset + count - 1} with status {response.status} and "
                 f'Content-Range "{said}"; copy the file to this machine'
@@ -200,11 +221,14 @@ class HttpFile(RemoteFile):
                 response.close()
             response.release_conn()
 
-    def _body(self, response: urllib3.HTTPResponse, most: Optional[int] = None) -> bytes:
+    def _body(self, response: urllib3.HTTPResponse, most: int) -> bytes:
         try:
-            return response.read(most)
+            data = response.read(most)
         except self._failures as error:
-            raise IoError(f"{self._url}: the connection broke: {error}") from error
+            raise _BrokenConnection(f"{self._url}: the connection broke: {error}") from error
+        if len(data) < most and response.length_remaining:
+            raise _BrokenConnection(f"{self._url}: the connection broke: {response.length_remaining} bytes did not come")
+        return data
 
 
 class FsspecFile(RemoteFile):
@@ -221,6 +245,22 @@ class FsspecFile(RemoteFile):
             self._system, self._path = fsspec.core.url_to_fs(url, **options)
         except (ImportError, ValueError) as error:
             raise UsageError(f"{url}: cannot be opened: {error}") from error
+        self._version = self._found_version()
+
+    def read(self, ranges: Sequence[Range]) -> list[bytes]:
+        found = super().read(ranges)
+        if self._found_version() != self._version:
+            raise InputError(f"{self._url}: changed while it was read; open it again")
+        return found
+
+    def _found_version(self) -> Optional[dict[str, Any]]:
+        """What the file system says of the file now; None where it says nothing."""
+        try:
+            self._system.invalidate_cache(self._path)
+            info = self._system.info(self._path)
+        except Exception:  # each file system has its own; what it means is seen by reading
+            return None
+        return {name: info[name] for name in _OF_VERSION if name in info}
 
     def _read_piece(self, piece: Range) -> bytes:
         offset, count = piece
@@ -257,13 +297,23 @@ def _connections(given_up: threading.Event) -> urllib3.PoolManager:
         def is_exhausted(self) -> bool:
             return given_up.is_set() or super().is_exhausted()
 
-    retries = Retries(total=4, backoff_factor=0.2, status_forcelist=(429, 500, 502, 503, 504), raise_on_status=False)
+        def get_retry_after(self, response: urllib3.HTTPResponse) -> Optional[float]:
+            wait = super().get_retry_after(response)
+            return None if wait is None else min(wait, _LONGEST_WAIT)
+
+    retries = Retries(total=len(_WAITS), backoff_factor=0.2, status_forcelist=(429, 500, 502, 503, 504), raise_on_status=False)
     return urllib3.PoolManager(maxsize=_AT_ONCE, block=True, retries=retries, timeout=urllib3.Timeout(connect=10, read=30))
 
 
 def _pieces(offset: int, count: int) -> list[Range]:
     end = offset + count
     return [(at, min(_PIECE, end - at)) for at in range(offset, end, _PIECE)]
+
+
+def _range_in(said: str) -> tuple[int, int]:
+    """The first and last byte of "bytes 8-15/100"; -1 where it says none."""
+    found = re.match(r"bytes (\d+)-(\d+)/", said)
+    return (int(found[1]), int(found[2])) if found else (-1, -1)
 
 
 def _version(response: urllib3.HTTPResponse) -> Optional[str]:

@@ -15,7 +15,8 @@ class RangeServer:
     """Serves `files`, {"/a.nvdb": bytes}. `asked` has (path, first byte, last byte) of each range that was sent.
 
     ranges: whether it knows ranges. tags: whether it tells versions apart. failures: how many requests it refuses with
-    status 503 from now on. stalled: while it is set, no request is answered. changed(path) makes another version of a file of it.
+    status 503 from now on. cut: how many answers end in the middle from now on. beyond: whether answers go on to the
+    file's end. stalled: while it is set, no request is answered. changed(path) makes another version of a file of it.
     """
 
     def __init__(self, files, ranges=True, tags=True):
@@ -23,6 +24,8 @@ class RangeServer:
         self.ranges = ranges
         self.tags = tags
         self.failures = 0
+        self.cut = 0
+        self.beyond = False
         self.stalled = threading.Event()
         self.forbidden = set()
         self.versions = dict.fromkeys(files, 1)
@@ -82,10 +85,18 @@ class RangeServer:
                     headers = {"ETag": tag} if owner.tags else {}
                     if not found or not owner.ranges or not same:
                         return self.answer(200, data, **headers)
-                    first, last = int(found[1]), min(int(found[2]), len(data) - 1)
+                    first, last = int(found[1]), len(data) - 1 if owner.beyond else min(int(found[2]), len(data) - 1)
                     if first >= len(data):
                         return self.answer(416)
+                    if owner.cut > 0:
+                        owner.cut -= 1
+                        self.wfile.write(
+                            f"HTTP/1.1 206 Partial Content\r\nContent-Range: bytes {first}-{last}/{len(data)}\r\n"
+                            f"Content-Length: {last + 1 - first}\r\n\r\n".encode() + data[first : (first + last) // 2]
+                        )
+                        self.close_connection = True
+                        return None
                     owner.asked.append((path, first, last))
-                self.answer(206, data[first : last + 1], Content_Range=f"bytes {first}-{last}/{len(data)}", **headers)
+                return self.answer(206, data[first : last + 1], Content_Range=f"bytes {first}-{last}/{len(data)}", **headers)
 
         return Handler

@@ -109,6 +109,15 @@ class Remote(FolderTest):
         message = self.refused(weir.UsageError, weir.open, url, cache="much")
         self.assertEqual(message, "cache is 'much', it must be a size as 67108864 or '256MiB'")
 
+    def test_more_than_the_cache_is_read_in_parts(self):
+        _, url = self.served()
+        small = weir.open(url, cache="100KiB")
+        whole = weir.open(url)
+        self.assertTrue(same(small.to_numpy(level=3), whole.to_numpy(level=3)))
+        self.assertTrue(same(small[::-40, ::40, ::40], self.here[::-40, ::40, ::40]))
+        self.assertTrue(same(small.to_numpy(), self.here.to_numpy()))
+        self.assertTrue(same(small.to_numpy(numpy.s_[5:260, 3:9]), self.here.to_numpy(numpy.s_[5:260, 3:9])))
+
     def test_threads_share_a_grid(self):
         _, url = self.served()
         grid = weir.open(url, cache=50000)
@@ -208,6 +217,28 @@ class Remote(FolderTest):
         grid = weir.open(url)
         server.failures = 2
         self.assertTrue(same(grid[9], self.here[9]))
+        server.cut = 3
+        self.assertTrue(same(grid[150], self.here[150]))
+        server.failures = 1000
+        self.assertIn("503", self.refused(weir.IoError, lambda: grid[263]))
+        self.assertLessEqual(1000 - server.failures, 4 * 8, "each of them four times at most, eight at once")
+
+    def test_bodies_that_always_break(self):
+        server, url = self.served()
+        grid = weir.open(url)
+        server.cut = 1000
+        with self.assertRaisesRegex(weir.IoError, "^http://.*/run/a.nvdb: the connection broke: "):
+            grid[9]
+
+    def test_answers_longer_than_what_was_asked_for(self):
+        server, url = self.served()
+        server.beyond = True
+        last = len(self.files["/run/a.nvdb"]) - 1
+        self.assertEqual(
+            self.refused(weir.IoError, weir.open, url),
+            f"{url}: its server answers bytes 0 to 8191 with status 206 and "
+            f'Content-Range "bytes 0-{last}/{last + 1}"; copy the file to this machine',
+        )
 
     def test_a_file_that_changes_is_noticed(self):
         server, url = self.served()
@@ -258,6 +289,9 @@ class Remote(FolderTest):
         with self.assertRaises(FileNotFoundError) as raised:
             weir.open("memory://run/b.nvdb")
         self.assertEqual(str(raised.exception), "memory://run/b.nvdb: there is no such file")
+        memory.pipe("/run/a.nvdb", bytes(len(self.files["/run/a.nvdb"])))
+        message = self.refused(weir.InputError, grid.to_numpy)
+        self.assertEqual(message, "memory://run/a.nvdb: changed while it was read; open it again")
         self.assertIn("cannot be opened", self.refused(weir.UsageError, weir.open, "nonsense://a/b.nvdb"))
         message = self.refused(weir.UsageError, weir.open, self.path, storage_options={"a": 1})
         self.assertEqual(message, f"storage_options are for URLs, and '{self.path}' is a path")
