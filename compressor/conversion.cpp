@@ -65,10 +65,6 @@ void say_axes(const SourceInfo& info, const Notice& notice) {
                                   info.details.data_note, info.details.chunks_note}) {
     if (notice && !note.empty()) notice(cat(volume, note));
   }
-  if (notice && !info.details.coordinates_note.empty()) {
-    notice(compose(volume, info.details.coordinates_note, "; ", option("spacing"), " and ", option("origin"),
-                   " set them"));
-  }
   if (!notice || info.details.units_note.empty()) return;
   notice(compose(volume, info.details.units_note, ": positions are in different units; ", option("spacing"), " and ",
                  option("origin"), " set them in one"));

@@ -9,7 +9,8 @@
 namespace weir {
 
 Message default_notice(const Sidecar& sidecar, const std::string& output) {
-  const Sidecar::CertifiedError& error = sidecar.visible ? sidecar.visible->error : sidecar.error;
+  const bool shown = sidecar.visible && sidecar.visible->blocks > 0;
+  const Sidecar::CertifiedError& error = shown ? sidecar.visible->error : sidecar.error;
   const std::string& kind = sidecar.budget.kind;
   if (kind == "lossless" || kind == "psnr") {
     const std::string kept = error.psnr_db ? cat("with ", short_number(*error.psnr_db), " dB") : lossless_text(sidecar);

@@ -14,7 +14,6 @@
 
 #include "compressor/conversion_control.h"
 #include "compressor/conversion_identity.h"
-#include "compressor/default_notice.h"
 #include "compressor/derived/derived_error.h"
 #include "compressor/describe_conversion.h"
 #include "compressor/encode/encode_attempts.h"
@@ -22,6 +21,7 @@
 #include "compressor/outlook/budget_outlook.h"
 #include "compressor/packed/exact_block.h"
 #include "compressor/refused_values.h"
+#include "compressor/result_notices.h"
 #include "compressor/select/file_size.h"
 #include "compressor/select/leaf_gain.h"
 #include "compressor/select/leaf_reach.h"
@@ -187,7 +187,7 @@ class SurveyedConversion {
     const std::jthread unmap = released(std::move(encoded.mapped));
     write_inner_nodes(encoded);
     describe_file(sidecar_, info_, survey_, options_, background_, head_, encoded, shown_);
-    say_quality();
+    say_result(sidecar_, options_, parts_.control.notice);
     digest(encoded);
     sidecar_.timing.encode_s = seconds_since(encoding);
     if (options_.certify == Certify::gradient) certify_gradient();
@@ -297,17 +297,10 @@ class SurveyedConversion {
                      parts_.control.coder, options_.memory},
                     std::move(request));
     const Message& notice = encoded.file.size.notice;
-    // Of a lossless file that nobody asked for say_quality says all.
+    // Of a lossless file that nobody asked for say_result says all.
     const bool own_choice = options_.budget.kind == Budget::Kind::automatic && encoded.file.size.kind == "lossless";
     if (!notice.empty() && !own_choice && parts_.control.notice) parts_.control.notice(notice);
     return encoded;
-  }
-
-  // What nobody asked for is said, by what it does to the values.
-  void say_quality() {
-    if (options_.budget.kind != Budget::Kind::automatic || !parts_.control.notice) return;
-    const Message line = default_notice(sidecar_, options_.output);
-    if (!line.empty()) parts_.control.notice(line);
   }
 
   // All of the file but its leaves.

@@ -37,12 +37,13 @@ void read_psnr(const OptionRow& row, const std::string& text, Request& request) 
   constexpr double kLeastDecibels = 1e-3;
   constexpr double kMostDecibels = 1000;
   request.conversion.budget.target =
-      read_number(row, text, kLeastDecibels, kMostDecibels, "a number of dB above 0, 60 for instance");
+      read_number(row, text, kLeastDecibels, kMostDecibels, "a number of dB above 0 and up to 1000, 60 for instance");
 }
 
 void read_max_error(const OptionRow& row, const std::string& text, Request& request) {
   request.conversion.budget.kind = Budget::Kind::max_error;
-  request.conversion.budget.target = read_number(row, text, 0, 1e300, "a number from 0 on, in the values' own unit");
+  request.conversion.budget.target =
+      read_number(row, text, 0, 1e300, "a number from 0 to 1e300, in the values' own unit");
 }
 
 void read_lossless(const OptionRow& row, const std::string& text, Request& request) {

@@ -24,15 +24,18 @@ std::uint64_t valid_voxels(const Sidecar& s) {
   return all_voxels(s) - without;
 }
 
-bool lossless_everywhere(const Sidecar& s) {
-  const bool other_values =
-      (s.nonfinite.count > 0 && s.nonfinite.policy != "keep") || (s.missing.count > 0 && policy_of(s) != "keep");
-  return s.error.lossless && !other_values;
+namespace {
+
+// Whether other values take the place of voxels that are not finite or hold no data.
+bool replaces_voxels(const Sidecar& s) {
+  return (s.nonfinite.count > 0 && s.nonfinite.policy != "keep") || (s.missing.count > 0 && policy_of(s) != "keep");
 }
 
-std::string lossless_text(const Sidecar& s) {
-  return lossless_everywhere(s) ? "lossless" : "lossless over valid voxels";
-}
+}  // namespace
+
+bool lossless_everywhere(const Sidecar& s) { return s.error.lossless && !replaces_voxels(s); }
+
+std::string lossless_text(const Sidecar& s) { return replaces_voxels(s) ? "lossless over valid voxels" : "lossless"; }
 
 namespace {
 

@@ -16,7 +16,8 @@ std::uint64_t valid_voxels(const Sidecar& sidecar);
 /// that is not finite or holds no data.
 bool lossless_everywhere(const Sidecar& sidecar);
 
-/// "lossless", or "lossless over valid voxels" where that is less.
+/// Of an error of the sidecar, of all or of what a scene shows, that is lossless: "lossless", or "lossless over valid
+/// voxels" where other values take the place of voxels that are not.
 std::string lossless_text(const Sidecar& sidecar);
 
 /// "1234 of 8000 voxels (15.4 %) hold no data and read as the background"; of one level of several that they are not of

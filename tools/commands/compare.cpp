@@ -96,6 +96,9 @@ ComparedPair open_pair(const std::string& input, const std::string& volume, cons
   if (const std::string other = other_input_note(file, source->info()); !other.empty()) {
     spdlog::warn("{}: {}", volume, other);
   }
+  if (const std::string changed = changed_source_note(file, source->info()); !changed.empty()) {
+    spdlog::warn("{}: {}; the figures compare with what it is now", input, changed);
+  }
   return {std::move(file), std::move(source)};
 }
 

@@ -130,14 +130,15 @@ std::optional<Sidecar> skip_or_replace(const SourceInfo& info, const ConvertArgu
 }
 
 // The default gives a small volume more than its rate where it needs it.
-void say_sizes(std::span<const SeriesStep> steps, std::span<const Sidecar> made, const Budget& budget) {
+void say_sizes(std::span<const SeriesStep> steps, std::span<const std::string> outputs, std::span<const Sidecar> made,
+               const Budget& budget) {
   if (budget.kind != Budget::Kind::automatic) return;
-  std::map<std::string, const Sidecar*> first;  // of each series
+  std::map<std::string, std::size_t> first;  // of each series
   for (std::size_t i = 0; i < steps.size(); ++i) {
-    const Sidecar& one = *first.emplace(steps[i].series, &made[i]).first->second;
-    if (made[i].file.bytes == one.file.bytes) continue;
-    spdlog::warn("{}: {} bytes, and {} has {}; give --size for files of one size", made[i].source.path,
-                 made[i].file.bytes, one.source.path, one.file.bytes);
+    const std::size_t one = first.emplace(steps[i].series, i).first->second;
+    if (made[i].file.bytes == made[one].file.bytes) continue;
+    spdlog::warn("{}: {} bytes, and {} has {}; give --size for files of one size", outputs[i], made[i].file.bytes,
+                 outputs[one], made[one].file.bytes);
     return;
   }
 }
@@ -292,7 +293,7 @@ void convert(const CLI::App& command, const ConvertArguments& a) {
     if (a.json) print_json(forecasts);
     return;
   }
-  say_sizes(steps, sidecars, options.budget);
+  say_sizes(steps, outputs, sidecars, options.budget);
   if (a.json) print_json(sidecars);
 }
 

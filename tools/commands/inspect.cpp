@@ -33,13 +33,13 @@
 #include "tools/report/error_text.h"
 #include "tools/report/histogram_plot.h"
 #include "tools/report/input_listing.h"
-#include "tools/report/packed_census.h"
 #include "tools/report/printable.h"
 #include "tools/report/progress.h"
 #include "tools/report/quantity_title.h"
 #include "tools/report/read_sidecar.h"
-#include "tools/report/tree_census.h"
 #include "tools/report/volume_title.h"
+#include "tools/verify/packed_census.h"
+#include "tools/verify/tree_census.h"
 
 namespace weir {
 namespace {
@@ -205,7 +205,9 @@ void print_sidecar(const Sidecar& s) {
   if (s.gradient) line("gradient    ", gradient_text(*s.gradient, s.source.units));
   const Sidecar::Zeros zeros = s.zeros.value_or(Sidecar::Zeros{});
   if (zeros.lost > 0) line("zeros       ", lost_zeros_text(zeros.lost, zeros.count));
-  if (s.visible) {
+  if (s.visible && s.visible->blocks == 0) {
+    line("visible     ", cat("nothing, by ", s.visible->scene));
+  } else if (s.visible) {
     line("visible     ", cat(s.visible->voxels, " voxels in ", s.visible->blocks, " blocks, by ", s.visible->scene,
                              ": ", certificate_text(s, s.visible->error)));
   }

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <chrono>
+#include <cstdint>
 #include <future>
 #include <iostream>
 #include <memory>
@@ -199,6 +201,14 @@ std::string kind_list() {
   return text;
 }
 
+// The parser takes what is out of range for a number that is in it.
+std::string is_seed(const std::string& text) {
+  std::uint64_t seed = 0;
+  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+  if (error == std::errc{} && rest == text.data() + text.size()) return {};
+  throw usage_error(cat("--seed is ", '"', text, '"', ", it must be a whole number from 0 to ", ~std::uint64_t{0}));
+}
+
 }  // namespace
 
 void add_sample(CLI::App& app) {
@@ -217,7 +227,10 @@ void add_sample(CLI::App& app) {
   for (const OptionRow& row : {dims, type, conversion_option("endian")}) {
     add_option(*command, row, arguments->options);
   }
-  command->add_option("--seed", arguments->seed, "of the kinds with randomness")->type_name("N")->capture_default_str();
+  command->add_option("--seed", arguments->seed, "of the kinds with randomness")
+      ->type_name("N")
+      ->capture_default_str()
+      ->check(is_seed);
   command->add_flag("--overwrite", arguments->overwrite, "replace an existing file");
   add_run_options(*command, arguments->options, arguments->progress);
   command->add_flag("--json", arguments->json, "report as one JSON object on stdout");

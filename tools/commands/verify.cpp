@@ -18,7 +18,7 @@
 #include "tools/options/volume_series.h"
 #include "tools/report/printable.h"
 #include "tools/report/progress.h"
-#include "tools/report/volume_verification.h"
+#include "tools/verify/volume_verification.h"
 
 namespace weir {
 namespace {

@@ -75,6 +75,21 @@ std::string shown_line(const Forecast& f, const ConversionOptions& options) {
              " of the voxels");
 }
 
+// What takes the place of a budget that nobody gave; empty where one was.
+std::string default_budget_text(const Forecast& f, const ConversionOptions& options) {
+  if (options.budget.kind != Budget::Kind::automatic) return "";
+  const std::string rate = cat("--rate ", options.budget.rate);
+  if (f.budget == "psnr") {
+    return cat("none was given, and ", rate, " would keep less than ", kDefaultLeastDb,
+               " dB: as few bytes as keep that");
+  }
+  if (f.budget == "lossless") {
+    return cat("none was given, and ", rate, " would keep less than ", kDefaultLeastDb, " dB: lossless");
+  }
+  if (f.budget == "minimum") return cat("none was given, and ", rate, " is less than the smallest tree takes: that");
+  return cat("none was given: ", rate);
+}
+
 nlohmann::ordered_json to_json(const Expected& expected, bool with_spread) {
   nlohmann::ordered_json json{{"value", expected.value}, {"low", nullptr}, {"high", nullptr}};
   if (!with_spread || !has_spread(expected)) return json;
@@ -103,6 +118,7 @@ std::string forecast_text(const Forecast& f, const SourceInfo& source, const Con
   text += line("memory", cat("up to ", format_bytes(f.memory_bytes), " of ", format_bytes(options.memory), ", ",
                              f.threads, f.threads == 1 ? " thread" : " threads", f.on_device ? " and a device" : ""));
   if (!sampled) return text;
+  if (const std::string budget = default_budget_text(f, options); !budget.empty()) text += line("budget", budget);
   text += line("encoding", f.encoding);
   text += line("error", error_line(f, options));
   if (options.scene) text += line("shown", shown_line(f, options));
@@ -129,6 +145,7 @@ nlohmann::ordered_json forecast_json(const Forecast& f, const SourceInfo& source
   json["memory"] = {{"ceiling_bytes", options.memory}, {"planned_bytes", f.memory_bytes}};
   json["threads"] = f.threads;
   json["backend"] = f.on_device ? "cuda" : "cpu";
+  json["budget"] = nullptr;
   json["encoding"] = nullptr;
   json["error"] = nullptr;
   json["visible"] = nullptr;
@@ -137,6 +154,7 @@ nlohmann::ordered_json forecast_json(const Forecast& f, const SourceInfo& source
   json["read"]["bytes"] = f.read_bytes;
   json["read"]["passes"] = f.passes;
   json["scratch_bytes"] = f.scratch_bytes;
+  json["budget"] = f.budget;
   json["encoding"] = f.encoding;
   json["time"] = {{"survey_s", f.survey_s}, {"encode_s", f.encode_s}, {"total_s", f.total_s()}};
   json["error"] = to_json(f.error, f.whole, of_all(options));

@@ -1,6 +1,7 @@
 #include "tools/report/recorded_input.h"
 
 #include <cstdint>
+#include <filesystem>
 #include <utility>
 
 #include "compressor/options/conversion_request.h"
@@ -36,16 +37,29 @@ std::string take_recorded_input(const std::string& input, const NvdbFile& file, 
                                 SourceOptions& options) {
   const std::optional<Sidecar> record = record_of(file);
   if (!record) return {};
-  if (!options.stack && record->source.format != format_of(input).name) return {};
   std::string taken;
   const auto note = [&taken](const char* option, const std::string& text) {
-    taken += cat(taken.empty() ? "" : " ", option, ' ', text);
+    taken += cat(taken.empty() ? "" : " ", option, text.empty() ? "" : " ", text);
   };
-  if (const auto said = record->weir.options.find("magnitude"); said != record->weir.options.end() &&
-                                                                options.dataset.empty() && options.magnitude.empty() &&
-                                                                !options.component && !options.stack) {
-    options.magnitude = split(said->second, ',');
-    note("--magnitude", said->second);
+  const auto& said = record->weir.options;
+  if (!options.stack && said.contains("stack") && !std::filesystem::exists(input)) {  // a pattern
+    options.stack = true;
+    note("--stack", "");
+  }
+  if (!options.stack && record->source.format != format_of(input).name) return {};
+  for (const char* const key : {"dims", "type", "endian", "offset"}) {
+    if (!said.contains(key) || given.contains(key)) continue;
+    const SourceOptions as_said = read_conversion_request({{key, said.at(key)}}).source;
+    if (as_said.extent) options.extent = as_said.extent;
+    if (as_said.type) options.type = as_said.type;
+    if (as_said.big_endian) options.big_endian = as_said.big_endian;
+    if (as_said.offset) options.offset = as_said.offset;
+    note(cat("--", key).c_str(), said.at(key));
+  }
+  const bool names_volume = !options.dataset.empty() || !options.magnitude.empty() || options.component;
+  if (said.contains("magnitude") && !names_volume && !options.stack) {
+    options.magnitude = split(said.at("magnitude"), ',');
+    note("--magnitude", said.at("magnitude"));
   }
   const bool same_dataset =
       options.magnitude.empty() && (options.dataset.empty() || options.dataset == record->source.dataset ||
@@ -69,32 +83,38 @@ std::string take_recorded_input(const std::string& input, const NvdbFile& file, 
     note("--levels", cat("separate (level ", record->source.level->number, ")"));
   }
   for (const char* const key : {"level", "upsample"}) {
-    const auto said = record->weir.options.find(key);
-    if (said == record->weir.options.end() || given.contains(key)) continue;
-    const SourceOptions as_said = read_conversion_request({{key, said->second}}).source;
+    if (!said.contains(key) || given.contains(key)) continue;
+    const SourceOptions as_said = read_conversion_request({{key, said.at(key)}}).source;
     if (as_said.level) options.level = as_said.level;
     if (as_said.upsampling) options.upsampling = as_said.upsampling;
-    note(cat("--", key).c_str(), said->second);
+    note(cat("--", key).c_str(), said.at(key));
   }
-  const auto spacing = record->weir.options.find("spacing");
-  if (!options.spacing && spacing != record->weir.options.end()) {
-    options.spacing = read_conversion_request({{"spacing", spacing->second}}).source.spacing;
-    note("--spacing", spacing->second);
+  if (!options.spacing && said.contains("spacing")) {
+    options.spacing = read_conversion_request({{"spacing", said.at("spacing")}}).source.spacing;
+    note("--spacing", said.at("spacing"));
   }
-  const auto recorded = record->weir.options.find("missing");
-  if (!options.missing && recorded != record->weir.options.end()) {
-    options.missing = parse_stored_value(recorded->second);
-    note("--missing", recorded->second);
+  if (!options.missing && said.contains("missing")) {
+    options.missing = parse_stored_value(said.at("missing"));
+    note("--missing", said.at("missing"));
   }
   if (record->missing.policy == "keep" && record->missing.count > 0 && !given.contains("missing-policy")) {
     options.keeps_missing = true;
     note("--missing-policy", "keep");
   }
-  if (!options.roi && (record->weir.options.contains("roi") || record->weir.options.contains("ghost"))) {
+  if (!options.roi && (said.contains("roi") || said.contains("ghost"))) {
     options.roi = record->grid.index_bbox;
     note("--roi", box_text(record->grid.index_bbox));
   }
   return taken;
+}
+
+std::string changed_source_note(const NvdbFile& file, const SourceInfo& source) {
+  const std::optional<Sidecar> record = record_of(file);
+  if (!record || record->source.format != source.format) return {};
+  const std::string mtime = utc_text(source.mtime_ns);
+  if (record->source.path != source.path || record->source.mtime == mtime) return {};
+  return cat("was written at ", mtime, ", after it was converted: the one that ", sidecar_path(file.path()),
+             " records was of ", record->source.mtime);
 }
 
 std::string other_input_note(const NvdbFile& file, const SourceInfo& source) {

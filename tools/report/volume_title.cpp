@@ -9,7 +9,8 @@ namespace weir {
 
 std::string chosen_text(const std::string& dataset, std::span<const std::int64_t> index, const std::string& component) {
   std::string text = dataset;
-  for (const std::int64_t& i : index) text += cat(&i == index.data() ? " at " : ",", i);
+  const char* const at = dataset.empty() ? "at " : " at ";
+  for (const std::int64_t& i : index) text += cat(&i == index.data() ? at : ",", i);
   if (!component.empty()) text += cat(", ", component == "magnitude" ? "" : "component ", component);
   return text;
 }

@@ -267,8 +267,9 @@ TEST(ScenePictures, NothingVisible_GivesTheSmallestTree) {
   scene.volume.range = {1000, 2000};
   ConversionOptions larger = options_for(scene, Budget::Kind::rate, 1);
   const Converted padded = convert(source, larger);
-  ASSERT_EQ(padded.notices.size(), 1U);
+  ASSERT_EQ(padded.notices.size(), 2U);
   EXPECT_NE(padded.notices[0].find("what the scene shows takes no more than "), std::string::npos) << padded.notices[0];
+  EXPECT_NE(padded.notices[1].find(" shows nothing of "), std::string::npos) << padded.notices[1];
 }
 
 TEST(ScenePictures, VisibleBackgroundFill_KeepsHiddenBlocksToo) {

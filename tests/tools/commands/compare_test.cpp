@@ -1,7 +1,9 @@
 // weir compare from outside, on files that the command itself made.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cstring>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -204,6 +206,48 @@ TEST(Compare, IndexOfTheConversion_IsTakenFromTheSidecar) {
                                       ".json records, and is compared with --index 0\n")))
       << other.err;
   EXPECT_EQ(run_weir({"compare", nrrd, volume, "--index", "1"}).err, "");
+}
+
+TEST(Compare, HowARawFileWasRead_IsTakenFromTheSidecar) {
+  const TemporaryDirectory directory;
+  std::string values(8, '\0');  // not of the volume
+  for (int i = 0; i < 60; ++i) values += std::string(1, static_cast<char>(i / 8)) + static_cast<char>(31 * i);
+  const std::string raw = directory / "dump.bin";
+  const std::string volume = directory / "a.nvdb";
+  write_file(raw, values);
+  const CommandResult converted = run_weir({"convert", raw, "--dims", "5,4,3", "--type", "uint16", "--endian", "big",
+                                            "--offset", "8", "-o", volume, "--lossless"});
+  ASSERT_EQ(converted.exit_code, 0) << converted.err;
+  const CommandResult compared = run_weir({"compare", raw, volume});
+  EXPECT_EQ(compared.out, "lossless: all 60 finite voxels read bit for bit\n") << compared.err;
+  EXPECT_TRUE(compared.err.ends_with(cat(
+      " info ", raw, ": read with --dims 5,4,3 --type uint16 --endian big --offset 8, as ", volume, ".json records\n")))
+      << compared.err;
+  EXPECT_NE(run_weir({"compare", raw, volume, "--endian", "little"}).out, compared.out) << "what is given counts";
+}
+
+TEST(Compare, StackOfTheConversion_IsTakenFromTheSidecar) {
+  const TemporaryDirectory directory;
+  for (int z = 0; z < 3; ++z) write_file(directory / cat("plane_0", z, ".raw"), std::string(20, static_cast<char>(z)));
+  const std::string pattern = directory / "plane_%02d.raw";
+  const std::string volume = directory / "a.nvdb";
+  const CommandResult converted =
+      run_weir({"convert", "--stack", pattern, "--dims", "5,4,1", "--type", "uint8", "-o", volume, "--lossless"});
+  ASSERT_EQ(converted.exit_code, 0) << converted.err;
+  const CommandResult compared = run_weir({"compare", pattern, volume});
+  EXPECT_EQ(compared.out, "lossless: all 60 finite voxels read bit for bit\n") << compared.err;
+  EXPECT_NE(compared.err.find(": read with --stack --dims 5,4,1 --type uint8, as "), std::string::npos) << compared.err;
+}
+
+TEST(Compare, SourceThatWasWrittenToSince_IsSaid) {
+  const Converted volume("noise", "20x10x9_float32", {"--lossless"});
+  const std::filesystem::path source = volume.raw;
+  std::filesystem::last_write_time(source, std::filesystem::last_write_time(source) + std::chrono::seconds(3));
+  const CommandResult later = run_weir({"compare", volume.raw, volume.nvdb});
+  EXPECT_NE(later.err.find(cat(volume.raw, ": was written at ")), std::string::npos) << later.err;
+  EXPECT_NE(later.err.find(", after it was converted: the one that " + volume.nvdb + ".json records was of "),
+            std::string::npos)
+      << later.err;
 }
 
 TEST(Compare, NonFiniteVoxelsAreCounted) {

@@ -52,6 +52,15 @@ TEST(Sample, WritesAFileOfEveryKind) {
   }
 }
 
+TEST(Sample, SeedThatIsNoneIsRefused) {
+  for (const char* seed : {"-1", "18446744073709551616", "1.5"}) {
+    const CommandResult result = run_weir({"sample", "noise", "--dims", "8,8,8", "--seed", seed, "-o", "a.raw"});
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_EQ(result.err,
+              cat("weir: --seed is \"", seed, "\", it must be a whole number from 0 to 18446744073709551615\n"));
+  }
+}
+
 TEST(Sample, SameBytesWhateverThreadsAndMemory) {
   const TemporaryDirectory directory;
   const std::vector<std::vector<std::string>> ways{

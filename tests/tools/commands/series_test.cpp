@@ -78,6 +78,9 @@ TEST_F(SeriesCommand, StepsOfTwoExtentsNeedASize) {
   const auto by_default = run_weir({"convert", first, other});
   EXPECT_EQ(by_default.exit_code, 0) << by_default.err;
   EXPECT_NE(by_default.err.find("; give --size for files of one size\n"), std::string::npos) << by_default.err;
+  EXPECT_NE(by_default.err.find(directory_ / "u_9x8x7_uint8.nvdb" + ": "), std::string::npos) << by_default.err;
+  EXPECT_NE(by_default.err.find(" bytes, and " + directory_ / "t_0_64x48x40_uint8.nvdb" + " has "), std::string::npos)
+      << by_default.err;
   const auto by_size = run_weir({"convert", first, other, "--size", "1MB", "--overwrite"});
   EXPECT_EQ(by_size.exit_code, 0) << by_size.err;
   EXPECT_EQ(std::filesystem::file_size(directory_.path() / "u_9x8x7_uint8.nvdb"), 1000000U);

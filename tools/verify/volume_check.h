@@ -7,7 +7,7 @@
 
 #include "format/nanovdb/nvdb_grid.h"
 #include "format/sidecar/sidecar.h"
-#include "tools/report/tree_census.h"
+#include "tools/verify/tree_census.h"
 
 namespace weir {
 

@@ -1,4 +1,4 @@
-#include "tools/report/tree_census.h"
+#include "tools/verify/tree_census.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "format/leaf/leaf_decode.h"
-#include "tools/report/packed_census.h"
+#include "tools/verify/packed_census.h"
 
 namespace weir {
 namespace {

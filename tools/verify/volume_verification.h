@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "format/base/trace.h"
-#include "tools/report/volume_check.h"
+#include "tools/verify/volume_check.h"
 
 namespace weir {
 

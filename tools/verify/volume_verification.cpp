@@ -1,4 +1,4 @@
-#include "tools/report/volume_verification.h"
+#include "tools/verify/volume_verification.h"
 
 #include <tbb/parallel_for.h>
 
@@ -15,6 +15,7 @@
 #include "format/nanovdb/nvdb_file.h"
 #include "format/sidecar/sidecar.h"
 #include "tools/report/read_sidecar.h"
+#include "tools/verify/certificate_check.h"
 
 namespace weir {
 namespace {
@@ -87,6 +88,7 @@ std::vector<VolumeCheck> verify_volume(const std::string& path, const Verificati
   if (!sidecar) return checks;
   const std::string digest = parallel_digest(grid.bytes(), watch);
   for (VolumeCheck& check : check_sidecar(grid, *census, digest, *sidecar)) checks.push_back(std::move(check));
+  for (VolumeCheck& check : check_certificate(*sidecar)) checks.push_back(std::move(check));
   return checks;
 }
 

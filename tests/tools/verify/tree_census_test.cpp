@@ -1,4 +1,4 @@
-#include "tools/report/tree_census.h"
+#include "tools/verify/tree_census.h"
 
 #include <gtest/gtest.h>
 

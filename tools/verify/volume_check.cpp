@@ -1,4 +1,4 @@
-#include "tools/report/volume_check.h"
+#include "tools/verify/volume_check.h"
 
 #include <algorithm>
 #include <bit>
@@ -10,7 +10,7 @@
 #include "format/base/text.h"
 #include "format/layout/nanovdb_layout.h"
 #include "format/nanovdb/nvdb_checksum.h"
-#include "tools/report/packed_census.h"
+#include "tools/verify/packed_census.h"
 
 namespace weir {
 namespace {

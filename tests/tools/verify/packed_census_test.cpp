@@ -1,4 +1,4 @@
-#include "tools/report/packed_census.h"
+#include "tools/verify/packed_census.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 
 #include "format/nanovdb/nvdb_grid.h"
 #include "tests/support/packed_sample.h"
-#include "tools/report/tree_census.h"
-#include "tools/report/volume_check.h"
+#include "tools/verify/tree_census.h"
+#include "tools/verify/volume_check.h"
 
 namespace weir::packed_census_test {
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/report/packed_census.h"
+#include "tools/verify/packed_census.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>

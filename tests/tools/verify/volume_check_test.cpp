@@ -1,4 +1,4 @@
-#include "tools/report/volume_check.h"
+#include "tools/verify/volume_check.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,71 @@
+#include "tools/verify/certificate_check.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+
+#include "tests/tools/support/converted_volume.h"
+
+namespace weir::certificate_check_test {
+namespace {
+
+using CertificateCheck = ConvertedVolume;
+
+std::string failed_names(const Sidecar& sidecar) {
+  std::string names;
+  for (const VolumeCheck& check : check_certificate(sidecar)) {
+    if (!check.ok) names += check.name + '\n';
+  }
+  return names;
+}
+
+// Of a volume that is not lossless.
+Sidecar with_error(Sidecar sidecar) {
+  const double range = sidecar.value_range[1] - sidecar.value_range[0];
+  sidecar.error = {0.25, 0.5, 0.25 / range / range, 20 * std::log10(range / 0.5), 3, false};
+  return sidecar;
+}
+
+TEST_F(CertificateCheck, FiguresOfALosslessVolume_Agree) { EXPECT_EQ(failed_names(sidecar()), ""); }
+
+TEST_F(CertificateCheck, FigureThatContradictsAnother_Fails) {
+  const Sidecar good = with_error(sidecar());
+  const auto failed = [&](const std::function<void(Sidecar&)>& change) {
+    Sidecar changed = good;
+    change(changed);
+    return failed_names(changed);
+  };
+  EXPECT_EQ(failed([](Sidecar&) {}), "");
+  EXPECT_EQ(failed([](Sidecar& s) { s.error.rmse *= 1.001; }), "sidecar error.rmse\n");
+  EXPECT_EQ(failed([](Sidecar& s) { s.error.max_abs = s.error.rmse / 2; }), "sidecar error.max_abs\n");
+  EXPECT_EQ(failed([](Sidecar& s) { s.error.psnr_db = 999; }), "sidecar error.psnr_db\n");
+  EXPECT_EQ(failed([](Sidecar& s) { s.error.psnr_db.reset(); }), "sidecar error.psnr_db\n");
+  EXPECT_EQ(failed([](Sidecar& s) { s.error.lossless = true; }), "sidecar error.lossless\n");
+  EXPECT_EQ(failed([](Sidecar& s) { s.error.mse = 0, s.error.max_abs = 0, s.error.psnr_db.reset(); }),
+            "sidecar error.rmse\nsidecar error.max_abs\n");
+  EXPECT_EQ(failed([](Sidecar& s) { s.source.extent = {1, 2, 3}; }).substr(0, 21), "sidecar source.extent");
+  EXPECT_EQ(failed([](Sidecar& s) { s.budget.rate = 99; }), "sidecar budget.rate\n");
+  EXPECT_EQ(failed([](Sidecar& s) { s.budget.dense_float32_bytes = 8; }), "sidecar budget.dense_float32_bytes\n");
+  EXPECT_EQ(failed([](Sidecar& s) { s.selection.leaves_total = 1; }),
+            "sidecar selection.leaves_kept of leaves_total\n");
+  EXPECT_EQ(failed([](Sidecar& s) { s.zeros->lost = s.zeros->count + 1; }), "sidecar zeros.lost\n");
+  EXPECT_EQ(failed([](Sidecar& s) { s.histogram.counts[0] += 5; }), "sidecar histogram.counts\n");
+  EXPECT_EQ(failed([](Sidecar& s) { s.histogram.counts[0] += 5, s.missing.policy = ""; }), "") << "as of weir 0.1";
+  EXPECT_EQ(failed([](Sidecar& s) {
+              s.visible = Sidecar::Visible{"a.toml", 1, 1U << 30U, s.error, ""};
+            }),
+            "sidecar visible.voxels\n");
+}
+
+// A sidecar has null, which is read as NaN, for what is not finite.
+TEST_F(CertificateCheck, ErrorThatIsNotFinite_ContradictsNothing) {
+  Sidecar changed = with_error(sidecar());
+  changed.error.max_abs = std::nan("");
+  EXPECT_EQ(failed_names(changed), "");
+}
+
+}  // namespace
+}  // namespace weir::certificate_check_test

@@ -1,0 +1,81 @@
+#include "tools/verify/certificate_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <optional>
+#include <string>
+
+#include "format/base/text.h"
+#include "format/sidecar/valid_voxels.h"
+
+namespace weir {
+namespace {
+
+constexpr double kRounding = 1e-9;  ///< of figures that were computed in another order
+
+bool is_near(double a, double b) {
+  return a == b || std::fabs(a - b) <= kRounding * std::max(std::fabs(a), std::fabs(b));
+}
+
+std::string text_of(const std::optional<double>& value) { return value ? cat(*value) : "none"; }
+std::string text_of(const Index3& extent) { return cat(extent.x, " x ", extent.y, " x ", extent.z); }
+
+VolumeCheck at_most(const std::string& name, std::uint64_t found, std::uint64_t most) {
+  return {name, cat(found), cat("at most ", most), found <= most};
+}
+
+// `name`: "sidecar error".
+void check_error(const std::string& name, const Sidecar::CertifiedError& error, double range,
+                 std::vector<VolumeCheck>& checks) {
+  const double root = std::sqrt(error.mse);
+  checks.push_back({name + ".rmse", cat(error.rmse), cat(root, ", the root of mse"), is_near(error.rmse, root)});
+  const bool bounded = error.rmse <= error.max_abs * (1 + kRounding) && (error.mse > 0 || !(error.max_abs > 0));
+  checks.push_back({name + ".max_abs", cat(error.max_abs), cat("at least ", error.rmse, ", the rmse"),
+                    bounded || !std::isfinite(error.max_abs)});
+  std::optional<double> psnr_db;
+  if (range > 0 && root > 0) psnr_db = 20 * std::log10(range / root);
+  const bool same = psnr_db && error.psnr_db
+                        ? std::fabs(*psnr_db - *error.psnr_db) <= kRounding * (1 + std::fabs(*psnr_db))
+                        : psnr_db.has_value() == error.psnr_db.has_value();
+  checks.push_back({name + ".psnr_db", text_of(error.psnr_db), text_of(psnr_db), same || !std::isfinite(range)});
+  const bool exact = error.mse == 0 && error.max_abs == 0;
+  checks.push_back({name + ".lossless", error.lossless ? "true" : "false", exact ? "true or false" : "false",
+                    exact || !error.lossless});
+}
+
+}  // namespace
+
+std::vector<VolumeCheck> check_certificate(const Sidecar& s) {
+  std::vector<VolumeCheck> checks;
+  const double range = s.value_range[1] - s.value_range[0];
+  check_error("sidecar error", s.error, range, checks);
+  if (s.visible) check_error("sidecar visible.error", s.visible->error, range, checks);
+  if (s.packed) check_error("sidecar packed.error_preview", s.packed->error_preview, range, checks);
+  checks.push_back(
+      {"sidecar source.extent", text_of(s.source.extent), text_of(s.grid.extent), s.source.extent == s.grid.extent});
+  const auto voxels = static_cast<std::uint64_t>(volume(s.grid.extent));
+  const std::uint64_t dense = voxels * sizeof(float);
+  checks.push_back({"sidecar budget.dense_float32_bytes", cat(s.budget.dense_float32_bytes), cat(dense),
+                    s.budget.dense_float32_bytes == dense});
+  const double rate = static_cast<double>(dense) / static_cast<double>(std::max<std::uint64_t>(s.budget.file_bytes, 1));
+  checks.push_back({"sidecar budget.rate", cat(s.budget.rate), cat(rate), is_near(s.budget.rate, rate)});
+  checks.push_back(
+      at_most("sidecar selection.leaves_kept of leaves_total", s.selection.leaves_kept, s.selection.leaves_total));
+  if (s.zeros) {
+    checks.push_back(at_most("sidecar zeros.lost", s.zeros->lost, s.zeros->count));
+    checks.push_back(at_most("sidecar zeros.count", s.zeros->count, voxels));
+  }
+  if (s.visible) checks.push_back(at_most("sidecar visible.voxels", s.visible->voxels, voxels));
+  // Weir 0.1 did not say what became of missing voxels, and so which it counted.
+  if (!s.histogram.counts.empty() && !s.missing.policy.empty()) {
+    const std::uint64_t counted =
+        std::accumulate(s.histogram.counts.begin(), s.histogram.counts.end(), std::uint64_t{0});
+    checks.push_back({"sidecar histogram.counts", cat(counted, " in all"), cat(valid_voxels(s), ", the valid voxels"),
+                      counted == valid_voxels(s)});
+  }
+  return checks;
+}
+
+}  // namespace weir
