@@ -122,6 +122,8 @@ void WatchedTree::work() {
   Clock::duration looking{};  // without the flush, which takes as long for few as for many
   const std::vector<FileEvent> events(events_.begin(), events_.begin() + count);
   const std::size_t first = std::min(events.size(), first_events_);
+  const bool known_listed = known_listed_;
+  const std::size_t known_looked_at = known_looked_at_;
   try {
     store_.together([&] {
       if (!std::exchange(known_listed_, true)) list_known_jobs();
@@ -139,7 +141,8 @@ void WatchedTree::work() {
     written_.clear();
     ready_ = false;
     superseded_.clear();
-    known_listed_ = false;
+    known_listed_ = known_listed;
+    known_looked_at_ = known_looked_at;
     // What was looked at is due again; what was thought to be known is new again. The events themselves are there yet.
     for (const FileEvent& event : events) looked_at_.erase(event.path);
     for (const std::string& path : looked_at_) {
@@ -158,7 +161,7 @@ void WatchedTree::work() {
   for (const auto& say : std::exchange(written_, {})) say();
   for (const std::int64_t job : std::exchange(superseded_, {})) reports_.superseded(job);
   if (std::exchange(ready_, false)) reports_.ready();
-  if (!events_.empty() || !known_.empty()) {
+  if (!events_.empty() || !known_listed_ || known_looked_at_ < known_.size()) {
     schedule(milliseconds(0));
   } else if (!agenda_.empty()) {
     schedule(std::max(milliseconds(0), std::chrono::ceil<milliseconds>(agenda_.begin()->first - Clock::now())));
@@ -175,6 +178,7 @@ void WatchedTree::fit_batch(Clock::duration looking) {
 
 void WatchedTree::list_known_jobs() {
   known_.clear();
+  known_looked_at_ = 0;
   const PathFilter filter(config_);
   for (const JobState state : kForgotten) {
     const JobFilter jobs{state, config_.label};
@@ -187,15 +191,19 @@ void WatchedTree::list_known_jobs() {
       }
     }
   }
-  // Of a directory that is not mounted yet all seems to be gone.
-  std::error_code ignored;
-  if (!std::filesystem::is_directory(config_.directory, ignored)) known_.clear();
 }
 
 void WatchedTree::look_at_known_jobs() {
+  if (known_looked_at_ == known_.size()) return;
+  // In a directory that is not there, as before it is mounted, all seems to be gone: then they are listed again.
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(config_.directory, ignored)) {
+    known_looked_at_ = known_.size();
+    return;
+  }
   const Time begin = Clock::now();
-  for (; !known_.empty() && Clock::now() - begin < kTransactionTime; known_.pop_back()) {
-    const std::optional<Job> job = store_.job(known_.back());
+  for (; known_looked_at_ < known_.size() && Clock::now() - begin < kTransactionTime; ++known_looked_at_) {
+    const std::optional<Job> job = store_.job(known_[known_looked_at_]);
     if (!job || std::ranges::find(kForgotten, job->state) == kForgotten.end()) continue;
     if (is_gone(job->source)) store_.remove(job->id);
   }
@@ -211,12 +219,13 @@ void WatchedTree::work_off(const std::vector<FileEvent>& events, std::size_t fir
       case FileEventKind::overflow:
         // The close that a file waited for may be among what was lost.
         for (auto& [path, tracked] : tracked_) {
-          tracked.completion.happened(FileEventKind::found, now);
+          tracked.completion.happened(FileEventKind::overflow, now);
           track_until(path, now);
         }
         break;
       case FileEventKind::root_lost:
       case FileEventKind::root_back:
+        known_listed_ = known_listed_ && event.kind != FileEventKind::root_back;
         log_.warn(
             "watch",
             {{"watch", config_.label},

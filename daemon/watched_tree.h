@@ -113,7 +113,8 @@ class WatchedTree {
   std::set<std::string> looked_at_;               ///< paths, in the last transaction
   std::size_t batch_ = 100;                       ///< events and looks in the next one, at most
   std::size_t repeats_dropped_at_ = kManyEvents;  ///< so many events are gone through for equal ones
-  std::vector<std::int64_t> known_;               ///< jobs to look at once
+  std::vector<std::int64_t> known_;               ///< jobs to look at once, when the directory is there
+  std::size_t known_looked_at_ = 0;               ///< so many of them have been
   bool known_listed_ = false;
   std::string store_fault_;  ///< why what was seen cannot be written down; empty: it can
   bool scheduled_ = false;

@@ -115,7 +115,10 @@ void FileCompletion::happened(FileEventKind kind, Time now) {
   const bool of_writer = kind == FileEventKind::written || kind == FileEventKind::closed;
   found_open_ = found_open_ && (of_writer || kind == FileEventKind::found);
   switch (kind) {
-    case FileEventKind::found:
+    case FileEventKind::found:  // a look sees what a writer did whose close will be seen
+      if (writer_ != Writer::open) writer_ = Writer::unknown;
+      break;
+    case FileEventKind::overflow:  // it may have been closed
       writer_ = Writer::unknown;
       break;
     case FileEventKind::created:
@@ -135,7 +138,6 @@ void FileCompletion::happened(FileEventKind kind, Time now) {
     case FileEventKind::permitted:
     case FileEventKind::marked:
     case FileEventKind::removed:
-    case FileEventKind::overflow:
     case FileEventKind::root_lost:
     case FileEventKind::root_back:
       break;

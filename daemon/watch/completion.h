@@ -94,8 +94,8 @@ class FileCompletion {
 
   explicit FileCompletion(CompletionRules rules) : rules_(std::move(rules)) {}
 
-  /// Something happened to the file. found, created, written, closed, moved_in and marked mean something, others
-  /// are ignored. A sample must follow at once.
+  /// Something happened to the file. found, created, written, closed, moved_in, marked and overflow mean something,
+  /// others are ignored. A sample must follow at once.
   void happened(FileEventKind kind, Time now);
   CompletionAnswer look(const FileSample& sample, Time now);
 

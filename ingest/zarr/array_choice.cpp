@@ -51,7 +51,7 @@ class Surroundings {
     if (level || array.shape.size() < kAxesOfSpace) return array_meaning(array, std::move(axes));
     coordinates_.place(key_of(node), axes.places);
     ArrayMeaning meaning = array_meaning(array, std::move(axes));
-    meaning.auxiliary_time = coordinates_.auxiliary_time(key_of(node), node.attributes);
+    meaning.auxiliary_time = coordinates_.auxiliary_time(key_of(node), node.attributes, meaning.axes.places);
     return meaning;
   }
 

@@ -2,12 +2,15 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <utility>
 
 #include "compressor/options/conversion_request.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "format/sidecar/sidecar.h"
+#include "ingest/raw/raw_name.h"
 #include "ingest/source/extent.h"
 #include "ingest/source_registry.h"
 #include "ingest/values/axis_placement.h"
@@ -23,6 +26,29 @@ std::optional<Sidecar> record_of(const NvdbFile& file) {
   } catch (const Error&) {  // weir verify says what is wrong with it
     return std::nullopt;
   }
+}
+
+using Note = std::function<void(const char* option, const std::string& text)>;
+
+/// What neither `options` nor the name of the file says of the layout of a raw file, and the options of the conversion,
+/// `said`, do.
+void take_raw_layout(const std::string& input, const std::map<std::string, std::string>& said, SourceOptions& options,
+                     const Note& note) {
+  const auto name = parse_raw_name(input);
+  const auto take = [&](const char* key, bool wanted) {
+    if (!wanted || !said.contains(key)) return;
+    const SourceOptions as_said = read_conversion_request({{key, said.at(key)}}).source;
+    if (name && as_said.type && as_said.type != name->type) return;
+    if (as_said.extent) options.extent = as_said.extent;
+    if (as_said.type) options.type = as_said.type;
+    if (as_said.big_endian && !options.big_endian) options.big_endian = as_said.big_endian;  // a type may say it, too
+    if (as_said.offset) options.offset = as_said.offset;
+    note(cat("--", key).c_str(), said.at(key));
+  };
+  take("dims", !options.extent && !name);
+  take("type", !options.type);
+  take("endian", !options.big_endian && !(name && name->big_endian));
+  take("offset", !options.offset);
 }
 
 }  // namespace
@@ -47,15 +73,7 @@ std::string take_recorded_input(const std::string& input, const NvdbFile& file, 
     note("--stack", "");
   }
   if (!options.stack && record->source.format != format_of(input).name) return {};
-  for (const char* const key : {"dims", "type", "endian", "offset"}) {
-    if (!said.contains(key) || given.contains(key)) continue;
-    const SourceOptions as_said = read_conversion_request({{key, said.at(key)}}).source;
-    if (as_said.extent) options.extent = as_said.extent;
-    if (as_said.type) options.type = as_said.type;
-    if (as_said.big_endian) options.big_endian = as_said.big_endian;
-    if (as_said.offset) options.offset = as_said.offset;
-    note(cat("--", key).c_str(), said.at(key));
-  }
+  if (options.stack == said.contains("stack")) take_raw_layout(input, said, options, note);
   const bool names_volume = !options.dataset.empty() || !options.magnitude.empty() || options.component;
   if (said.contains("magnitude") && !names_volume && !options.stack) {
     options.magnitude = split(said.at("magnitude"), ',');
@@ -113,8 +131,8 @@ std::string changed_source_note(const NvdbFile& file, const SourceInfo& source) 
   if (!record || record->source.format != source.format) return {};
   const std::string mtime = utc_text(source.mtime_ns);
   if (record->source.path != source.path || record->source.mtime == mtime) return {};
-  return cat("was written at ", mtime, ", after it was converted: the one that ", sidecar_path(file.path()),
-             " records was of ", record->source.mtime);
+  return cat("is of ", mtime, ", and was of ", record->source.mtime, " when it was converted, as ",
+             sidecar_path(file.path()), " records");
 }
 
 std::string other_input_note(const NvdbFile& file, const SourceInfo& source) {

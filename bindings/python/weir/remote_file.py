@@ -40,15 +40,19 @@ class RemoteFile:
     def read(self, ranges: Sequence[Range]) -> list[bytes]:
         """The bytes of each range, all there or an exception. In pieces, several at once."""
         pieces = [_pieces(*asked) for asked in ranges]
-        read = _Read(self._read_piece, [piece for parts in pieces for piece in parts])
+        found = iter(self._run(self._read_piece, [piece for parts in pieces for piece in parts]))
+        return [b"".join(next(found) for _ in parts) for parts in pieces]
+
+    def _run(self, work: Callable[[Range], Any], pieces: Sequence[Range]) -> list[Any]:
+        """What `work` makes of each piece, by threads that interrupt() makes nobody wait for."""
+        read = _Read(work, pieces)
         with self._lock:
             self._reads.append(read)
         try:
-            found = iter(read.run())
+            return read.run()
         finally:
             with self._lock:
                 self._reads.remove(read)
-        return [b"".join(next(found) for _ in parts) for parts in pieces]
 
     def interrupt(self) -> None:
         """Makes all calls of read that are under way raise IoError at once. A server may not answer for minutes."""
@@ -90,15 +94,15 @@ class _Read:
     """Pieces of a file, read several at once by threads of their own, which a caller need not wait for, and which keep no
     program from ending: one that waits for a server cannot be told to stop."""
 
-    def __init__(self, read_piece: Callable[[Range], bytes], pieces: Sequence[Range]) -> None:
+    def __init__(self, read_piece: Callable[[Range], Any], pieces: Sequence[Range]) -> None:
         self._read_piece = read_piece
         self._left = list(enumerate(pieces))[::-1]
-        self._found = [b""] * len(pieces)
+        self._found: list[Any] = [None] * len(pieces)
         self._missing = len(pieces)
         self._failure: Optional[BaseException] = None
         self._changed = threading.Condition()
 
-    def run(self) -> list[bytes]:
+    def run(self) -> list[Any]:
         """The pieces, all there or an exception: the first one."""
         wanted = min(_AT_ONCE, len(self._found))
         if _start(self._read_pieces, wanted) == 0 and wanted > 0:
@@ -245,22 +249,27 @@ class FsspecFile(RemoteFile):
             self._system, self._path = fsspec.core.url_to_fs(url, **options)
         except (ImportError, ValueError) as error:
             raise UsageError(f"{url}: cannot be opened: {error}") from error
-        self._version = self._found_version()
+        self._version: Optional[dict[str, Any]] = None  # as of the first bytes that were read
 
     def read(self, ranges: Sequence[Range]) -> list[bytes]:
+        if self._version is None:
+            self._version = self._run(self._found_version, [(0, 0)])[0]
         found = super().read(ranges)
-        if self._found_version() != self._version:
+        version = self._run(self._found_version, [(0, 0)])[0]
+        if self._version is not None and version is not None and version != self._version:
             raise InputError(f"{self._url}: changed while it was read; open it again")
         return found
 
-    def _found_version(self) -> Optional[dict[str, Any]]:
+    def _found_version(self, _: Range) -> Optional[dict[str, Any]]:
         """What the file system says of the file now; None where it says nothing."""
         try:
             self._system.invalidate_cache(self._path)
             info = self._system.info(self._path)
         except Exception:  # each file system has its own; what it means is seen by reading
             return None
-        return {name: info[name] for name in _OF_VERSION if name in info}
+        # Of files here "created" is the time of any change, of the mode too.
+        said = [name for name in _OF_VERSION if name in info and (name != "created" or "mtime" not in info)]
+        return {name: info[name] for name in said}
 
     def _read_piece(self, piece: Range) -> bytes:
         offset, count = piece

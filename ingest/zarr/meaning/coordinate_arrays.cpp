@@ -1,5 +1,7 @@
 #include "ingest/zarr/meaning/coordinate_arrays.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <utility>
@@ -14,6 +16,10 @@
 
 namespace weir {
 namespace {
+
+/// Of an auxiliary time: steps that one array holds.
+constexpr std::size_t kMostTimes = 65536;
+constexpr std::size_t kKeptTimes = 16;
 
 std::string group_of(const std::string& key) {
   const std::size_t slash = key.rfind('/');
@@ -52,6 +58,7 @@ struct ReadableArray {
 // Throws Error(input) where it cannot be read, as names cannot.
 ReadableArray readable(const ZarrStore& store, const ZarrNode& node) {
   ZarrArray array = zarr_array(store, node);
+  array.missing_fill.reset();  // no coordinate may be missing (CF 2.5.1), and zarr-python's fill is 0
   ArrayValues values = array_values(array);
   const std::string where = store.shown(node.key);
   if (!values.obstacle.empty()) throw input_error(where, values.obstacle);
@@ -87,8 +94,31 @@ void place_by_array(ZarrStore& store, const ZarrNode& found, AxisPlace& axis) {
     return;
   }
   const double precision = precision_of(coordinates->array.type);
-  place_by_coordinates(zarr_numbers(store, found.key, std::move(coordinates->array), coordinates->mapping), precision,
-                       axis);
+  std::vector<double> values = zarr_numbers(store, found.key, std::move(coordinates->array), coordinates->mapping);
+  if (!std::ranges::all_of(values, [](double value) { return std::isfinite(value); })) {
+    axis.note = "some of its coordinates are not numbers, taken as indices";
+    return;
+  }
+  place_by_coordinates(std::move(values), precision, axis);
+}
+
+// Empty where it is not one of small numbers, or cannot be read.
+AuxiliaryTime time_in(ZarrStore& store, const ZarrNode& found) {
+  const nlohmann::json& shape = json_member(found.metadata, "shape");
+  const bool of_one_axis =
+      shape.is_array() &&
+      (shape.empty() || (shape.size() == 1 && shape[0].is_number_integer() && shape[0] > 0 && shape[0] <= kMostTimes));
+  AuxiliaryTime time;
+  if (!of_one_axis) return time;
+  try {
+    ReadableArray times = readable(store, found);
+    std::vector<double> values = zarr_numbers(store, found.key, std::move(times.array), times.mapping);
+    if (std::ranges::any_of(values, [](double value) { return !std::isfinite(value); })) return time;
+    time = {std::move(values), json_string(found.attributes, "units"), json_string(found.attributes, "calendar")};
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::input) throw;  // the volume does not need it
+  }
+  return time;
 }
 
 }  // namespace
@@ -107,6 +137,7 @@ const AxisPlace& CoordinateArrays::placed(const ZarrNode& found, const AxisPlace
 
 void CoordinateArrays::place(const std::string& key, std::span<AxisPlace> axes) {
   for (AxisPlace& axis : axes) {
+    if (axis.extent < 1) continue;
     const auto found = array_near(store_, key, axis.label);
     if (found && json_member(found->metadata, "shape") == nlohmann::json::array({axis.extent})) {
       axis = placed(*found, axis);
@@ -114,19 +145,17 @@ void CoordinateArrays::place(const std::string& key, std::span<AxisPlace> axes) 
   }
 }
 
-std::optional<AuxiliaryTime> CoordinateArrays::auxiliary_time(const std::string& key,
-                                                              const nlohmann::json& attributes) {
+std::optional<AuxiliaryTime> CoordinateArrays::auxiliary_time(const std::string& key, const nlohmann::json& attributes,
+                                                              std::span<const AxisPlace> axes) {
   for (const std::string& name : split(json_string(attributes, "coordinates"), ' ')) {
     const auto found = array_near(store_, key, name);
-    if (!found) continue;
-    const nlohmann::json& shape = json_member(found->metadata, "shape");
-    const std::string units = json_string(found->attributes, "units");
-    const bool of_one_axis = shape.is_array() && (shape.empty() || (shape.size() == 1 && shape[0].is_number_integer() &&
-                                                                    shape[0] > 0 && shape[0] <= kMaxCoordinates));
-    if (!of_one_axis || units.find(" since ") == std::string::npos) continue;
-    ReadableArray times = readable(store_, *found);
-    return AuxiliaryTime{zarr_numbers(store_, found->key, std::move(times.array), times.mapping), units,
-                         json_string(found->attributes, "calendar")};
+    if (!found || json_string(found->attributes, "units").find(" since ") == std::string::npos) continue;
+    if (times_.size() >= kKeptTimes) times_.clear();
+    const auto [kept, is_new] = times_.try_emplace(found->key);
+    if (is_new) kept->second = time_in(store_, *found);
+    const std::size_t count = kept->second.values.size();
+    const auto has_as_many = [&](const AxisPlace& axis) { return axis.is_time && std::cmp_equal(axis.extent, count); };
+    if (count == 1 || (count > 1 && std::ranges::any_of(axes, has_as_many))) return kept->second;
   }
   return std::nullopt;
 }

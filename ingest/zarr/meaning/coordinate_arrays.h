@@ -34,9 +34,10 @@ class CoordinateArrays {
   /// it. Throws Error(input) where their values are damaged; those that cannot be understood get a note.
   void place(const std::string& key, std::span<AxisPlace> axes);
 
-  /// That attribute `coordinates` (CF 5) of the array at `key` names, of units "... since ...". nullopt where it names
-  /// none.
-  std::optional<AuxiliaryTime> auxiliary_time(const std::string& key, const nlohmann::json& attributes);
+  /// The first that attribute `coordinates` (CF 5) of the array at `key` names, of units "... since ...", which can be
+  /// read and is a single one, or one for each element of an axis of time among `axes`. nullopt where it names none.
+  std::optional<AuxiliaryTime> auxiliary_time(const std::string& key, const nlohmann::json& attributes,
+                                              std::span<const AxisPlace> axes);
 
  private:
   const AxisPlace& placed(const ZarrNode& found, const AxisPlace& axis);
@@ -44,6 +45,7 @@ class CoordinateArrays {
   ZarrStore& store_;
   std::map<std::string, AxisPlace> placed_;  ///< by the key of the array of coordinates
   std::size_t kept_ = 0;                     ///< coordinates in them
+  std::map<std::string, AuxiliaryTime> times_;
 };
 
 }  // namespace weir

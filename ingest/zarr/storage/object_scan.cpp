@@ -17,6 +17,7 @@ constexpr std::int64_t kObjectsBetweenLooks = 1024;
 std::uint64_t count_objects(const Index3& objects, std::uint64_t most, const ChunkObjects& of) {
   std::uint64_t count = 1;
   for (const std::int64_t along : {objects.x, objects.y, objects.z}) {
+    if (along == 0) return 0;
     if (static_cast<std::uint64_t>(along) > most / count) {
       throw usage_error(compose(of.store.shown(of.array_key), ": has ", objects.z, " x ", objects.y, " x ", objects.x,
                                 " chunks, more than the ", most, " that can be kept track of with ", option("memory"),

@@ -106,7 +106,18 @@ TEST_F(CompletionTest, AutoLinkedIsCompleteWhenUnchanged) {
 
 TEST_F(CompletionTest, FoundAgainAfterLostEvents_IsNotTakenForOpen) {
   at(0, Kind::written);
+  at(5, Kind::overflow);
   EXPECT_EQ(at(10, Kind::found).state, State::complete);  // it has not changed since 0
+}
+
+// As one that maps the file writes it: a look finds other times, and no event tells of it.
+TEST_F(CompletionTest, FoundAgainWhileItIsOpen_IsStillOpen) {
+  at(0, Kind::written);
+  grow(200);
+  EXPECT_EQ(at(10, Kind::found).state, State::waiting);
+  EXPECT_EQ(at(600, Kind::found).state, State::waiting);
+  EXPECT_EQ(at(601, Kind::closed).state, State::waiting) << "for a moment";
+  EXPECT_EQ(at(602).state, State::complete);
 }
 
 TEST_F(CompletionTest, EmptyFile_IsAwaitedThenBrokenOnceItsWriterCloses) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "ingest/zarr/zarr_source.h"
 #include "tests/ingest/zarr/support/zarr_files.h"
@@ -100,6 +101,33 @@ TEST_F(ZarrCoordinates, NamedByAnAttribute_SayWhenTheVolumeIs) {
   ASSERT_TRUE(at);
   EXPECT_EQ(at->value, 17);
   EXPECT_EQ(at->units, "days since 1990-01-01");
+}
+
+TEST_F(ZarrCoordinates, NamedByAnAttribute_AreLeftOutWhereTheyCannotBeReadOrDoNotFit) {
+  files_.write("run/T/.zattrs", R"({"_ARRAY_DIMENSIONS":["time","z","lat","lon"],"coordinates":"bad many valid"})");
+  const std::string units = R"({"units":"days since 1990-01-01"})";
+  files_.write("run/bad/.zarray", zarray("[]", "[]", "<i8", "0", R"("compressor":{"id":"bz2"},"filters":null)"));
+  files_.write("run/bad/.zattrs", units);
+  write_axis("many", {1, 2, 3, 4, 5}, units);
+  write_axis("valid", {30, 31}, units);
+  for (const std::int64_t time : {0, 1}) EXPECT_EQ(info(time).details.time->value, 30 + time);
+}
+
+// As an xarray store has it before the first step is appended.
+TEST_F(ZarrCoordinates, OfAnAxisOfNoElements_AreNotLookedAt) {
+  files_.write("run/T/.zarray", zarray("[0,2,3,4]", "[1,2,3,4]", "|u1", "null"));
+  files_.write("run/time/.zarray", zarray("[0]", "[512]", "<f8", "null"));
+  EXPECT_EQ(list_zarr(files_.path(), {})[0].obstacle, "empty: time 0, z 2, lat 3, lon 4");
+}
+
+TEST_F(ZarrCoordinates, EqualToTheFillValue_AreNotMissing) {
+  files_.write("run/lat/.zarray", zarray("[3]", "[3]", "<i8", "0"));
+  files_.write("run/lat/.zattrs", R"({"_ARRAY_DIMENSIONS":["lat"]})");
+  files_.write_values("run/lat/0", std::vector<std::int64_t>{0, 10, 20});
+  EXPECT_EQ(info().spacing[1], 10);
+  write_axis("lat", {0, std::nan(""), 20});
+  EXPECT_EQ(info().spacing[1], 1);
+  EXPECT_EQ(info().details.axes[1].note, "some of its coordinates are not numbers, taken as indices");
 }
 
 TEST_F(ZarrCoordinates, OfAnotherLength_AreNone) {
