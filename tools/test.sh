@@ -6,7 +6,7 @@
 #                          daemon (but heavy ones) again with AddressSanitizer and UndefinedBehaviorSanitizer and, where
 #                          threads run, with ThreadSanitizer; a short run of each fuzzer. The tests of the command once more
 #                          of a build without HDF5, OpenVDB and all else that is optional. On a machine so slow that CI
-#                          would not end in time the sanitizers are skipped, ThreadSanitizer first, and that is said.
+#                          would not end in time the last of these are skipped, and that is said.
 #   tools/test.sh --full   besides, those that take long, and all tests with the sanitizers, the property tests over a
 #                          thousand volumes, Zarr against npm's zarrita, AMReX against yt, and clang-tidy.
 # Says what it does and how long that took last time. Logs are in build/checks/. The last line is `N passed, N failed,
@@ -125,8 +125,13 @@ too_late() {
   skip "$2" "after $((SECONDS / 60)) minutes CI would not end in time; run tools/test.sh --full"
 }
 
+run_core() {
+  if too_late 50 "build and tests of core"; then return 0; fi
+  if build core; then run_tests core; fi
+}
+
 run_tsan() {
-  if too_late 55 "tests of tsan"; then return 0; fi
+  if too_late 52 "tests of tsan"; then return 0; fi
   if ! tools/tsan_tbb.sh >"$logs/tsan_tbb.log" 2>&1; then
     skip "tests of tsan" "oneTBB cannot be built for ThreadSanitizer; see $logs/tsan_tbb.log"
     return 0
@@ -263,8 +268,8 @@ targets=(weir weir_tests)
 if build release "${targets[@]}"; then run_tests release; fi
 unset WEIR_MANY_FILES WEIR_KILLS WEIR_TESTS_LEFT_OUT
 if [[ $size != test ]]; then
-  if build core; then run_tests core; fi
   run_asan
+  run_core
   run_tsan
 fi
 if [[ $size == full ]]; then
