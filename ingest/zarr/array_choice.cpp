@@ -111,6 +111,17 @@ std::string reason_of(const Error& error, const std::string& document) {
   return text.starts_with(prefix) ? text.substr(prefix.size()) : text;
 }
 
+void add_units(const VolumeAxes& axes, DatasetInfo& info) {
+  const auto& [x, y, z] = axes;
+  if (x->is_time || y->is_time || z->is_time) return;
+  if (x->units == y->units && y->units == z->units) {
+    if (!x->units.empty()) info.attributes.emplace_back("unit of space", x->units);
+    return;
+  }
+  const auto unit = [](const AxisPlace* axis) { return axis->units.empty() ? std::string("none") : axis->units; };
+  info.attributes.emplace_back("units of x,y,z", cat(unit(x), ", ", unit(y), ", ", unit(z)));
+}
+
 DatasetInfo describe_array(ZarrStore& store, const ZarrNode& node, Surroundings& around) {
   DatasetInfo info;
   info.name = node.key;
@@ -131,7 +142,7 @@ DatasetInfo describe_array(ZarrStore& store, const ZarrNode& node, Surroundings&
     if (info.extents.size() >= kAxesOfSpace) {
       const VolumeAxes axes = chosen.meaning.volume_axes();
       for (auto& listed : listed_axes(axes)) info.attributes.push_back(std::move(listed));
-      if (!axes[0]->units.empty()) info.attributes.emplace_back("unit of space", axes[0]->units);
+      add_units(axes, info);
     }
     if (!chosen.meaning.axes.note.empty()) info.attributes.emplace_back("note", chosen.meaning.axes.note);
     info.obstacle = chosen.meaning.obstacle;

@@ -54,6 +54,8 @@ TEST_F(ZarrCoordinates, ThatAreEquallySpaced_GiveSpacingOriginAndUnits) {
   EXPECT_EQ(found.details.axes[1].units, "degrees_north");
   EXPECT_EQ(found.details.axes[1].note, "");
   EXPECT_EQ(found.details.units_note, "axis x (lon) is in degrees_east, y (lat) in degrees_north, z (z) in m");
+  const auto listed = list_zarr(files_.path(), {}).front().attributes;
+  EXPECT_EQ(listed.back(), (std::pair<std::string, std::string>{"units of x,y,z", "degrees_east, degrees_north, m"}));
 }
 
 TEST_F(ZarrCoordinates, ThatFall_AreReadInReverseOrder) {
