@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <optional>
+#include <tuple>
 #include <utility>
 
 #include "format/base/ascii.h"
@@ -43,14 +45,14 @@ ChunkedVolume volume_of(const ZarrArray& array, const ChunkGeometry& geometry, c
 class ZarrSource final : public VolumeSource {
  public:
   ZarrSource(std::unique_ptr<ZarrStore> store, const ChosenArray& chosen, const ChunkGeometry& geometry,
-             SourceInfo info, const SourceOptions& options)
+             SourceInfo info, const Box& wanted, const SourceOptions& options)
       : store_(std::move(store)),
         info_(std::move(info)),
         where_(store_->shown(chosen.node.key)),
         scratch_(scratch_of(chosen.array, geometry), options.memory, where_),
         chunks_({*store_, chosen.node.key, chosen.array.keys}, chosen.array, geometry, options.memory, options.cancel),
         boxes_(volume_of(chosen.array, geometry, info_, where_), chunks_, scratch_) {
-    note_unstored(chosen, options);
+    note_unstored(chosen, wanted, options);
     note_files(chosen);
   }
 
@@ -61,9 +63,9 @@ class ZarrSource final : public VolumeSource {
   ConversionLoss read(const Box& box, std::span<float> values) override { return boxes_.read(box, values); }
 
  private:
-  void note_unstored(const ChosenArray& chosen, const SourceOptions& options) {
+  void note_unstored(const ChosenArray& chosen, const Box& wanted, const SourceOptions& options) {
     const ZarrArray& array = chosen.array;
-    const UnstoredChunks unstored = chunks_.count_unstored();
+    const UnstoredChunks unstored = chunks_.count_unstored(wanted);
     if (unstored.count == 0) return;
     if (const std::string other = chunks_.key_by_other_separator(); !other.empty()) {
       const std::string separators =
@@ -74,7 +76,8 @@ class ZarrSource final : public VolumeSource {
               chosen.node.version == 3 ? "separator of chunk_key_encoding" : "dimension_separator", " is ", separators,
               " of chunks named so; set it in ", store_->shown(chosen.node.document)));
     }
-    const std::string count = cat(unstored.count, " of its ", unstored.all, unstored.all == 1 ? " chunk" : " chunks");
+    const std::string count = cat(unstored.count, options.roi ? " of the region's " : " of its ", unstored.all,
+                                  unstored.all == 1 ? " chunk" : " chunks");
     const char* const is = unstored.count == 1 ? " is" : " are";
     if (options.missing_chunks == MissingChunks::error) {
       throw input_error(unstored.first,
@@ -109,6 +112,20 @@ class ZarrSource final : public VolumeSource {
   ChunkBoxes boxes_;
 };
 
+// The part of the volume that --roi leaves, where the file has it; all of it without.
+Box region_in_file(const std::optional<VolumeRegion>& roi, const Box& domain, const std::array<bool, 3>& falls) {
+  const Box region = roi ? intersect(roi->in(domain), domain) : domain;
+  if (region.empty()) return region;
+  Box there = region;
+  const auto mirror = [](std::int64_t first, std::int64_t end, std::int64_t extent) {
+    return std::pair(extent - end, extent - first);
+  };
+  if (falls[0]) std::tie(there.lo.x, there.hi.x) = mirror(region.lo.x, region.hi.x, domain.hi.x);
+  if (falls[1]) std::tie(there.lo.y, there.hi.y) = mirror(region.lo.y, region.hi.y, domain.hi.y);
+  if (falls[2]) std::tie(there.lo.z, there.hi.z) = mirror(region.lo.z, region.hi.z, domain.hi.z);
+  return there;
+}
+
 // A volume over time is made for who says how far apart its planes are to be.
 void check_obstacle(const ArrayMeaning& meaning, const SourceOptions& options, const std::string& where) {
   if (meaning.obstacle.empty() || (meaning.over_time && options.spacing)) return;
@@ -142,8 +159,9 @@ std::unique_ptr<VolumeSource> open_zarr(const std::string& path, const SourceOpt
   const ChunkGeometry geometry(chosen.array, index, where);
   std::array<bool, 3> falls{};
   for (std::size_t i = 0; i < falls.size(); ++i) falls.at(i) = chosen.meaning.volume_axes().at(i)->falls;
-  return reverse_axes(std::make_unique<ZarrSource>(std::move(store), chosen, geometry, std::move(info), options),
-                      falls);
+  const Box wanted = region_in_file(options.roi, info.domain(), falls);
+  return reverse_axes(
+      std::make_unique<ZarrSource>(std::move(store), chosen, geometry, std::move(info), wanted, options), falls);
 }
 
 std::vector<DatasetInfo> list_zarr(const std::string& path, const SourceOptions& options) {

@@ -123,4 +123,8 @@ Box ChunkGeometry::chunks_of(const Index3& object) const {
   return {divided(lo, unit_), divided_up(hi, unit_)};
 }
 
+Box ChunkGeometry::chunks_at(const Box& voxels) const {
+  return voxels.empty() ? Box{} : Box{divided(voxels.lo, unit_), divided_up(voxels.hi, unit_)};
+}
+
 }  // namespace weir

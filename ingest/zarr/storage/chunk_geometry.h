@@ -48,6 +48,8 @@ class ChunkGeometry {
   Index3 object_of(const Index3& chunk) const;
   /// The chunks (chunk coordinates, in units) of an object that have voxels of the volume.
   Box chunks_of(const Index3& object) const;
+  /// Those that `voxels`, which lie in the volume, touch.
+  Box chunks_at(const Box& voxels) const;
   /// The same as ChunkPlace::object.
   std::vector<std::int64_t> object_position(const Index3& object) const;
 

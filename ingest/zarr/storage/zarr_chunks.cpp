@@ -70,12 +70,13 @@ void ZarrChunks::count_unstored_in(const OpenShard& outer, const OpenShard& arou
                                    std::vector<std::size_t>& path, UnstoredChunks& unstored) {
   const std::size_t level = path.size();
   const Index3 units = geometry_.units_in_shard(level);
-  for (std::int64_t z = chunks.lo.z; z < chunks.hi.z; z += units.z) {
-    for (std::int64_t y = chunks.lo.y; y < chunks.hi.y; y += units.y) {
-      for (std::int64_t x = chunks.lo.x; x < chunks.hi.x; x += units.x) {
+  const auto first = [](std::int64_t lo, std::int64_t unit) { return lo - lo % unit; };
+  for (std::int64_t z = first(chunks.lo.z, units.z); z < chunks.hi.z; z += units.z) {
+    for (std::int64_t y = first(chunks.lo.y, units.y); y < chunks.hi.y; y += units.y) {
+      for (std::int64_t x = first(chunks.lo.x, units.x); x < chunks.hi.x; x += units.x) {
         const Index3 lo{x, y, z};
         const Box inside = intersect({lo, lo + units}, chunks);
-        const std::size_t place = geometry_.place_in_shard(lo, level);
+        const std::size_t place = geometry_.place_in_shard(inside.lo, level);
         if (!around.places[place].stored()) {
           add_unstored(inside, unstored);
         } else if (level + 1 < shards_.size()) {
@@ -88,12 +89,14 @@ void ZarrChunks::count_unstored_in(const OpenShard& outer, const OpenShard& arou
   }
 }
 
-UnstoredChunks ZarrChunks::count_unstored() {
+UnstoredChunks ZarrChunks::count_unstored(const Box& voxels) {
+  const Box wanted = geometry_.chunks_at(voxels);
   UnstoredChunks unstored;
   std::vector<std::size_t> path;
   for (std::size_t i = 0; i < scan_.stored.size(); ++i) {
     const Index3 object = index_at(static_cast<std::int64_t>(i), geometry_.objects());
-    const Box chunks = geometry_.chunks_of(object);
+    const Box chunks = intersect(geometry_.chunks_of(object), wanted);
+    if (chunks.empty()) continue;
     unstored.all += static_cast<std::uint64_t>(chunks.voxels());
     if (!scan_.stored[i]) {
       add_unstored(chunks, unstored);

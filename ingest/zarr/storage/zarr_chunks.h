@@ -24,7 +24,7 @@ namespace weir {
 /// Chunks that are not stored.
 struct UnstoredChunks {
   std::uint64_t count = 0;
-  std::uint64_t all = 0;  ///< chunks of the volume
+  std::uint64_t all = 0;  ///< chunks that were asked for
   std::string first;      ///< "run.zarr/rho/c/0/0/1: chunk at 0, 0, 64"; empty where there is none
 };
 
@@ -37,8 +37,8 @@ class ZarrChunks final : public StoredChunks {
 
   const ObjectScan& scan() const { return scan_; }
   std::string key_by_other_separator() const { return weir::key_by_other_separator(objects_, geometry_, scan_); }
-  /// Counts them: reads the index of every shard. Throws what decode throws of an index.
-  UnstoredChunks count_unstored();
+  /// Counts those that `voxels` touch: reads the index of every shard with such. Throws what decode throws of an index.
+  UnstoredChunks count_unstored(const Box& voxels);
   std::uint64_t working_bytes() const;
   std::uint64_t bytes_read() const { return bytes_read_; }
 

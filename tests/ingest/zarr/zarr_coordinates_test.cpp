@@ -71,6 +71,17 @@ TEST_F(ZarrCoordinates, ThatFall_AreReadInReverseOrder) {
             (std::vector<float>{108, 109, 110, 111, 104, 105, 106, 107, 100, 101, 102, 103}));
 }
 
+TEST_F(ZarrCoordinates, ThatFall_LeaveTheChunksOfARegionWhereTheyAre) {
+  write_axis("lat", {60, 45, 30});
+  files_.write("run/T/.zarray", zarray("[2,2,3,4]", "[1,2,1,4]", "|u1", "null"));
+  files_.write_values("run/T/0.0.2.0", std::vector<std::uint8_t>{1, 2, 3, 4, 5, 6, 7, 8});
+  SourceOptions options;
+  options.dataset = "run/T";
+  options.index = {0};
+  options.roi = VolumeRegion(Box{{0, 0, 0}, {4, 1, 2}});  // the lowest latitude, the last row of the file
+  EXPECT_EQ(ZarrFiles::read_all(*open_source(files_.path(), options)), (std::vector<float>{1, 2, 3, 4, 5, 6, 7, 8}));
+}
+
 TEST_F(ZarrCoordinates, ThatAreIrregular_AreKeptAndSaid) {
   write_axis("lat", {0, 1, 5});
   const SourceInfo found = info();

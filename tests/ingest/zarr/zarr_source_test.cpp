@@ -90,6 +90,21 @@ TEST(ZarrSource, FillValueNull_IsRefusedWhereAChunkIsNotStored) {
   EXPECT_EQ(files.read(), (std::vector<float>{0, 1, 8, 9}));
 }
 
+TEST(ZarrSource, ChunksOutsideTheRegion_AreNotMissed) {
+  const ZarrFiles files;
+  files.write(".zarray", zarray("[1,1,6]", "[1,1,2]", "|u1", "null"));
+  files.write_values("0.0.1", counted(2, 8));
+  SourceOptions options;
+  options.roi = VolumeRegion(Box{{2, 0, 0}, {4, 1, 1}});
+  options.missing_chunks = MissingChunks::error;
+  EXPECT_EQ(files.read(options), (std::vector<float>{8, 9}));
+  options.roi = VolumeRegion(Box{{3, 0, 0}, {5, 1, 1}});
+  options.missing_chunks = MissingChunks::fill;
+  EXPECT_EQ(files.message(ErrorKind::input, options),
+            "run.zarr/0.0.2: chunk at 0, 0, 4: is not stored; 1 of the region's 2 chunks is not, and fill_value is "
+            "null: what they hold is not known; write all chunks, or set the array's fill_value");
+}
+
 TEST(ZarrSource, DamagedChunks_AreNamedByFileAndPosition) {
   const ZarrFiles files;
   files.write("zarr.json", zarr_json("[2,2,4]", "[2,2,2]"));

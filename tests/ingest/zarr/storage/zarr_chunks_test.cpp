@@ -95,6 +95,8 @@ ZarrChunks chunks_of(CountedStore& store, const ZarrArray& array) {
   return {{store, "", array.keys}, array, ChunkGeometry(array, {}, "run.zarr"), std::uint64_t{64} << 20U, nullptr};
 }
 
+Box all_of(const ZarrArray& array) { return {{}, {array.shape[2], array.shape[1], array.shape[0]}}; }
+
 TEST(ZarrChunks, MoreShardsInAShardThanAreKept_EachIndexIsReadOnce) {
   constexpr int kInner = 2 * static_cast<int>(OpenShards::kMostOpenShards);
   CountedStore store;
@@ -104,7 +106,7 @@ TEST(ZarrChunks, MoreShardsInAShardThanAreKept_EachIndexIsReadOnce) {
   // Two planes: a walk along x comes to every inner shard twice.
   const ZarrArray array = bytes_in_shards({2, 1, 2 * kInner}, {{2, 1, 2 * kInner}, {2, 1, 2}, {1, 1, 1}});
   ZarrChunks chunks = chunks_of(store, array);
-  const UnstoredChunks unstored = chunks.count_unstored();
+  const UnstoredChunks unstored = chunks.count_unstored(all_of(array));
   EXPECT_EQ(unstored.count, kInner - 1 + 4U);
   EXPECT_EQ(unstored.all, 4U * kInner);
   EXPECT_EQ(unstored.first, "run.zarr/0.0.0: chunk at 0, 0, 1");
@@ -121,10 +123,14 @@ TEST(ZarrChunks, ShardsThatTheVolumeEndsIn_AreCountedAsFarAsItGoes) {
   // has 11.
   ZarrArray array = bytes_in_shards({2, 1, 11}, {{2, 1, 16}, {2, 1, 8}, {2, 1, 2}, {1, 1, 1}});
   ZarrChunks chunks = chunks_of(store, array);
-  const UnstoredChunks unstored = chunks.count_unstored();
+  const UnstoredChunks unstored = chunks.count_unstored(all_of(array));
   EXPECT_EQ(unstored.all, 22U);
   EXPECT_EQ(unstored.count, 22U - 4U) << "the first chunk of innermost shards 0, 2, 3 and 4 is stored";
   EXPECT_EQ(store.counts.reads, 1 + 2 + 4);
+  const UnstoredChunks of_region = chunks.count_unstored({{5, 0, 0}, {11, 1, 2}});
+  EXPECT_EQ(of_region.all, 12U);
+  EXPECT_EQ(of_region.count, 12U - 2U) << "of those stored at x = 0, 4, 6 and 8";
+  EXPECT_EQ(of_region.first, "run.zarr/0.0.0: chunk at 0, 0, 5");
 }
 
 TEST(ZarrChunks, ObjectsHeldOpen_AreBoundedOverAllLevels) {
@@ -136,7 +142,7 @@ TEST(ZarrChunks, ObjectsHeldOpen_AreBoundedOverAllLevels) {
   }
   const ZarrArray array = bytes_in_shards({1, 1, 4 * kMost}, {{1, 1, 2}, {1, 1, 2}, {1, 1, 1}});
   ZarrChunks chunks = chunks_of(store, array);
-  EXPECT_EQ(chunks.count_unstored().count, static_cast<std::uint64_t>(2 * kMost));
+  EXPECT_EQ(chunks.count_unstored(all_of(array)).count, static_cast<std::uint64_t>(2 * kMost));
   EXPECT_EQ(store.counts.open, kMost);
 }
 
