@@ -2,7 +2,6 @@
 #include "daemon/config/config_names.h"
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -39,9 +38,6 @@ bool is_text(const std::string& path) {
     return false;
   }
 }
-
-/// Jobs that are forgotten with their sources.
-constexpr std::array kForgotten{JobState::discovered, JobState::waiting, JobState::failed, JobState::quarantined};
 
 // Between two looks at whether a job is over whose source was written to meanwhile.
 constexpr std::chrono::seconds kAfterRun{1};
@@ -180,7 +176,7 @@ void WatchedTree::list_known_jobs() {
   known_.clear();
   known_looked_at_ = 0;
   const PathFilter filter(config_);
-  for (const JobState state : kForgotten) {
+  for (const JobState state : kForgottenStates) {
     const JobFilter jobs{state, config_.label};
     for (const Job& job : store_.jobs(jobs, 0, store_.count(jobs))) {
       const std::string relative = job.source.substr(std::min(job.source.size(), config_.directory.size() + 1));
@@ -204,7 +200,7 @@ void WatchedTree::look_at_known_jobs() {
   const Time begin = Clock::now();
   for (; known_looked_at_ < known_.size() && Clock::now() - begin < kTransactionTime; ++known_looked_at_) {
     const std::optional<Job> job = store_.job(known_[known_looked_at_]);
-    if (!job || std::ranges::find(kForgotten, job->state) == kForgotten.end()) continue;
+    if (!job || std::ranges::find(kForgottenStates, job->state) == kForgottenStates.end()) continue;
     if (is_gone(job->source)) store_.remove(job->id);
   }
 }

@@ -79,14 +79,18 @@ void Grid::Opened::with_boxes(const std::function<std::vector<Box>()>& boxes, co
   remote->with_blocks(in_index_space(boxes(), grid()), use);
 }
 
-void Grid::Opened::with_planes(std::int64_t count, std::int64_t thickness,
-                               const std::function<std::vector<Box>(std::int64_t first, std::int64_t end)>& boxes,
-                               const std::function<void(std::int64_t first, std::int64_t end)>& use) const {
-  if (remote == nullptr) return use(0, count);
+void Grid::Opened::with_planes(
+    std::span<float> values, std::int64_t count, std::int64_t thickness,
+    const std::function<std::vector<Box>(std::int64_t first, std::int64_t end)>& boxes,
+    const std::function<void(std::int64_t first, std::int64_t end, std::span<float> part)>& use) const {
+  if (remote == nullptr) return use(0, count, values);
   if (remote->fit_cache(in_index_space(boxes(0, count), grid()))) thickness = count;
   for (std::int64_t first = 0; first < count; first += thickness) {
     const std::int64_t end = std::min(first + thickness, count);
-    with_boxes([&] { return boxes(first, end); }, [&] { use(first, end); });
+    const std::size_t plane = values.size() / static_cast<std::size_t>(count);
+    const auto part =
+        values.subspan(static_cast<std::size_t>(first) * plane, static_cast<std::size_t>(end - first) * plane);
+    with_boxes([&] { return boxes(first, end); }, [&] { use(first, end, part); });
   }
 }
 
@@ -155,14 +159,11 @@ py::array_t<float> Grid::read(const Triple& lo, const Triple& hi, int level) con
     const Box part = planes(first, end);
     return std::vector{Box{part.lo * edge, min(part.hi * edge, file->source->info().extent)}};
   };
-  const auto plane = static_cast<std::size_t>(box.extent().x * box.extent().y);
   const auto read = [&, values = values_of(array)](Watch& watch) {
-    const auto use = [&](std::int64_t first, std::int64_t end) {
-      const auto part =
-          values.subspan(static_cast<std::size_t>(first) * plane, static_cast<std::size_t>(end - first) * plane);
+    const auto use = [&](std::int64_t first, std::int64_t end, std::span<float> part) {
       read_level(*file->source, level, planes(first, end), part, watch.cancelled());
     };
-    file->with_planes(box.extent().z, std::max<std::int64_t>(1, kLowerDim / edge), voxels, use);
+    file->with_planes(values, box.extent().z, std::max<std::int64_t>(1, kLowerDim / edge), voxels, use);
   };
   run_watched(py::none(), read, file->interrupt);
   return array;
@@ -180,15 +181,12 @@ py::array_t<float> Grid::read_strided(const Triple& first, const Triple& step, c
     part[2] = {axes[2].at(begin), axes[2].step, end - begin};
     return part;
   };
-  const auto plane = static_cast<std::size_t>(number.x * number.y);
   const auto read = [&, values = values_of(array)](Watch& watch) {
-    const auto use = [&](std::int64_t begin, std::int64_t end) {
-      const auto part =
-          values.subspan(static_cast<std::size_t>(begin) * plane, static_cast<std::size_t>(end - begin) * plane);
+    const auto use = [&](std::int64_t begin, std::int64_t end, std::span<float> part) {
       python::read_strided(*file->source, planes(begin, end), part, watch.cancelled());
     };
     file->with_planes(
-        number.z, std::max<std::int64_t>(1, kLowerDim / std::abs(by.z)),
+        values, number.z, std::max<std::int64_t>(1, kLowerDim / std::abs(by.z)),
         [&](std::int64_t begin, std::int64_t end) { return strided_boxes(planes(begin, end), {}); }, use);
   };
   run_watched(py::none(), read, file->interrupt);

@@ -10,6 +10,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -88,12 +89,12 @@ class Grid {
     /// Calls `use` while what touches boxes(), in voxels from the lowest one, can be read from `source`; of a file
     /// nobody asks for them.
     void with_boxes(const std::function<std::vector<Box>()>& boxes, const std::function<void()>& use) const;
-    /// Calls `use` with one part after the other of `count` planes, [first, end), while what touches boxes(first, end)
-    /// can be read: of a file elsewhere parts of `thickness` planes where all of them are more than its cache, else
-    /// all.
-    void with_planes(std::int64_t count, std::int64_t thickness,
+    /// Calls `use` with one part after the other of `count` planes, [first, end), and the part of `values` that is
+    /// theirs, while what touches boxes(first, end) can be read: of a file elsewhere parts of `thickness` planes where
+    /// all of them are more than its cache, else all.
+    void with_planes(std::span<float> values, std::int64_t count, std::int64_t thickness,
                      const std::function<std::vector<Box>(std::int64_t first, std::int64_t end)>& boxes,
-                     const std::function<void(std::int64_t first, std::int64_t end)>& use) const;
+                     const std::function<void(std::int64_t first, std::int64_t end, std::span<float> part)>& use) const;
   };
 
   Opened& opened() const;

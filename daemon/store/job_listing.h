@@ -39,6 +39,9 @@ using JobCounts = std::array<std::uint64_t, kJobStates>;  ///< indexed by JobSta
 
 /// Those that a person has to look at.
 inline constexpr std::initializer_list<JobState> kProblemStates{JobState::failed, JobState::quarantined};
+/// Those that are forgotten with their source, or their watch.
+inline constexpr std::initializer_list<JobState> kForgottenStates{JobState::discovered, JobState::waiting,
+                                                                  JobState::failed, JobState::quarantined};
 /// In SQL: "state = 'waiting'"; of several "state IN (...)".
 std::string in_state(std::initializer_list<JobState> states);
 

@@ -298,9 +298,7 @@ void JobStore::forget_other_watches(const std::vector<Watched>& watches) {
   std::string kept = "0";
   for (std::size_t i = 0; i < watches.size(); ++i) kept += " OR (watch = ? AND substr(source, 1, length(?)) = ?)";
   Transaction transaction(database_);
-  Statement forget = database_.prepare(
-      cat("DELETE FROM jobs WHERE NOT (", kept, ") AND ",
-          in_state({JobState::discovered, JobState::waiting, JobState::failed, JobState::quarantined})));
+  Statement forget = database_.prepare(cat("DELETE FROM jobs WHERE NOT (", kept, ") AND ", in_state(kForgottenStates)));
   for (const Watched& watch : watches) {
     const std::string below = watch.directory.ends_with('/') ? watch.directory : watch.directory + '/';
     forget.bind(watch.label).bind(below).bind(below);

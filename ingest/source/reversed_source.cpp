@@ -38,20 +38,7 @@ class ReversedSource final : public VolumeSource {
 
  private:
   // Where the source has the voxels of `box`.
-  Box mirrored(const Box& box) const {
-    const Box domain = info().domain();
-    const auto along = [](bool reversed, std::int64_t first, std::int64_t end, std::int64_t& lo, std::int64_t& hi) {
-      if (!reversed) return;
-      const std::int64_t from = first + end - hi;
-      hi = first + end - lo;
-      lo = from;
-    };
-    Box there = box;
-    along(reversed_[0], domain.lo.x, domain.hi.x, there.lo.x, there.hi.x);
-    along(reversed_[1], domain.lo.y, domain.hi.y, there.lo.y, there.hi.y);
-    along(reversed_[2], domain.lo.z, domain.hi.z, there.lo.z, there.hi.z);
-    return there;
-  }
+  Box mirrored(const Box& box) const { return mirrored_box(box, info().domain(), reversed_); }
 
   void reverse(const Index3& extent, std::span<float> values) const {
     const auto row = static_cast<std::size_t>(extent.x);
@@ -80,6 +67,20 @@ class ReversedSource final : public VolumeSource {
 };
 
 }  // namespace
+
+Box mirrored_box(const Box& box, const Box& domain, const std::array<bool, 3>& reversed) {
+  const auto along = [](bool is_reversed, std::int64_t first, std::int64_t end, std::int64_t& lo, std::int64_t& hi) {
+    if (!is_reversed) return;
+    const std::int64_t from = first + end - hi;
+    hi = first + end - lo;
+    lo = from;
+  };
+  Box there = box;
+  along(reversed[0], domain.lo.x, domain.hi.x, there.lo.x, there.hi.x);
+  along(reversed[1], domain.lo.y, domain.hi.y, there.lo.y, there.hi.y);
+  along(reversed[2], domain.lo.z, domain.hi.z, there.lo.z, there.hi.z);
+  return there;
+}
 
 std::unique_ptr<VolumeSource> reverse_axes(std::unique_ptr<VolumeSource> source, const std::array<bool, 3>& reversed) {
   if (reversed == std::array<bool, 3>{}) return source;

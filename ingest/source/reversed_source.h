@@ -14,4 +14,7 @@ namespace weir {
 /// axis is reversed.
 std::unique_ptr<VolumeSource> reverse_axes(std::unique_ptr<VolumeSource> source, const std::array<bool, 3>& reversed);
 
+/// Where a source of `domain` has the voxels that lie in `box` of the same with `reversed` axes.
+Box mirrored_box(const Box& box, const Box& domain, const std::array<bool, 3>& reversed);
+
 }  // namespace weir

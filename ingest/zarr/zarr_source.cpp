@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <memory>
-#include <optional>
-#include <tuple>
 #include <utility>
 
 #include "format/base/ascii.h"
@@ -112,20 +110,6 @@ class ZarrSource final : public VolumeSource {
   ChunkBoxes boxes_;
 };
 
-// The part of the volume that --roi leaves, where the file has it; all of it without.
-Box region_in_file(const std::optional<VolumeRegion>& roi, const Box& domain, const std::array<bool, 3>& falls) {
-  const Box region = roi ? intersect(roi->in(domain), domain) : domain;
-  if (region.empty()) return region;
-  Box there = region;
-  const auto mirror = [](std::int64_t first, std::int64_t end, std::int64_t extent) {
-    return std::pair(extent - end, extent - first);
-  };
-  if (falls[0]) std::tie(there.lo.x, there.hi.x) = mirror(region.lo.x, region.hi.x, domain.hi.x);
-  if (falls[1]) std::tie(there.lo.y, there.hi.y) = mirror(region.lo.y, region.hi.y, domain.hi.y);
-  if (falls[2]) std::tie(there.lo.z, there.hi.z) = mirror(region.lo.z, region.hi.z, domain.hi.z);
-  return there;
-}
-
 // A volume over time is made for who says how far apart its planes are to be.
 void check_obstacle(const ArrayMeaning& meaning, const SourceOptions& options, const std::string& where) {
   if (meaning.obstacle.empty() || (meaning.over_time && options.spacing)) return;
@@ -159,7 +143,8 @@ std::unique_ptr<VolumeSource> open_zarr(const std::string& path, const SourceOpt
   const ChunkGeometry geometry(chosen.array, index, where);
   std::array<bool, 3> falls{};
   for (std::size_t i = 0; i < falls.size(); ++i) falls.at(i) = chosen.meaning.volume_axes().at(i)->falls;
-  const Box wanted = region_in_file(options.roi, info.domain(), falls);
+  const Box domain = info.domain();
+  const Box wanted = options.roi ? mirrored_box(intersect(options.roi->in(domain), domain), domain, falls) : domain;
   return reverse_axes(
       std::make_unique<ZarrSource>(std::move(store), chosen, geometry, std::move(info), wanted, options), falls);
 }

@@ -206,7 +206,7 @@ std::string is_seed(const std::string& text) {
   std::uint64_t seed = 0;
   const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
   if (error == std::errc{} && rest == text.data() + text.size()) return {};
-  throw usage_error(cat("--seed is ", '"', text, '"', ", it must be a whole number from 0 to ", ~std::uint64_t{0}));
+  throw wrong_option("seed", text, cat("a whole number from 0 to ", ~std::uint64_t{0}));
 }
 
 }  // namespace

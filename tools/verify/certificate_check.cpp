@@ -1,12 +1,14 @@
 #include "tools/verify/certificate_check.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <numeric>
 #include <optional>
 #include <string>
 
+#include "compressor/leaf/certificate.h"
 #include "format/base/text.h"
 #include "format/sidecar/valid_voxels.h"
 
@@ -26,20 +28,22 @@ VolumeCheck at_most(const std::string& name, std::uint64_t found, std::uint64_t 
   return {name, cat(found), cat("at most ", most), found <= most};
 }
 
-// `name`: "sidecar error".
-void check_error(const std::string& name, const Sidecar::CertifiedError& error, double range,
+// `name`: "sidecar error"; `range`: least and largest value.
+void check_error(const std::string& name, const Sidecar::CertifiedError& error, const std::array<double, 2>& range,
                  std::vector<VolumeCheck>& checks) {
-  const double root = std::sqrt(error.mse);
-  checks.push_back({name + ".rmse", cat(error.rmse), cat(root, ", the root of mse"), is_near(error.rmse, root)});
+  const Certificate from_mse = make_certificate(error.mse, error.max_abs, error.lossless, 1,
+                                                static_cast<float>(range[0]), static_cast<float>(range[1]));
+  checks.push_back(
+      {name + ".rmse", cat(error.rmse), cat(from_mse.rmse, ", the root of mse"), is_near(error.rmse, from_mse.rmse)});
   const bool bounded = error.rmse <= error.max_abs * (1 + kRounding) && (error.mse > 0 || !(error.max_abs > 0));
   checks.push_back({name + ".max_abs", cat(error.max_abs), cat("at least ", error.rmse, ", the rmse"),
                     bounded || !std::isfinite(error.max_abs)});
-  std::optional<double> psnr_db;
-  if (range > 0 && root > 0) psnr_db = 20 * std::log10(range / root);
+  const std::optional<double>& psnr_db = from_mse.psnr_db;
   const bool same = psnr_db && error.psnr_db
                         ? std::fabs(*psnr_db - *error.psnr_db) <= kRounding * (1 + std::fabs(*psnr_db))
                         : psnr_db.has_value() == error.psnr_db.has_value();
-  checks.push_back({name + ".psnr_db", text_of(error.psnr_db), text_of(psnr_db), same || !std::isfinite(range)});
+  checks.push_back(
+      {name + ".psnr_db", text_of(error.psnr_db), text_of(psnr_db), same || !std::isfinite(range[1] - range[0])});
   const bool exact = error.mse == 0 && error.max_abs == 0;
   checks.push_back({name + ".lossless", error.lossless ? "true" : "false", exact ? "true or false" : "false",
                     exact || !error.lossless});
@@ -49,10 +53,9 @@ void check_error(const std::string& name, const Sidecar::CertifiedError& error, 
 
 std::vector<VolumeCheck> check_certificate(const Sidecar& s) {
   std::vector<VolumeCheck> checks;
-  const double range = s.value_range[1] - s.value_range[0];
-  check_error("sidecar error", s.error, range, checks);
-  if (s.visible) check_error("sidecar visible.error", s.visible->error, range, checks);
-  if (s.packed) check_error("sidecar packed.error_preview", s.packed->error_preview, range, checks);
+  check_error("sidecar error", s.error, s.value_range, checks);
+  if (s.visible) check_error("sidecar visible.error", s.visible->error, s.value_range, checks);
+  if (s.packed) check_error("sidecar packed.error_preview", s.packed->error_preview, s.value_range, checks);
   checks.push_back(
       {"sidecar source.extent", text_of(s.source.extent), text_of(s.grid.extent), s.source.extent == s.grid.extent});
   const auto voxels = static_cast<std::uint64_t>(volume(s.grid.extent));
