@@ -96,14 +96,14 @@ void write_jobs(MetricsWriter& out, const StatusView& status, const MetricsView&
   out.family("errors_total", "counter", "Attempts that failed, by kind.");
   for (const auto& [kind, count] : metrics.errors) out.sample({{"kind", kind}}, count);
 
-  const SecondsHistogram& seconds = metrics.conversion_seconds;
+  const SecondsHistogram& durations = metrics.conversion_seconds;
   out.family("conversion_seconds", "histogram", "From a conversion's start to its verified outputs.");
   for (std::size_t i = 0; i < SecondsHistogram::kBounds.size(); ++i) {
-    out.sample({{"le", number(SecondsHistogram::kBounds[i])}}, seconds.at_most(i), "_bucket");
+    out.sample({{"le", number(SecondsHistogram::kBounds[i])}}, durations.at_most(i), "_bucket");
   }
-  out.sample({{"le", "+Inf"}}, seconds.count(), "_bucket");
-  out.sample({}, seconds.sum(), "_sum");
-  out.sample({}, seconds.count(), "_count");
+  out.sample({{"le", "+Inf"}}, durations.count(), "_bucket");
+  out.sample({}, durations.sum(), "_sum");
+  out.sample({}, durations.count(), "_count");
 }
 
 void write_watches(MetricsWriter& out, const StatusView& status) {

@@ -20,7 +20,7 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds kRootInterval{1000};
-constexpr std::chrono::minutes kLookInterval{5};
+constexpr std::chrono::minutes kTreeLookInterval{5};
 /// Between two readings of the queue: events of one file are merged, and a busy writer costs little.
 constexpr milliseconds kBatchTime{20};
 /// After an overflow: a storm goes on for a while.
@@ -113,7 +113,7 @@ void InotifyWatch::look_at_root() {
   if (state_ != State::failed) after(root_timer_, kRootInterval, &InotifyWatch::look_at_root);
 }
 
-bool InotifyWatch::look_is_due() const { return std::chrono::steady_clock::now() - looked_at_all_ > kLookInterval; }
+bool InotifyWatch::look_is_due() const { return std::chrono::steady_clock::now() - looked_at_all_ > kTreeLookInterval; }
 
 void InotifyWatch::look_at_all(bool events_tell) {
   table_.begin_look(events_tell);

@@ -9,6 +9,8 @@
 
 namespace weir {
 
+inline constexpr std::size_t kSpaceAxes = 3;  // x, y and z
+
 /// Whether an axis called so is the fastest one of space: x, lon, west_east, xh, ...
 bool names_x_axis(const std::string& label);
 

@@ -21,8 +21,8 @@ bool is_near(double a, double b) {
   return a == b || std::fabs(a - b) <= kRounding * std::max(std::fabs(a), std::fabs(b));
 }
 
-std::string text_of(const std::optional<double>& value) { return value ? cat(*value) : "none"; }
-std::string text_of(const Index3& extent) { return cat(extent.x, " x ", extent.y, " x ", extent.z); }
+std::string shown(const std::optional<double>& value) { return value ? cat(*value) : "none"; }
+std::string shown(const Index3& extent) { return cat(extent.x, " x ", extent.y, " x ", extent.z); }
 
 VolumeCheck at_most(const std::string& name, std::uint64_t found, std::uint64_t most) {
   return {name, cat(found), cat("at most ", most), found <= most};
@@ -43,7 +43,7 @@ void check_error(const std::string& name, const Sidecar::CertifiedError& error, 
                         ? std::fabs(*psnr_db - *error.psnr_db) <= kRounding * (1 + std::fabs(*psnr_db))
                         : psnr_db.has_value() == error.psnr_db.has_value();
   checks.push_back(
-      {name + ".psnr_db", text_of(error.psnr_db), text_of(psnr_db), same || !std::isfinite(range[1] - range[0])});
+      {name + ".psnr_db", shown(error.psnr_db), shown(psnr_db), same || !std::isfinite(range[1] - range[0])});
   const bool exact = error.mse == 0 && error.max_abs == 0;
   checks.push_back({name + ".lossless", error.lossless ? "true" : "false", exact ? "true or false" : "false",
                     exact || !error.lossless});
@@ -57,7 +57,7 @@ std::vector<VolumeCheck> check_certificate(const Sidecar& s) {
   if (s.visible) check_error("sidecar visible.error", s.visible->error, s.value_range, checks);
   if (s.packed) check_error("sidecar packed.error_preview", s.packed->error_preview, s.value_range, checks);
   checks.push_back(
-      {"sidecar source.extent", text_of(s.source.extent), text_of(s.grid.extent), s.source.extent == s.grid.extent});
+      {"sidecar source.extent", shown(s.source.extent), shown(s.grid.extent), s.source.extent == s.grid.extent});
   const auto voxels = static_cast<std::uint64_t>(volume(s.grid.extent));
   const std::uint64_t dense = voxels * sizeof(float);
   checks.push_back({"sidecar budget.dense_float32_bytes", cat(s.budget.dense_float32_bytes), cat(dense),

@@ -12,8 +12,6 @@
 namespace weir {
 namespace {
 
-constexpr std::size_t kVolumeAxes = 3;
-
 bool names_components(const std::string& label) {
   constexpr std::array<std::string_view, 10> kNames{"comp", "ncomp", "vec",  "xyz",       "uvw",
                                                     "rgb",  "rgba",  "dirs", "direction", "channels"};
@@ -47,14 +45,14 @@ ComponentAxis by_extent(std::span<const AxisPlace> axes) {
     return {last.extent, cat("by its extent, after the axis ", before.label), false};
   }
   const auto of_space = std::count_if(axes.begin(), axes.end() - 1, [](const AxisPlace& a) { return !a.is_time; });
-  if (before.extent < last.extent || of_space < static_cast<std::ptrdiff_t>(kVolumeAxes)) return {};
+  if (before.extent < last.extent || of_space < static_cast<std::ptrdiff_t>(kSpaceAxes)) return {};
   return {last.extent, "by its extent alone", false};
 }
 
 }  // namespace
 
 ComponentAxis component_axis(std::span<const AxisPlace> axes) {
-  if (axes.size() <= kVolumeAxes) return {};
+  if (axes.size() <= kSpaceAxes) return {};
   const AxisPlace& last = axes.back();
   if (is_named(last)) return {last.extent, cat("by its name ", last.label), false};
   return by_extent(axes);
@@ -62,9 +60,9 @@ ComponentAxis component_axis(std::span<const AxisPlace> axes) {
 
 ComponentAxis asked_component_axis(std::span<const AxisPlace> axes) {
   const ComponentAxis sure = component_axis(axes);
-  if (sure.found() || axes.size() <= kVolumeAxes) return sure;
+  if (sure.found() || axes.size() <= kSpaceAxes) return sure;
   const AxisPlace& last = axes.back();
-  const AxisPlace& leading = axes[axes.size() - 1 - kVolumeAxes];
+  const AxisPlace& leading = axes[axes.size() - 1 - kSpaceAxes];
   const auto may_be = [](const AxisPlace& axis) {
     return is_unknown(axis) && axis.extent >= 2 && axis.extent <= kMostComponents;
   };
@@ -72,8 +70,8 @@ ComponentAxis asked_component_axis(std::span<const AxisPlace> axes) {
   if (is_named(leading)) return {leading.extent, cat("by its name ", leading.label), true};
   const bool before_is_shorter = axes[axes.size() - 2].extent < last.extent;
   if (has_extent_of_components(last) && !is_space_axis(last) && !before_is_shorter) return as_asked;
-  if (may_be(last) && is_shorter(last, axes.last(kVolumeAxes + 1).first(kVolumeAxes))) return as_asked;
-  if (may_be(leading) && is_shorter(leading, axes.last(kVolumeAxes))) return {leading.extent, "as asked for", true};
+  if (may_be(last) && is_shorter(last, axes.last(kSpaceAxes + 1).first(kSpaceAxes))) return as_asked;
+  if (may_be(leading) && is_shorter(leading, axes.last(kSpaceAxes))) return {leading.extent, "as asked for", true};
   return has_extent_of_components(last) ? as_asked : ComponentAxis{};
 }
 

@@ -4,12 +4,12 @@
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "ingest/axes/space_axis.h"
 #include "ingest/hdf5/file/hdf5_handle.h"
 
 namespace weir {
 namespace {
 
-constexpr std::size_t kVolumeAxes = 3;
 /// HDF5's own limit is 2^32 - 1; what chunks can grow by on their way through filters stays below it too.
 constexpr std::uint64_t kMostChunkBytes = (std::uint64_t{1} << 32U) - (std::uint64_t{1} << 25U);
 
@@ -34,7 +34,7 @@ Index3 volume_axes(const ChunkedSlice& slice, const std::vector<hsize_t>& elemen
 /// Checks what ChunkedSlice promises: everything below counts on it.
 void check_slice(const ChunkedSlice& slice, const std::vector<hsize_t>& chunk) {
   const bool vectors = slice.components.count > 1;
-  if (chunk.size() == slice.index.size() + kVolumeAxes + (vectors ? 1 : 0) &&
+  if (chunk.size() == slice.index.size() + kSpaceAxes + (vectors ? 1 : 0) &&
       (!vectors || std::cmp_equal(chunk.back(), slice.components.count)) &&
       slice.fill.size() == scalar_bytes(slice.type)) {
     return;

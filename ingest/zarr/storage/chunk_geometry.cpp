@@ -2,11 +2,11 @@
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "ingest/axes/space_axis.h"
 
 namespace weir {
 namespace {
 
-constexpr std::size_t kSpaceAxes = 3;
 /// What chunks can grow by on their way through codecs stays below 4 GiB too, which is what zlib counts.
 constexpr std::uint64_t kLargestChunk = (std::uint64_t{1} << 32U) - (std::uint64_t{1} << 26U);
 

@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "ingest/axes/space_axis.h"
 #include "ingest/chunks/chunk_scratch.h"
 #include "ingest/values/decode_doubles.h"
 #include "ingest/zarr/codecs/codec_chain.h"
@@ -15,7 +16,6 @@
 namespace weir {
 namespace {
 
-constexpr std::size_t kVolumeAxes = 3;
 constexpr std::uint64_t kIndexMemory = std::uint64_t{128} << 20U;  ///< an index of a shard may have a sixteenth of it
 
 void add_axes_in_front(std::size_t count, std::vector<std::int64_t>& elements) {
@@ -24,7 +24,7 @@ void add_axes_in_front(std::size_t count, std::vector<std::int64_t>& elements) {
 
 /// The same array with axes of one element in front, which its keys do not name: a volume, as chunks are read of.
 ZarrArray as_volume(ZarrArray array) {
-  const std::size_t missing = kVolumeAxes - array.shape.size();
+  const std::size_t missing = kSpaceAxes - array.shape.size();
   add_axes_in_front(missing, array.shape);
   add_axes_in_front(missing, array.chunk);
   array.codecs.transpose.clear();  // there is one order of one axis
