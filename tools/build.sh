@@ -33,7 +33,10 @@ if ! cmake --preset "$preset" "${options[@]}" >"$log" 2>&1; then
   cat "$log" >&2
   exit 1
 fi
-build=(cmake --build --preset "$preset" --parallel "$(nproc)")
+# A group of sources takes its compiler up to 1.5 GiB.
+jobs=$(awk -v most="$(nproc)" '/^MemAvailable:/ {jobs = int($2 / 1572864)} END {print jobs < 1 ? 1 : jobs > most ? most : jobs}' \
+  /proc/meminfo)
+build=(cmake --build --preset "$preset" --parallel "$jobs")
 [[ $# -eq 0 ]] || build+=(--target "$@")
 build+=(-- -k 0) # one run names every file that fails
 if [[ -t 1 ]]; then
