@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <csignal>
+#include <cstdint>
+#include <ctime>
 #include <utility>
 
 #include "format/base/error.h"
@@ -27,16 +30,17 @@ const std::string* line_of_thread() {
   return reads != nullptr && reads->thread == ::gettid() ? reads->line.load() : nullptr;
 }
 
+// Of the thread's Hdf5Call, likewise.
+thread_local const std::string* stall_line_now = nullptr;
+std::atomic<std::int64_t> longest_ms{0};
+// Nothing else in a program of weir's uses it.
+constexpr int kStalled = SIGVTALRM;
+
 constexpr std::array kCrashes{SIGSEGV, SIGBUS, SIGABRT};
 
-// Calls nothing but what POSIX allows in a handler. The signal has its default action again (SA_RESETHAND).
-void end_with_message(int signal) {
-  const std::string* const line = line_of_thread();
-  if (line == nullptr) {
-    ::raise(signal);  // it comes when the handler returns
-    return;
-  }
-  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, line->data(), line->size());
+// Calls nothing but what POSIX allows in a handler.
+[[noreturn]] void end_with(const std::string& line) {
+  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, line.data(), line.size());
   if (const std::vector<std::string>* const paths = removed_now) {
     for (const std::string& path : *paths) {
       if (::unlink(path.c_str()) != 0) ::rmdir(path.c_str());
@@ -45,34 +49,82 @@ void end_with_message(int signal) {
   ::_exit(static_cast<int>(ErrorKind::input));
 }
 
-}  // namespace
+// The signal has its default action again (SA_RESETHAND).
+void end_crashed(int signal) {
+  const std::string* const line = line_of_thread();
+  if (line != nullptr) end_with(*line);
+  ::raise(signal);  // it comes when the handler returns
+}
 
-std::string hdf5_crash_line(const std::string& where) {
-  std::string line = cat("weir: ", where,
-                         ": the HDF5 library crashed at it; the file is damaged, or the library has a fault: copy the "
-                         "file again, or write it anew");
-  // One line, whatever characters the path has.
+void end_stalled(int) {
+  if (stall_line_now != nullptr) end_with(*stall_line_now);
+}
+
+// A signal to this thread once it has computed for longest_ms more; null where none is to come, or the system has no
+// timer.
+timer_t start_timer() {
+  const std::int64_t longest = longest_ms;
+  timer_t timer = nullptr;
+  struct sigevent event {};
+  event.sigev_notify = SIGEV_THREAD_ID;
+  event.sigev_signo = kStalled;
+  event._sigev_un._tid = ::gettid();
+  if (longest == 0 || ::timer_create(CLOCK_THREAD_CPUTIME_ID, &event, &timer) != 0) return nullptr;
+  const struct itimerspec at {
+    {0, 0}, { longest / 1000, longest % 1000 * 1'000'000 }
+  };
+  ::timer_settime(timer, 0, &at, nullptr);
+  return timer;
+}
+
+std::string one_line(std::string line) {
+  // Whatever characters the path has.
   std::replace_if(
       line.begin(), line.end(), [](char c) { return (c >= 0 && c < 32) || c == 127; }, '?');
   return line + '\n';
 }
 
+}  // namespace
+
+std::string hdf5_crash_line(const std::string& where) {
+  return one_line(cat("weir: ", where,
+                      ": the HDF5 library crashed at it; the file is damaged, or the library has a fault: copy the "
+                      "file again, or write it anew"));
+}
+
 void watch_hdf5_reads(const Hdf5Reads& reads) { reads_now = &reads; }
 
-Hdf5Call::Hdf5Call(const std::string& path) : line_(hdf5_crash_line(path)) { line_now = &line_; }
+Hdf5Call::Hdf5Call(const std::string& path)
+    : line_(hdf5_crash_line(path)),
+      stall_line_(
+          one_line(cat("weir: ", path, ": the HDF5 library came to no end at it in ", longest_ms / 1000,
+                       " s of computing; the file is damaged, or the library has a fault: copy the file again, or "
+                       "write it anew"))) {
+  line_now = &line_;
+  stall_line_now = &stall_line_;
+  timer_ = start_timer();
+}
 
-Hdf5Call::~Hdf5Call() { line_now = nullptr; }
+Hdf5Call::~Hdf5Call() {
+  if (timer_ != nullptr) ::timer_delete(timer_);
+  stall_line_now = nullptr;
+  line_now = nullptr;
+}
 
 Hdf5CrashRemoval::Hdf5CrashRemoval(std::vector<std::string> paths) : paths_(std::move(paths)) { removed_now = &paths_; }
 
 Hdf5CrashRemoval::~Hdf5CrashRemoval() { removed_now = nullptr; }
 
-void report_hdf5_crashes() {
+void report_hdf5_crashes(std::chrono::milliseconds longest) {
+  struct sigaction stalled {};
+  stalled.sa_handler = end_stalled;
+  ::sigemptyset(&stalled.sa_mask);
+  if (::sigaction(kStalled, &stalled, nullptr) == 0) longest_ms = longest.count();
   for (const int signal : kCrashes) {
     struct sigaction now {};
     if (::sigaction(signal, nullptr, &now) != 0 || now.sa_handler != SIG_DFL) continue;
     struct sigaction action {};
-    action.sa_handler = end_with_message;
+    action.sa_handler = end_crashed;
     action.sa_flags = static_cast<int>(SA_RESETHAND);
     ::sigemptyset(&action.sa_mask);
     ::sigaction(signal, &action, nullptr);

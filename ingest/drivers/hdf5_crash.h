@@ -1,7 +1,9 @@
-// What a program says when libhdf5 crashes at a damaged file: some versions read beyond the memory of damaged metadata.
+// What a program says when libhdf5 crashes at a damaged file, or comes to no end: some versions read beyond the memory
+// of damaged metadata, or follow them in a circle.
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <string>
 #include <vector>
 
@@ -19,7 +21,8 @@ struct Hdf5Reads {
 /// Makes report_hdf5_crashes() look there, too: a driver has its own. `reads` must live as long as the program.
 void watch_hdf5_reads(const Hdf5Reads& reads);
 
-/// While one exists, the thread that made it is in the library for the file `path`. One at a time in a thread.
+/// While one exists, the thread that made it is in the library for the metadata of the file `path`. One at a time in a
+/// thread.
 class Hdf5Call {
  public:
   explicit Hdf5Call(const std::string& path);
@@ -29,6 +32,8 @@ class Hdf5Call {
 
  private:
   std::string line_;
+  std::string stall_line_;
+  void* timer_ = nullptr;
 };
 
 /// While one exists, such a crash removes `paths`, files and empty directories, in their order: what a conversion has
@@ -47,7 +52,8 @@ class Hdf5CrashRemoval {
 /// For main() of a program that does one thing and ends: SIGSEGV, SIGBUS and SIGABRT of a thread within a Hdf5Call, or
 /// that reads values as Hdf5Reads says, end it with a line of the file and exit code 3, since nothing that the library
 /// holds can be trusted any more. Elsewhere they do what they did, as where something else handles them already, like a
-/// sanitizer.
-void report_hdf5_crashes();
+/// sanitizer. A thread that computes for `longest` within one Hdf5Call, which opens files of a million objects in less,
+/// ends the program as well.
+void report_hdf5_crashes(std::chrono::milliseconds longest = std::chrono::minutes(5));
 
 }  // namespace weir

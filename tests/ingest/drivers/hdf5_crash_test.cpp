@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -35,6 +36,21 @@ TEST_P(Hdf5Crash, WithinTheLibrary_EndsWithALineAndExitCode3) {
       "^weir: /data/a\\?b\\.h5: the HDF5 library crashed at it; the file is damaged, or the library has a fault: copy "
       "the "
       "file again, or write it anew\n$");
+}
+
+TEST(Hdf5Stall, WithinTheLibrary_EndsWithALineAndExitCode3) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(
+      {
+        report_hdf5_crashes(std::chrono::milliseconds(1100));
+        { const Hdf5Call ended("/data/whole.h5"); }
+        const Hdf5Call call("/data/a.h5");
+        while (::getpid() != 0) continue;
+      },
+      ::testing::ExitedWithCode(3),
+      "^weir: /data/a\\.h5: the HDF5 library came to no end at it in 1 s of computing; the file is damaged, or the "
+      "library "
+      "has a fault: copy the file again, or write it anew\n$");
 }
 
 TEST_P(Hdf5Crash, Elsewhere_EndsByTheSignal) {
