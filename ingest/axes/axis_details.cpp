@@ -15,6 +15,8 @@ constexpr std::size_t kMostKeptCoordinates = 16384;
 // degrees_north and degrees_east are one unit.
 std::string unit_of(const AxisPlace& axis) { return axis.units.starts_with("degree") ? "degrees" : axis.units; }
 
+}  // namespace
+
 AxisDetails axis_details(const AxisPlace& axis, std::size_t of_volume) {
   AxisDetails details;
   details.units = axis.units;
@@ -24,8 +26,6 @@ AxisDetails axis_details(const AxisPlace& axis, std::size_t of_volume) {
   if (irregular && axis.coordinates.size() <= kMostKeptCoordinates) details.coordinates = axis.coordinates;
   return details;
 }
-
-}  // namespace
 
 void describe_axes(const VolumeAxes& axes, FieldDetails& details) {
   for (std::size_t i = 0; i < axes.size(); ++i) details.axes.at(i) = axis_details(*axes.at(i), i);

@@ -14,8 +14,11 @@ namespace weir {
 
 using VolumeAxes = std::array<const AxisPlace*, 3>;  ///< x, y, z
 
-/// Puts what is said of them into `details`: units, notes, orientation, and coordinates that are not equally spaced, up
-/// to a number that a sidecar has room for.
+/// What is said of `axis`, a volume's x, y or z by `of_volume` (0, 1, 2): units, note, and coordinates that are not
+/// equally spaced, up to a number that a sidecar has room for.
+AxisDetails axis_details(const AxisPlace& axis, std::size_t of_volume);
+
+/// Puts what is said of all of them into `details`: of each alone, and order and orientation.
 void describe_axes(const VolumeAxes& axes, FieldDetails& details);
 
 /// What is said of `axis`, a volume's x, y or z by `of_volume` (0, 1, 2), of which spacing and origin are not all: that

@@ -25,8 +25,9 @@ std::string coordinate_text(double value, double precision) {
 }
 
 void place(std::span<const double> coordinates, double precision, AxisPlace& axis) {
-  if (coordinates.empty() ||
-      !std::all_of(coordinates.begin(), coordinates.end(), [](double c) { return std::isfinite(c); })) {
+  if (coordinates.empty()) return;
+  if (!std::all_of(coordinates.begin(), coordinates.end(), [](double c) { return std::isfinite(c); })) {
+    axis.note = "coordinates that are missing or not finite, taken as indices";
     return;
   }
   const double first = coordinates.front();
@@ -57,7 +58,8 @@ void place(std::span<const double> coordinates, double precision, AxisPlace& axi
 
 void place_by_coordinates(std::vector<double> coordinates, double precision, AxisPlace& axis) {
   place(coordinates, precision, axis);
-  if (axis.is_time || !axis.spacing) axis.coordinates = std::move(coordinates);
+  const bool finite = std::all_of(coordinates.begin(), coordinates.end(), [](double c) { return std::isfinite(c); });
+  if (axis.is_time || (!axis.spacing && finite)) axis.coordinates = std::move(coordinates);
   if (axis.is_time) axis.falls = false;
 }
 

@@ -17,7 +17,7 @@ inline constexpr double kRegularTolerance = 1e-3;
 /// Sets spacing and origin of `axis` by the coordinates of its elements, each of which was rounded by `precision` of
 /// itself. Irregular coordinates get a note instead, a single one gives the origin alone; falling ones get the
 /// spacing's size and the lowest coordinate as origin, as elements in reverse order have them, and a note; a time never
-/// does. Coordinates that are irregular, or of a time, are kept. There are no places where some are not finite.
+/// does. Coordinates that are irregular, or of a time, are kept. Where some are not finite there is a note alone.
 void place_by_coordinates(std::vector<double> coordinates, double precision, AxisPlace& axis);
 
 }  // namespace weir

@@ -14,6 +14,7 @@
 #include "ingest/plan/block_plan.h"
 #include "ingest/plan/for_pieces.h"
 #include "ingest/plan/staging.h"
+#include "ingest/raw/stack_placement.h"
 #include "ingest/source/extent.h"
 
 namespace weir {
@@ -51,7 +52,7 @@ void check_alike(const std::string& path, const SourceInfo& info, const SourceIn
 class StackSource final : public VolumeSource {
  public:
   StackSource(const std::string& pattern, const SourceOptions& options, OpenVolume open)
-      : open_volume_(std::move(open)), options_(options) {
+      : open_volume_(std::move(open)), options_(options), as_they_are_(options.spacing.has_value()) {
     // These are the stack's.
     options_.stack = false;
     options_.spacing.reset();
@@ -66,6 +67,7 @@ class StackSource final : public VolumeSource {
       }
       add(file.path);
     }
+    place();
     info_.path = pattern;
     info_.format = "stack";
     info_.files_digest = files_.digest();
@@ -114,6 +116,7 @@ class StackSource final : public VolumeSource {
     if (slabs_.empty()) {
       first_ = info;
       info_ = info;
+      for (std::size_t i = 0; i < 3; ++i) info_.origin[i] = first_position(info, i);
       info_.index_origin = {};
       info_.extent.z = 0;
       info_.file_bytes = 0;
@@ -121,12 +124,27 @@ class StackSource final : public VolumeSource {
       access_ = source->access();
     }
     check_alike(path, info, first_);
+    if (!as_they_are_) check_placed_alike(path, info, first_);
+    planes_.push_back(stacked_planes(path, info));
     info_.files.insert(info_.files.end(), info.files.begin(), info.files.end());
     slabs_.push_back({path, info.index_origin, info_.extent.z, info.extent.z});
     info_.extent.z += info.extent.z;
     info_.file_bytes += info.file_bytes;
     info_.mtime_ns = std::max(info_.mtime_ns, info.mtime_ns);
     working_bytes_ = std::max(working_bytes_, source->working_bytes());
+  }
+
+  // By what the files say, but where the user places the stack.
+  void place() {
+    const bool backwards = stacked_backwards(planes_);
+    if (backwards) {
+      std::reverse(planes_.begin(), planes_.end());
+      std::reverse(slabs_.begin(), slabs_.end());
+      std::int64_t z = 0;
+      for (FileSlab& slab : slabs_) slab.z = std::exchange(z, z + slab.planes);
+    }
+    if (!as_they_are_) place_planes(planes_, backwards, info_);
+    planes_.clear();
   }
 
   // Blocks of whole files where they are small, so that each is opened once a pass; else a file's own chunks, where
@@ -180,10 +198,12 @@ class StackSource final : public VolumeSource {
 
   OpenVolume open_volume_;
   SourceOptions options_;
+  const bool as_they_are_;  ///< the user says where the planes lie
   SourceInfo info_;
   SourceInfo first_;  ///< of the first file
   AccessShape access_;
   std::vector<FileSlab> slabs_;
+  std::vector<StackedPlanes> planes_;  ///< of the slabs, until they are placed
   FileStates files_;
   std::uint64_t working_bytes_ = 0;  ///< of one file
   mutable std::mutex mutex_;

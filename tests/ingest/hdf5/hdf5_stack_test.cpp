@@ -1,0 +1,32 @@
+// Stacks of files whose coordinates fall.
+#include "tests/ingest/hdf5/support/h5py_file.h"
+
+namespace weir::hdf5_stack_test {
+namespace {
+
+TEST(Hdf5Stack, OfFallingPlanes_RisesThroughAllFiles) {
+  if (!python_has("h5py, numpy, netCDF4")) GTEST_SKIP() << "python3 with h5py and netCDF4 is missing";
+  const Scratch scratch;
+  write_by_h5py(scratch, R"(
+import netCDF4
+for number, first in enumerate([15, 7]):
+    n = netCDF4.Dataset("s_%d.nc" % number, "w")
+    for name, size in [("z", 8), ("y", 2), ("x", 3)]: n.createDimension(name, size)
+    z = np.arange(first, first - 8, -1)
+    n.createVariable("z", "f8", ("z",))[:] = z
+    n.createVariable("t", "f4", ("z", "y", "x"))[:] = np.broadcast_to(z[:, None, None], (8, 2, 3))
+    n.close()
+)");
+  SourceOptions options;
+  options.stack = true;
+  const auto source = open_source(scratch.path("s_%d.nc"), options);
+  EXPECT_EQ(source->info().origin[2], 0);
+  EXPECT_EQ(source->info().spacing[2], 1);
+  EXPECT_EQ(source->info().details.axes[2].note,
+            "falls from 15 to 0: planes are read in reverse order, so that positions rise");
+  const std::vector<float> values = all_values(*source);
+  for (std::size_t i = 0; i < values.size(); ++i) ASSERT_EQ(values[i], static_cast<float>(i / 6)) << i;
+}
+
+}  // namespace
+}  // namespace weir::hdf5_stack_test
