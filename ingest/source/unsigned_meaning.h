@@ -1,10 +1,13 @@
-// Integers that are stored as signed ones and meant as unsigned, as NetCDF's attribute _Unsigned says: NetCDF-3 had no
-// others.
+// Integers that are stored as signed ones and meant as unsigned, or the other way, as NetCDF's attribute _Unsigned
+// says: NetCDF-3 had signed ones alone, OPeNDAP unsigned bytes alone.
 #pragma once
 
 #include <cstdint>
+#include <string>
+#include <string_view>
 #include <variant>
 
+#include "format/base/ascii.h"
 #include "format/base/scalar_type.h"
 #include "ingest/source/stored_value.h"
 
@@ -26,6 +29,22 @@ constexpr ScalarType unsigned_type(ScalarType type) {
   }
 }
 
+/// The signed type of the width of `type`, an unsigned integer; any other type as it is.
+constexpr ScalarType signed_type(ScalarType type) {
+  switch (type) {
+    case ScalarType::uint8:
+      return ScalarType::int8;
+    case ScalarType::uint16:
+      return ScalarType::int16;
+    case ScalarType::uint32:
+      return ScalarType::int32;
+    case ScalarType::uint64:
+      return ScalarType::int64;
+    default:
+      return type;
+  }
+}
+
 /// What is said of such values is of the type that they are stored as: -1 stands for the 255 of what is meant as uint8.
 /// Of another `type` than an unsigned integer, the value as it is.
 inline StoredValue as_unsigned(const StoredValue& value, ScalarType type) {
@@ -35,6 +54,29 @@ inline StoredValue as_unsigned(const StoredValue& value, ScalarType type) {
   if (!meant || negative == nullptr || *negative >= 0) return value;
   const auto bits = static_cast<unsigned>(8 * scalar_bytes(type));
   return static_cast<std::uint64_t>(*negative) & (~std::uint64_t{0} >> (64U - bits));
+}
+
+/// The other way: 255 stands for the -1 of what is meant as int8. Of another `type` than a signed integer, the value as
+/// it is.
+inline StoredValue as_signed(const StoredValue& value, ScalarType type) {
+  const bool meant =
+      type == ScalarType::int8 || type == ScalarType::int16 || type == ScalarType::int32 || type == ScalarType::int64;
+  const auto* const natural = std::get_if<std::uint64_t>(&value);
+  const auto bits = static_cast<unsigned>(8 * scalar_bytes(type));
+  if (!meant || natural == nullptr || *natural < std::uint64_t{1} << (bits - 1)) return value;
+  return static_cast<std::int64_t>(*natural | (bits == 64 ? 0 : ~std::uint64_t{0} << bits));
+}
+
+/// The type that is meant by _Unsigned = `text`, "true" or "false" in any case; `type` where it is neither.
+inline ScalarType meant_type(std::string_view text, ScalarType type) {
+  const std::string said = lower_case(text);
+  if (said == "true") return unsigned_type(type);
+  return said == "false" ? signed_type(type) : type;
+}
+
+/// `value` of what is stored in the other of the two types than `type`, which is meant.
+inline StoredValue as_meant(const StoredValue& value, ScalarType type) {
+  return as_signed(as_unsigned(value, type), type);
 }
 
 }  // namespace weir

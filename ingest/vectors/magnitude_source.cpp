@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <mutex>
 #include <span>
 #include <utility>
@@ -37,6 +38,19 @@ void check_same_voxels(const SourceInfo& a, const SourceInfo& b) {
   throw Error(ErrorKind::input,
               cat(a.path, ": ", named(a), " has ", placed(a), " and ", named(b), " ", placed(b),
                   ", not the same ones; take the components to the same grid, or convert them one by one"));
+}
+
+// Axes whose positions are no spacing, and the time.
+void check_same_places(const SourceInfo& a, const SourceInfo& b) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (a.details.axes.at(i).coordinates == b.details.axes.at(i).coordinates) continue;
+    throw Error(ErrorKind::input, cat(a.path, ": ", named(a), " and ", named(b), " have other coordinates along ",
+                                      "xyz"[i], "; take the components to the same grid, or convert them one by one"));
+  }
+  if (!a.details.time || !b.details.time || a.details.time->value == b.details.time->value) return;
+  throw Error(ErrorKind::input,
+              cat(a.path, ": ", named(a), " is of time ", a.details.time->value, " and ", named(b), " of ",
+                  b.details.time->value, "; choose the same time with --index, or convert them one by one"));
 }
 
 void check_same_units(const SourceInfo& a, const SourceInfo& b) {
@@ -223,6 +237,7 @@ std::unique_ptr<VolumeSource> magnitude_of(std::vector<std::unique_ptr<VolumeSou
   for (std::size_t i = 1; i < components.size(); ++i) {
     const SourceInfo& other = components[i]->info();
     check_same_voxels(components.front()->info(), other);
+    check_same_places(components.front()->info(), other);
     check_same_units(components.front()->info(), other);
     info.dataset += ',' + other.dataset;
     if (other.units != info.units) info.units.clear();

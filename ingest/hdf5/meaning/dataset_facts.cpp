@@ -97,7 +97,7 @@ DatasetFacts dataset_facts(hid_t file, const Hdf5Object& object) {
   }
   for (const std::string& obstacle :
        {type_obstacle(facts), shape_obstacle(facts), facts.storage ? facts.storage->obstacle : std::string(),
-        facts.meaning.obstacle}) {
+        facts.meaning.obstacle, openpmd_obstacle(handle, enclosing_groups(file, object.name))}) {
     if (facts.obstacle.empty()) facts.obstacle = obstacle;
   }
   if (facts.obstacle.empty()) {

@@ -1,7 +1,9 @@
 #include "ingest/hdf5/meaning/dimension_scales.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <limits>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -14,6 +16,10 @@
 #include "ingest/hdf5/file/hdf5_attribute.h"
 #include "ingest/hdf5/file/hdf5_error.h"
 #include "ingest/hdf5/file/hdf5_handle.h"
+#include "ingest/hdf5/file/hdf5_type.h"
+#include "ingest/hdf5/meaning/value_meaning.h"
+#include "ingest/hdf5/storage/storage.h"
+#include "ingest/values/decode_doubles.h"
 
 namespace weir {
 namespace {
@@ -89,13 +95,23 @@ void place_by_scale(hid_t scale, bool grows, AxisPlace& axis) {
   axis.is_time = is_time_axis({name, axis.units, first_text(scale, "axis"), first_text(scale, "standard_name"), grows});
   if (axis.spacing) return;
   std::vector<double> coordinates = coordinate_values(scale);
-  if (std::cmp_not_equal(coordinates.size(), axis.extent)) return;
+  if (std::cmp_not_equal(coordinates.size(), axis.extent)) {
+    axis.note = coordinates.empty()
+                    ? "its coordinates are no row of numbers whose meaning is clear, taken as indices"
+                    : cat("it has ", coordinates.size(), coordinates.size() == 1 ? " coordinate" : " coordinates",
+                          " for ", axis.extent, " elements, taken as indices");
+    return;
+  }
   place_by_coordinates(std::move(coordinates), precision_of(scale), axis);
 }
 
 }  // namespace
 
 std::vector<double> coordinate_values(hid_t dataset) {
+  const auto cut_short = [&](const std::string& reason) {
+    return input_error(object_text(dataset),
+                       cat("its coordinates cannot be read: ", reason, "; the file is cut short or damaged"));
+  };
   const Hdf5Handle type(H5Dget_type(dataset));
   const Hdf5Handle space(H5Dget_space(dataset));
   const H5T_class_t kind = H5Tget_class(type.get());
@@ -104,13 +120,22 @@ std::vector<double> coordinate_values(hid_t dataset) {
       points > static_cast<hssize_t>(kMaxCoordinates)) {
     return {};
   }
-  std::vector<double> values(static_cast<std::size_t>(points));
-  if (H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
-    const std::string reason = hdf5_reason();  // before a further call overwrites it
-    throw input_error(object_text(dataset),
-                      cat("its coordinates cannot be read: ", reason, "; the file is cut short or damaged"));
+  const auto count = static_cast<std::size_t>(points);
+  const auto stored = stored_type(type.get());
+  if (!stored) {
+    std::vector<double> values(count);
+    if (H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
+      throw cut_short(hdf5_reason());
+    return values;
   }
-  return values;
+  const StoredType meant = type_as_meant(dataset, *stored);
+  const Storage storage = storage_of(dataset);
+  const ValueMeaning meaning = value_meaning(
+      dataset, meant, storage.fill_is_set ? std::span<const std::byte>(storage.fill) : std::span<const std::byte>());
+  if (!meaning.obstacle.empty()) return {};
+  std::vector<std::byte> bytes(count * scalar_bytes(meant.scalar));
+  if (H5Dread(dataset, type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data()) < 0) throw cut_short(hdf5_reason());
+  return decode_doubles(bytes, meant.scalar, meant.big_endian, meaning.mapping);
 }
 
 bool is_bare_dimension(hid_t dataset) {

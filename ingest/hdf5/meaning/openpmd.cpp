@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "format/base/ascii.h"
+#include "format/base/text.h"
 #include "ingest/hdf5/file/hdf5_attribute.h"
 
 namespace weir {
@@ -20,16 +22,17 @@ std::vector<T> per_axis(std::vector<T> values, std::size_t axes, bool fastest_fi
   return values;
 }
 
-double first_or(const std::vector<double>& values, double fallback) { return values.empty() ? fallback : values[0]; }
+// The record of a mesh: `object`, or the group around it; invalid where neither is one.
+hid_t mesh_record(hid_t object, std::span<const Hdf5Handle> groups) {
+  if (has_attribute(object, "gridSpacing")) return object;
+  return !groups.empty() && has_attribute(groups[0].get(), "gridSpacing") ? groups[0].get() : H5I_INVALID_HID;
+}
 
 }  // namespace
 
 void place_by_openpmd(hid_t object, std::span<const Hdf5Handle> groups, std::span<AxisPlace> axes) {
-  hid_t record = object;
-  if (!has_attribute(record, "gridSpacing")) {
-    if (groups.empty() || !has_attribute(groups[0].get(), "gridSpacing")) return;
-    record = groups[0].get();
-  }
+  const hid_t record = mesh_record(object, groups);
+  if (record == H5I_INVALID_HID) return;
   const std::vector<std::string> order = text_attribute(record, "dataOrder");
   const bool fastest_first = !order.empty() && order[0] == "F";
   const auto numbers = [&](hid_t of, const char* name) {
@@ -39,14 +42,30 @@ void place_by_openpmd(hid_t object, std::span<const Hdf5Handle> groups, std::spa
   const auto spacing = numbers(record, "gridSpacing");
   const auto offset = numbers(record, "gridGlobalOffset");
   const auto position = numbers(object, "position");
-  const double metres = first_or(number_attribute(record, "gridUnitSI"), 1.0);
+  // Version 1 has one unit, version 2 one for each axis.
+  std::vector<double> metres = number_attribute(record, "gridUnitSI");
+  if (metres.size() <= 1) metres.assign(axes.size(), metres.empty() ? 1.0 : metres[0]);
+  metres = per_axis(std::move(metres), axes.size(), fastest_first);
   for (std::size_t i = 0; i < axes.size(); ++i) {
     if (!labels.empty()) axes[i].label = labels[i];
-    if (spacing.empty()) continue;
-    axes[i].spacing = spacing[i] * metres;
+    if (spacing.empty() || metres.empty()) {
+      axes[i].note = cat("its mesh's ", spacing.empty() ? "gridSpacing" : "gridUnitSI", " is not one for each of ",
+                         axes.size(), " axes, taken as indices");
+      continue;
+    }
+    axes[i].spacing = spacing[i] * metres[i];
     const double in_cell = position.empty() ? 0.0 : position[i];
-    axes[i].origin = ((offset.empty() ? 0.0 : offset[i]) + in_cell * spacing[i]) * metres;
+    axes[i].origin = ((offset.empty() ? 0.0 : offset[i]) + in_cell * spacing[i]) * metres[i];
   }
+}
+
+std::string openpmd_obstacle(hid_t object, std::span<const Hdf5Handle> groups) {
+  const hid_t record = mesh_record(object, groups);
+  if (record == H5I_INVALID_HID) return {};
+  const std::vector<std::string> geometry = text_attribute(record, "geometry");
+  if (geometry.empty() || lower_case(geometry[0]) == "cartesian") return {};
+  return cat("its geometry is ", geometry[0],
+             " (openPMD), and a volume's axes are Cartesian; sample it on a Cartesian mesh first");
 }
 
 std::optional<double> openpmd_unit_si(hid_t object) {

@@ -5,6 +5,7 @@
 
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "ingest/axes/axis_place.h"
@@ -15,8 +16,13 @@ namespace weir {
 /// Fills label, spacing and origin of `axes` (the file's order) from axisLabels, gridSpacing, gridGlobalOffset
 /// and gridUnitSI of the record, which is `object` or the group around it, and from position of `object`: the
 /// place of the values in their cell. In metres. Attributes list the axes as axisLabels does: slowest first, or
-/// fastest first where dataOrder is F. Leaves alone what is absent or does not fit. The caller holds Hdf5Lock.
+/// fastest first where dataOrder is F. Leaves alone what is absent; what does not fit gets a note. The caller holds
+/// Hdf5Lock.
 void place_by_openpmd(hid_t object, std::span<const Hdf5Handle> groups, std::span<AxisPlace> axes);
+
+/// Why the mesh of `object` has no axes of a volume: another geometry than a Cartesian one. Empty where it has, and
+/// where it is no mesh. The caller holds Hdf5Lock.
+std::string openpmd_obstacle(hid_t object, std::span<const Hdf5Handle> groups);
 
 /// unitSI of `object`: values times it are in SI units.
 std::optional<double> openpmd_unit_si(hid_t object);

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <span>
 
-#include "format/base/ascii.h"
 #include "format/base/text.h"
 #include "ingest/hdf5/file/hdf5_attribute.h"
 #include "ingest/hdf5/file/hdf5_handle.h"
@@ -50,9 +49,10 @@ bool equals(std::span<const std::byte> fill, const StoredType& type, const Store
   return is_missing(read);
 }
 
-bool says_unsigned(hid_t object) {
+// Of the attribute _Unsigned; empty where there is none.
+std::string unsigned_text(hid_t object) {
   const std::vector<std::string> texts = text_attribute(object, "_Unsigned");
-  return !texts.empty() && lower_case(texts[0]) == "true";
+  return texts.empty() ? "" : texts[0];
 }
 
 // The attribute as one finite number; `fallback` where it is absent.
@@ -91,17 +91,17 @@ std::string unused_attribute(hid_t object) {
 }  // namespace
 
 StoredType type_as_meant(hid_t object, StoredType type) {
-  if (says_unsigned(object)) type.scalar = unsigned_type(type.scalar);
+  type.scalar = meant_type(unsigned_text(object), type.scalar);
   return type;
 }
 
 ValueMeaning value_meaning(hid_t object, const StoredType& type, std::span<const std::byte> fill) {
   ValueMeaning meaning;
-  const bool meant_unsigned = says_unsigned(object);
+  const bool meant_otherwise = !unsigned_text(object).empty();
   for (const char* name : {"_FillValue", "missing_value"}) {
     const std::vector<StoredValue> values = stored_value_attribute(object, name);
     for (const StoredValue& value : values) {
-      meaning.mapping.missing.push_back(meant_unsigned ? as_unsigned(value, type.scalar) : value);
+      meaning.mapping.missing.push_back(meant_otherwise ? as_meant(value, type.scalar) : value);
     }
     const std::string obstacle = missing_obstacle(object, name, values.size());
     if (!obstacle.empty()) meaning.obstacle = obstacle;

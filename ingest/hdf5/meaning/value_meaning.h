@@ -22,8 +22,8 @@ struct ValueMeaning {
   std::string note;               ///< an attribute that nothing is made of; else empty
 };
 
-/// `type`, of signed integers whose attribute _Unsigned says that they are unsigned ones (NetCDF-3 had none) as these.
-/// The caller holds Hdf5Lock.
+/// `type`, or of integers whose attribute _Unsigned says that they are unsigned ones (NetCDF-3 had none), or not
+/// (OPeNDAP has no signed bytes), as these. The caller holds Hdf5Lock.
 StoredType type_as_meant(hid_t object, StoredType type);
 
 /// By the conventions of NetCDF and CF: _FillValue and missing_value are missing, values are packed by scale_factor

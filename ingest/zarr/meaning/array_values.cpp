@@ -66,11 +66,11 @@ std::string not_numbers(const nlohmann::json& attributes, const char* name, cons
 // By the conventions of CF (8.1 and 2.5.1), as xarray writes them.
 void read_attributes(const ZarrArray& array, ArrayValues& read) {
   const nlohmann::json& attributes = array.attributes;
-  const bool meant_unsigned = says_unsigned(attributes);
+  const bool meant_otherwise = !unsigned_text(attributes).empty();
   read.mapping.scale = packing(attributes, "scale_factor", 1.0, read.obstacle);
   read.mapping.offset = packing(attributes, "add_offset", 0.0, read.obstacle);
   const auto add_missing = [&](const StoredValue& stored) {
-    const StoredValue value = meant_unsigned ? as_unsigned(stored, array.type) : stored;
+    const StoredValue value = meant_otherwise ? as_meant(stored, array.type) : stored;
     if (holds(array.type, value)) read.mapping.missing.push_back(value);
   };
   for (const char* const name : {"missing_value", "_FillValue"}) {

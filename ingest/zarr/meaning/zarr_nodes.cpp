@@ -76,19 +76,21 @@ std::optional<ZarrNode> zarr_node(ZarrStore& store, const std::string& key) {
   return node;
 }
 
-bool says_unsigned(const nlohmann::json& attributes) {
+std::string unsigned_text(const nlohmann::json& attributes) {
   const nlohmann::json& value = json_member(attributes, "_Unsigned");
-  return value == true || (value.is_string() && lower_case(value.get<std::string>()) == "true");
+  if (value.is_boolean()) return value.get<bool>() ? "true" : "false";
+  return value.is_string() ? value.get<std::string>() : "";
 }
 
 ZarrArray zarr_array(const ZarrStore& store, const ZarrNode& node) {
   const std::string where = store.shown(node.document);
   ZarrArray array =
       node.version == 3 ? parse_zarr_v3(node.metadata, where) : parse_zarr_v2(node.metadata, node.attributes, where);
-  if (!says_unsigned(array.attributes)) return array;
-  array.type = unsigned_type(array.type);
+  const ScalarType stored = array.type;
+  array.type = meant_type(unsigned_text(array.attributes), stored);
+  if (array.type == stored) return array;
   const auto fill = parse_stored_value(array.fill_text);
-  if (fill) array.fill_text = stored_value_text(as_unsigned(*fill, array.type));
+  if (fill) array.fill_text = stored_value_text(as_meant(*fill, array.type));
   return array;
 }
 

@@ -59,13 +59,14 @@ TEST(Coordinates, SingleCoordinateGivesAnOriginOnly) {
   EXPECT_EQ(axis.origin, 7);
 }
 
-TEST(Coordinates, MissingOrNonFiniteCoordinatesAreIgnored) {
+TEST(Coordinates, NonFiniteCoordinatesAreSaid) {
   for (const std::vector<double>& coordinates :
        {std::vector<double>{}, {std::nan("")}, {0, std::numeric_limits<double>::infinity()}}) {
     const AxisPlace axis = placed(coordinates);
     EXPECT_EQ(axis.spacing, std::nullopt);
     EXPECT_EQ(axis.origin, std::nullopt);
-    EXPECT_EQ(axis.note, "");
+    EXPECT_EQ(axis.note, coordinates.empty() ? "" : "coordinates that are missing or not finite, taken as indices");
+    EXPECT_TRUE(axis.coordinates.empty());
   }
 }
 
