@@ -190,6 +190,10 @@ MetaImageHeader parse_meta_image_header(std::string_view text, bool whole, const
   header.spacing = entries.numbers({"ElementSpacing", "ElementSize"}, axes);
   header.origin = entries.numbers({"Offset", "Origin", "Position"}, axes);
   header.transform = entries.numbers({"TransformMatrix", "Rotation", "Orientation"}, axes * axes);
+  // "?" is what MetaIO writes of unknown ones.
+  if (entries.has("DistanceUnits") && entries.required("DistanceUnits").value != "?") {
+    header.distance_units = entries.required("DistanceUnits").value;
+  }
   header.slope = entries.number("ElementToIntensityFunctionSlope", 1);
   if (header.slope == 0) throw entries.wrong("ElementToIntensityFunctionSlope", "it must not be 0");
   header.offset = entries.number("ElementToIntensityFunctionOffset", 0);

@@ -28,6 +28,7 @@ struct MetaImageHeader {
   std::vector<double> spacing;    ///< ElementSpacing, or ElementSize where that is absent
   std::vector<double> origin;     ///< Offset, also called Origin and Position
   std::vector<double> transform;  ///< NDims x NDims: row a is the direction of axis a
+  std::string distance_units;     ///< DistanceUnits, of spacing and origin: "mm"; empty where unknown
   double slope = 1;               ///< ElementToIntensityFunctionSlope
   double offset = 0;              ///< ElementToIntensityFunctionOffset
 };

@@ -31,6 +31,8 @@ void place(const MetaImageHeader& header, HeaderVolume& volume) {
     volume.info.spacing[a] = std::fabs(header.spacing[a]);
   }
   volume.info.origin = placement.origin;
+  for (std::size_t a = 0; a < shown; ++a) volume.info.details.axes.at(a).units = header.distance_units;
+  if (!header.distance_units.empty()) volume.attributes.emplace_back("length unit", header.distance_units);
   volume.info.details.orientation = placement.orientation;
   if (!placement.orientation.empty()) volume.attributes.emplace_back("orientation", placement.orientation);
 }

@@ -26,7 +26,7 @@ struct Layout1 {
   using Units = std::uint8_t;
   static constexpr std::size_t kHeader = kBytes1, kMagic = 344, kDim = 40, kDatatype = 70, kPixdim = 76,
                                kVoxOffset = 108, kSlope = 112, kIntercept = 116, kQformCode = 252, kSformCode = 254,
-                               kQuaternion = 256, kQoffset = 268, kSrow = 280, kUnits = 123;
+                               kQuaternion = 256, kQoffset = 268, kSrow = 280, kUnits = 123, kToffset = 136;
   static constexpr std::string_view kSingle{"n+1\0", 4}, kPair{"ni1\0", 4};
 };
 struct Layout2 {
@@ -37,7 +37,7 @@ struct Layout2 {
   using Units = std::int32_t;
   static constexpr std::size_t kHeader = kBytes2, kMagic = 4, kDim = 16, kDatatype = 12, kPixdim = 104,
                                kVoxOffset = 168, kSlope = 176, kIntercept = 184, kQformCode = 344, kSformCode = 348,
-                               kQuaternion = 352, kQoffset = 376, kSrow = 400, kUnits = 500;
+                               kQuaternion = 352, kQoffset = 376, kSrow = 400, kUnits = 500, kToffset = 216;
   static constexpr std::string_view kSingle{"n+2\0\r\n\032\n", 8}, kPair{"ni2\0\r\n\032\n", 8};
 };
 
@@ -87,8 +87,7 @@ class FieldReader {
     header.values_offset = values_offset(header.pair);
     read_scale(header);
     read_placement(header);
-    constexpr std::array<std::string_view, 8> kLengthUnits{"", "m", "mm", "um"};
-    header.length_unit = kLengthUnits[static_cast<std::uint32_t>(at<typename Layout::Units>(Layout::kUnits)) & 7U];
+    read_units(header);
     return header;
   }
 
@@ -181,6 +180,18 @@ class FieldReader {
     } else if (at<typename Layout::Code>(Layout::kQformCode) > 0) {
       read_qform(header);
     }
+  }
+
+  // xyzt_units: the length in three bits, the time in the next three; 32 and above are frequencies and the like.
+  void read_units(NiftiHeader& header) const {
+    constexpr std::array<std::string_view, 8> kLengthUnits{"", "m", "mm", "um"};
+    constexpr std::array<std::string_view, 8> kTimeUnits{"", "s", "ms", "us"};
+    const auto code = static_cast<std::uint32_t>(at<typename Layout::Units>(Layout::kUnits));
+    header.length_unit = kLengthUnits[code & 7U];
+    if (header.extents.size() < 4) return;
+    header.time_unit = kTimeUnits[code >> 3U & 7U];
+    header.time_offset = real(Layout::kToffset, 0);
+    header.time_step = real(Layout::kPixdim, 4);
   }
 
   // nifti1.h, "METHOD 2"; the left out quaternion component a is not negative.

@@ -32,6 +32,9 @@ struct NiftiHeader {
   Vector3 first{};                 ///< world position of the first voxel, x right, y anterior, z superior
   bool steps_rule = false;         ///< by the sform: the steps' lengths, not pixdim, are the spacing
   std::string_view length_unit;    ///< "m", "mm", "um"; empty where unknown
+  std::string_view time_unit;      ///< of the fourth axis, "s", "ms", "us"; empty where it is no time
+  double time_offset = 0;          ///< of the first volume, in `time_unit`
+  double time_step = 0;            ///< from volume to volume along the fourth axis
 };
 
 /// Whether a file begins as NIfTI or Analyze does: with the header's size, in either byte order.

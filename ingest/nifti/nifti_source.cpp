@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
+#include <optional>
 
 #include "format/base/error.h"
 #include "format/base/text.h"
@@ -49,11 +51,24 @@ void place(const NiftiHeader& header, HeaderVolume& volume) {
   for (std::size_t a = 0; a < axes && !header.steps_rule; ++a) volume.info.spacing[a] = header.spacing[a];
   volume.info.origin = placement.origin;
   volume.info.details.orientation = placement.orientation;
+  for (std::size_t a = 0; a < axes; ++a) volume.info.details.axes.at(a).units = header.length_unit;
   if (!header.length_unit.empty()) volume.attributes.emplace_back("length unit", header.length_unit);
   if (!placement.orientation.empty()) volume.attributes.emplace_back("orientation", placement.orientation);
 }
 
-HeaderVolume describe_nifti(const std::string& path) {
+// Of the volume at `index` on the axes after the third, the slowest first: the fourth axis is the time. None where a
+// step that counts is missing.
+std::optional<TimePoint> nifti_time(const NiftiHeader& header, std::span<const std::int64_t> index) {
+  const std::int64_t position = index.empty() ? 0 : index.back();
+  if (header.time_unit.empty() || !std::isfinite(header.time_offset)) return std::nullopt;
+  if (position == 0) return TimePoint{header.time_offset, std::string(header.time_unit), {}};
+  if (!std::isfinite(header.time_step) || header.time_step <= 0) return std::nullopt;
+  const double value = header.time_offset + static_cast<double>(position) * header.time_step;
+  return TimePoint{value, std::string(header.time_unit), {}};
+}
+
+/// `index`: of the volume that is opened, checked later.
+HeaderVolume describe_nifti(const std::string& path, std::span<const std::int64_t> index) {
   InputFile file(path, DirectIo::off);
   std::vector<std::byte> head = read_bytes(file, 0, kMaxNiftiHeader);
   HeaderVolume volume;
@@ -77,6 +92,7 @@ HeaderVolume describe_nifti(const std::string& path) {
   (volume.packed ? volume.packed_offset : volume.data_offset) = header.values_offset;
   volume.offset_key = "vox_offset";
   place(header, volume);
+  volume.info.details.time = nifti_time(header, index);
   return volume;
 }
 
@@ -88,11 +104,11 @@ bool recognises_nifti(std::string_view path, std::span<const std::byte> head) {
 }
 
 std::unique_ptr<VolumeSource> open_nifti(const std::string& path, const SourceOptions& options) {
-  return open_header_volume(describe_nifti(path), options);
+  return open_header_volume(describe_nifti(path, options.index), options);
 }
 
 std::vector<DatasetInfo> list_nifti(const std::string& path, const SourceOptions&) {
-  return list_header_volume(describe_nifti(path));
+  return list_header_volume(describe_nifti(path, {}));
 }
 
 }  // namespace weir

@@ -18,9 +18,9 @@ namespace weir {
 /// By the name: .nii, .nii.gz, or .hdr where the file also begins as NIfTI does. The magic lies further in.
 bool recognises_nifti(std::string_view path, std::span<const std::byte> head);
 
-/// NIfTI-1 and NIfTI-2. --index chooses along the axes after the third; the sform, else the qform, becomes spacing
-/// and origin as place_axes does it. Throws Error(input) for what parse_nifti_header refuses, and what
-/// open_header_volume throws.
+/// NIfTI-1 and NIfTI-2. --index chooses along the axes after the third, of which the fourth may be a time; the sform,
+/// else the qform, becomes spacing and origin as place_axes does it. Throws Error(input) for what parse_nifti_header
+/// refuses, and what open_header_volume throws.
 std::unique_ptr<VolumeSource> open_nifti(const std::string& path, const SourceOptions& options);
 std::vector<DatasetInfo> list_nifti(const std::string& path, const SourceOptions& options);
 

@@ -167,23 +167,28 @@ std::vector<std::string> words_of(const Fields& fields, const std::string& name,
   return found;
 }
 
-/// "\"x\" \"y axis\"": each in quotes, with \" for a quote inside.
-std::vector<std::string> labels_of(const Fields& fields, std::size_t count) {
-  std::vector<std::string> labels;
+/// "\"x\" \"y axis\"": each in quotes, with \" for a quote inside. Nothing where a quote is open.
+std::vector<std::string> quoted_words(std::string_view text) {
+  std::vector<std::string> found;
   bool inside = false;
-  const std::string_view text = fields.value("labels");
   for (std::size_t i = 0; i < text.size(); ++i) {
     const bool escaped = inside && text.substr(i).starts_with("\\\"");
     if (text[i] == '"') {
       inside = !inside;
-      if (inside) labels.emplace_back();
+      if (inside) found.emplace_back();
     } else if (inside) {
-      labels.back() += text[escaped ? ++i : i];
+      found.back() += text[escaped ? ++i : i];
     }
   }
-  // Labels place nothing: those of another count or an open quote are as good as none.
-  if (inside || labels.size() != count) labels.clear();
-  return labels;
+  if (inside) found.clear();
+  return found;
+}
+
+/// Of each of `count` axes. They place nothing: those of another count are as good as none.
+std::vector<std::string> names_of(const Fields& fields, const std::string& name, std::size_t count) {
+  std::vector<std::string> names = quoted_words(fields.value(name));
+  if (names.size() != count) names.clear();
+  return names;
 }
 
 /// "(1,0,0) none (0,0.5,0)"; nullopt where the text is no such list.
@@ -223,6 +228,7 @@ void read_space(const Fields& fields, NrrdHeader& header) {
     if (!origin || origin->size() != 1) throw fields.wrong("spaceorigin", "one vector such as (0,0,0) belongs there");
     header.space_origin = origin->front().value_or(std::vector<double>());
   }
+  header.space_units = quoted_words(fields.value("spaceunits"));
 }
 
 void read_place_of_values(const Fields& fields, NrrdHeader& header) {
@@ -259,7 +265,8 @@ NrrdHeader parse_nrrd_header(std::string_view text, bool whole, const std::strin
   read_place_of_values(fields, header);
   const std::size_t axes = header.sizes.size();
   header.kinds = words_of(fields, "kinds", axes);
-  header.labels = labels_of(fields, axes);
+  header.labels = names_of(fields, "labels", axes);
+  header.units = names_of(fields, "units", axes);
   header.spacings = numbers_of(fields, "spacings", axes);
   header.axis_mins = numbers_of(fields, "axismins", axes);
   header.axis_maxs = numbers_of(fields, "axismaxs", axes);

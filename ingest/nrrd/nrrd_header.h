@@ -30,12 +30,14 @@ struct NrrdHeader {
 
   std::vector<std::string> kinds;  ///< lower case
   std::vector<std::string> labels;
-  std::vector<double> spacings;   ///< NaN: none along this axis
-  std::vector<double> axis_mins;  ///< NaN: unknown
+  std::vector<std::string> units;  ///< "mm"; of an axis without a direction
+  std::vector<double> spacings;    ///< NaN: none along this axis
+  std::vector<double> axis_mins;   ///< NaN: unknown
   std::vector<double> axis_maxs;
   std::vector<std::string> centerings;                         ///< lower case
   std::vector<std::optional<std::vector<double>>> directions;  ///< world steps; nullopt: not an axis of space
   std::vector<double> space_origin;                            ///< empty: none
+  std::vector<std::string> space_units;                        ///< of the world's axes, as many as it has; or empty
   std::string sample_units;
 };
 

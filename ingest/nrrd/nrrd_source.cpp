@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "format/base/ascii.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "ingest/axes/axis_details.h"
+#include "ingest/axes/axis_place.h"
 #include "ingest/files/input_file.h"
 #include "ingest/headers/header_text.h"
 #include "ingest/headers/header_volume.h"
@@ -44,42 +47,98 @@ std::size_t first_axis(const NrrdHeader& header, const std::string& path) {
   return first;
 }
 
-double length_or_1(double spacing) { return std::isnan(spacing) ? 1.0 : std::fabs(spacing); }
+Vector3 padded(const std::vector<double>& components) {
+  Vector3 v{};
+  std::copy_n(components.begin(), std::min<std::size_t>(3, components.size()), v.begin());
+  return v;
+}
 
-/// Spacing and origin of headers without space directions. Samples of unknown centering lie in their cells' middle,
-/// as Teem takes them (nrrdDefaultCenter).
-void place_by_axes(const NrrdHeader& header, std::size_t axis, double& spacing, double& origin) {
-  const double low = header.axis_mins.empty() ? std::nan("") : header.axis_mins[axis];
-  const double high = header.axis_maxs.empty() ? std::nan("") : header.axis_maxs[axis];
+/// Null where the header has none, of this axis or of any.
+const std::vector<double>* direction_of(const NrrdHeader& header, std::size_t axis) {
+  return header.directions.empty() || !header.directions[axis] ? nullptr : &*header.directions[axis];
+}
+
+struct AxisSteps {
+  double step = 1;   ///< from sample to sample, below 0 where positions fall
+  double first = 0;  ///< position of the first sample
+};
+
+/// Of an axis without a space direction. Samples of unknown centering lie in their cells' middle, as Teem takes them
+/// (nrrdDefaultCenter); where axis max is below axis min, positions fall (nrrdAxisInfoPos).
+AxisSteps steps_along(const NrrdHeader& header, std::size_t axis) {
+  const double begin = header.axis_mins.empty() ? std::nan("") : header.axis_mins[axis];
+  const double end = header.axis_maxs.empty() ? std::nan("") : header.axis_maxs[axis];
   const bool node = !header.centerings.empty() && header.centerings[axis] == "node";
-  const auto steps = static_cast<double>(header.sizes[axis] - (node ? 1 : 0));
-  if (!header.spacings.empty()) {
-    spacing = length_or_1(header.spacings[axis]);
-  } else if (high > low && steps > 0) {
-    spacing = (high - low) / steps;
+  const auto cells = static_cast<double>(header.sizes[axis] - (node ? 1 : 0));
+  const bool has_range = !std::isnan(end - begin) && end != begin;
+  double step = header.spacings.empty() ? std::nan("") : header.spacings[axis];
+  if (has_range && !std::isnan(step)) step = std::copysign(step, end - begin);
+  if (has_range && std::isnan(step) && cells > 0) step = (end - begin) / cells;
+  if (std::isnan(step)) step = 1;
+  return {step, std::isnan(begin) ? 0.0 : begin + (node ? 0.0 : step / 2)};
+}
+
+/// Where the first sample of `axes` axes from `first` on lies, and the steps along them.
+std::pair<Vector3, std::vector<Vector3>> first_and_steps(const NrrdHeader& header, std::size_t first,
+                                                         std::size_t axes) {
+  Vector3 corner{};
+  std::vector<Vector3> steps(axes, Vector3{});
+  for (std::size_t a = 0; a < axes; ++a) {
+    if (const auto* const direction = direction_of(header, first + a)) {
+      steps[a] = padded(*direction);
+      continue;
+    }
+    const AxisSteps along = steps_along(header, first + a);
+    steps[a][a] = along.step;
+    corner[a] = along.first;
   }
-  if (!std::isnan(low)) origin = low + (node ? 0.0 : spacing / 2);
+  if (!header.directions.empty() || !header.space_origin.empty()) corner = padded(header.space_origin);
+  return {corner, steps};
+}
+
+/// The units along `direction`, of those of the world's axes; empty where it runs along several in different ones.
+std::string units_along(const std::vector<double>& direction, const std::vector<std::string>& units) {
+  constexpr double kRounding = 1e-6;  // of the largest part, as place_axes takes it
+  double largest = 0;
+  for (const double part : direction) largest = std::max(largest, std::fabs(part));
+  std::optional<std::string> found;
+  for (std::size_t c = 0; c < std::min(direction.size(), units.size()); ++c) {
+    if (std::fabs(direction[c]) <= kRounding * largest) continue;
+    if (found && *found != units[c]) return "";
+    found = units[c];
+  }
+  return found.value_or("");
+}
+
+std::string units_of_axis(const NrrdHeader& header, std::size_t first, std::size_t a) {
+  if (const auto* const direction = direction_of(header, first + a)) return units_along(*direction, header.space_units);
+  if (!header.units.empty()) return header.units[first + a];
+  return a < header.space_units.size() ? header.space_units[a] : "";
+}
+
+/// Once the labels and spacings are known.
+void describe_units(const NrrdHeader& header, std::size_t first, std::size_t axes, HeaderVolume& volume) {
+  std::array<AxisPlace, 3> places;
+  std::string listed;
+  for (std::size_t a = 0; a < axes; ++a) {
+    places.at(a).label = volume.info.axis_labels.at(a);
+    places.at(a).spacing = volume.info.spacing.at(a);
+    places.at(a).units = units_of_axis(header, first, a);
+    volume.info.details.axes.at(a).units = places.at(a).units;
+    listed += cat(a == 0 ? "" : ",", places.at(a).units);
+  }
+  volume.info.details.units_note = units_note({places.data(), &places[1], &places[2]});
+  if (listed.find_first_not_of(',') != std::string::npos) volume.attributes.emplace_back("axis units", listed);
 }
 
 void place(const NrrdHeader& header, std::size_t first, HeaderVolume& volume) {
   const std::size_t axes = std::min<std::size_t>(3, header.sizes.size() - first);
-  SourceInfo& info = volume.info;
-  const auto padded = [](const std::vector<double>& components) {
-    Vector3 v{};
-    std::copy_n(components.begin(), std::min<std::size_t>(3, components.size()), v.begin());
-    return v;
-  };
-  if (header.directions.empty()) {
-    for (std::size_t a = 0; a < axes; ++a) place_by_axes(header, first + a, info.spacing[a], info.origin[a]);
-    if (!header.space_origin.empty()) info.origin = padded(header.space_origin);
-    return;
-  }
-  std::vector<Vector3> steps;
-  for (std::size_t a = first; a < first + axes; ++a) steps.push_back(padded(*header.directions[a]));
-  const AxisPlacement placement = place_axes(steps, padded(header.space_origin));
-  info.spacing = placement.spacing;
-  info.origin = placement.origin;
-  info.details.orientation = placement.orientation;
+  const auto [corner, steps] = first_and_steps(header, first, axes);
+  const AxisPlacement placement = place_axes(steps, corner);
+  volume.info.spacing = placement.spacing;
+  volume.info.origin = placement.origin;
+  describe_units(header, first, axes, volume);
+  volume.info.details.orientation = placement.orientation;
   if (!placement.orientation.empty()) volume.attributes.emplace_back("orientation", placement.orientation);
 }
 

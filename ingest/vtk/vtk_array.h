@@ -1,7 +1,9 @@
 // An array of a VTK image, whatever the format of the file, and the volume that it is.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "format/base/scalar_type.h"
@@ -17,9 +19,10 @@ struct VtkArray {
   std::string name;  ///< "PointData/a" and "CellData/a" where points and cells have an array "a"
   bool cells = false;
   ScalarType type = ScalarType::float32;
-  std::string type_name;        ///< as written
-  std::string obstacle;         ///< why it cannot be converted; empty where it can
-  std::int64_t components = 1;  ///< numbers a voxel, side by side
+  std::string type_name;                            ///< as written
+  std::string obstacle;                             ///< why it cannot be converted; empty where it can
+  std::int64_t components = 1;                      ///< numbers a voxel, side by side
+  std::optional<std::array<double, 2>> range = {};  ///< least and largest value, where the file says them
 };
 
 struct VtkVolume {

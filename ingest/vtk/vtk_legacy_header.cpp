@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstddef>
 #include <map>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -11,6 +14,7 @@
 #include "format/base/text.h"
 #include "ingest/headers/header_text.h"
 #include "ingest/source/extent.h"
+#include "ingest/values/decode_doubles.h"
 #include "ingest/vectors/voxel_components.h"
 #include "ingest/vtk/vtk_legacy_text.h"
 
@@ -175,7 +179,7 @@ class LegacyParser {
     }
   }
 
-  // Before POINT_DATA these arrays are of the data set, of any length: they are only skipped.
+  // Before POINT_DATA these arrays are of the data set, of any length: of these the time alone is read.
   void read_field() {
     const std::uint64_t arrays = count(2);
     for (std::uint64_t i = 0; i < arrays; ++i) {
@@ -193,9 +197,28 @@ class LegacyParser {
       if (in_attributes_) {
         add(std::move(array), components, tuples);
       } else {
-        skip(required_type(array.type_name), components, tuples);
+        const LegacyType& type = required_type(array.type_name);
+        if (array.name == "TimeValue" && components == 1 && tuples == 1 && type.scalar) {
+          read_time(*type.scalar);
+        } else {
+          skip(type, components, tuples);
+        }
       }
     }
+  }
+
+  // The time of a step, one number. What is no number is no time.
+  void read_time(ScalarType type) {
+    std::array<std::byte, sizeof(double)> buffer{};
+    const auto bytes = std::span(buffer).first(scalar_bytes(type));
+    std::optional<double> value;
+    if (header_.binary) {
+      text_.read_bytes(bytes);
+      value = decode_doubles(bytes, type, true, {}).front();
+    } else {
+      value = parse_double(text_.word());
+    }
+    if (value && std::isfinite(*value)) header_.time = value;
   }
 
   VtkLegacyArray named_array(std::size_t type_word = 2) const {

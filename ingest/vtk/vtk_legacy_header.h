@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <istream>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,7 @@ struct VtkLegacyHeader {
   bool binary = false;  ///< big-endian values; else text
   VtkImage image;
   std::vector<VtkLegacyArray> arrays;
+  std::optional<double> time;  ///< TimeValue of the field data, finite
 };
 
 /// Reads structured points from `in`, which stands at the first of `size` bytes, to its end; values are skipped, those

@@ -11,6 +11,7 @@
 #include "ingest/values/raw_values.h"
 #include "ingest/vtk/text_values.h"
 #include "ingest/vtk/vtk_legacy_header.h"
+#include "ingest/vtk/vtk_marks.h"
 
 namespace weir {
 namespace {
@@ -41,9 +42,11 @@ std::unique_ptr<VolumeSource> open_vtk_legacy(const std::string& path, const Sou
   refuse_vtk_index(path, options);
   auto file = std::make_unique<InputFile>(path, options.direct_io);
   const VtkLegacyHeader header = read_legacy_header(*file);
-  const std::vector<NamedVolume> volumes = volumes_of_kind(header.arrays, options.dataset, options.component);
+  const std::vector<NamedVolume> volumes = vtk_volumes(header.arrays, options);
   const VtkLegacyArray& array = header.arrays[choose_volume(path, "array", volumes, options.dataset)];
   VtkVolume volume = vtk_volume(*file, "vtk-legacy", header.image, array, options);
+  if (header.time) volume.info.details.time = TimePoint{*header.time, {}, {}};
+  volume.info.details.values_note = marks_note_of(array, header.arrays);
   RawLayout layout{header.binary ? array.offset : 0, array.type, header.binary, {}, volume.components};
   options.complete(layout.mapping);
   if (!header.binary) file = spool_text(*file, array, volume.bytes, options, volume.where);
@@ -61,6 +64,7 @@ std::vector<DatasetInfo> list_vtk_legacy(const std::string& path, const SourceOp
     info.layout = header.binary ? "contiguous" : "text";
     info.components = array.components;
     info.obstacle = array.obstacle;
+    info.by_name_only = marks_places(array);
     if (info.obstacle.empty()) {
       info.type = cat(header.binary && scalar_bytes(array.type) > 1 ? "big-endian " : "", scalar_name(array.type));
     }

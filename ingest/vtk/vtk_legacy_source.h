@@ -17,10 +17,10 @@ namespace weir {
 /// By its first line or the name.
 bool recognises_vtk_legacy(std::string_view path, std::span<const std::byte> head);
 
-/// The array options.dataset of the points or the cells, or the only one that can be converted. Binary values are read
-/// where they lie, text is decoded here, once, into a spool file. Throws Error(usage) where several can be converted
-/// and none is named; Error(input) for what parse_vtk_legacy_header refuses and words that are no numbers; what
-/// SpoolFile throws.
+/// The array options.dataset of the points or the cells, or the only one that can be converted, ghost types and the
+/// like aside. Binary values are read where they lie, text is decoded here, once, into a spool file. Throws
+/// Error(usage) where several can be converted and none is named; Error(input) for what parse_vtk_legacy_header refuses
+/// and words that are no numbers; what SpoolFile throws.
 std::unique_ptr<VolumeSource> open_vtk_legacy(const std::string& path, const SourceOptions& options);
 std::vector<DatasetInfo> list_vtk_legacy(const std::string& path, const SourceOptions& options);
 

@@ -5,7 +5,6 @@
 #include "ingest/headers/header_text.h"
 
 namespace weir {
-namespace {}  // namespace
 
 int VtkLegacyText::next() {
   if (position_ == size_) return -1;
@@ -36,11 +35,15 @@ void VtkLegacyText::skip_paragraph() {
   for (auto text = line(); text && !trimmed(*text).empty(); text = line()) continue;
 }
 
-void VtkLegacyText::skip_bytes(std::uint64_t count) {
+void VtkLegacyText::require_bytes(std::uint64_t count) const {
   if (count > size_ - position_) {
     fail(cat(count, " bytes of values belong behind it, and the file ends after ", size_ - position_,
              "; is it complete?"));
   }
+}
+
+void VtkLegacyText::skip_bytes(std::uint64_t count) {
+  require_bytes(count);
   position_ += count;
   bytes_.pubseekpos(static_cast<std::streamoff>(position_));
 }
@@ -52,6 +55,22 @@ void VtkLegacyText::skip_words(std::uint64_t count) {
     if (c < 0) fail(cat(count, " values belong before it, and there are ", i, "; is the file complete?"));
     while (c >= 0 && !is_space(c)) c = next();
   }
+}
+
+void VtkLegacyText::read_bytes(std::span<std::byte> into) {
+  require_bytes(into.size());
+  for (std::byte& byte : into) byte = static_cast<std::byte>(next());
+}
+
+std::string VtkLegacyText::word() {
+  int c = next();
+  while (is_space(c)) c = next();
+  if (c < 0) fail("a value belongs before it, and there is none; is the file complete?");
+  std::string text;
+  for (; c >= 0 && !is_space(c); c = next()) {
+    if (text.size() < kMaxLineBytes) text += static_cast<char>(c);
+  }
+  return text;
 }
 
 void VtkLegacyText::fail(std::string_view what) const {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <istream>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -31,12 +32,17 @@ class VtkLegacyText {
   void skip_paragraph();
   void skip_bytes(std::uint64_t count);
   void skip_words(std::uint64_t count);
+  /// The next bytes. Throws as skip_bytes.
+  void read_bytes(std::span<std::byte> into);
+  /// The next word, of which kMaxLineBytes are kept. Throws as skip_words.
+  std::string word();
 
   /// Throws Error(input): "PATH: before byte N: WHAT".
   [[noreturn]] void fail(std::string_view what) const;
 
  private:
   int next();
+  void require_bytes(std::uint64_t count) const;
 
   std::streambuf& bytes_;
   std::uint64_t size_;

@@ -40,12 +40,14 @@ std::uint64_t read_size(EncodedBytes& encoded, const VtkXmlHeader& header) {
                                     "; one of the two is damaged"));
 }
 
-void copy_values(EncodedBytes& encoded, std::uint64_t bytes, SpoolFile& spool) {
+using ByteSink = StreamInflater::Sink;
+
+void copy_values(EncodedBytes& encoded, std::uint64_t bytes, const ByteSink& sink) {
   std::vector<std::byte> buffer(std::min<std::uint64_t>(bytes, kCopyBytes));
   for (std::uint64_t done = 0; done < bytes;) {
     const auto part = std::span(buffer).first(std::min<std::uint64_t>(buffer.size(), bytes - done));
     encoded.read(part);
-    spool.write(part);
+    sink(part);
     done += part.size();
   }
 }
@@ -58,8 +60,8 @@ struct BlockList {
   std::vector<std::uint64_t> packed_bytes;
 };
 
-BlockList read_block_list(EncodedBytes& encoded, const VtkXmlHeader& header, std::uint64_t bytes,
-                          const SourceOptions& options, const std::string& where) {
+BlockList read_block_list(EncodedBytes& encoded, const VtkXmlHeader& header, std::uint64_t bytes, std::uint64_t memory,
+                          const std::string& where) {
   const std::uint64_t count = read_size(encoded, header);
   BlockList list;
   list.block_bytes = read_size(encoded, header);
@@ -72,7 +74,7 @@ BlockList read_block_list(EncodedBytes& encoded, const VtkXmlHeader& header, std
     throw Error(ErrorKind::input, cat(where, ": ", count, " blocks of ", list.block_bytes, " bytes, the last of ",
                                       list.last_bytes, ", do not make the ", bytes, " that its header asks for"));
   }
-  if (count > options.memory / kBlockListShare / sizeof(std::uint64_t)) {
+  if (count > memory / kBlockListShare / sizeof(std::uint64_t)) {
     throw Error(ErrorKind::usage,
                 compose(where, ": has a list of ", count, " compressed blocks; give ",
                         option("memory", (count * kBlockListShare * sizeof(std::uint64_t) >> 20U) + 1),
@@ -83,7 +85,7 @@ BlockList read_block_list(EncodedBytes& encoded, const VtkXmlHeader& header, std
   return list;
 }
 
-void inflate_blocks(EncodedBytes& encoded, const BlockList& list, SpoolFile& spool, const std::string& where) {
+void inflate_blocks(EncodedBytes& encoded, const BlockList& list, const ByteSink& sink, const std::string& where) {
   std::vector<std::byte> buffer(kCopyBytes);
   for (std::size_t b = 0; b < list.packed_bytes.size(); ++b) {
     const bool last = b + 1 == list.packed_bytes.size();
@@ -97,7 +99,7 @@ void inflate_blocks(EncodedBytes& encoded, const BlockList& list, SpoolFile& spo
       inflater.push(part, [&](std::span<const std::byte> bytes) {
         unpacked += bytes.size();
         if (unpacked > expected) wrong_size(block, unpacked, expected);
-        spool.write(bytes);
+        sink(bytes);
       });
       done += part.size();
     }
@@ -123,21 +125,28 @@ void check_plausible(std::uint64_t available, const VtkXmlHeader& header, const 
   }
 }
 
+struct StoredBytes {
+  std::uint64_t begin = 0;  ///< in the file
+  std::uint64_t end = 0;
+  bool base64 = false;
+};
+
+StoredBytes stored_bytes(const InputFile& file, const VtkXmlHeader& header, const VtkXmlArray& array,
+                         const std::string& where) {
+  if (array.format != Format::appended) return {array.begin, array.end, array.format == Format::binary};
+  StoredBytes stored{0, file.size(), header.appended_base64};
+  if (__builtin_add_overflow(*header.appended, array.begin, &stored.begin) || stored.begin >= stored.end) {
+    throw Error(ErrorKind::input, cat(where, ": its data are to begin at byte ", array.begin,
+                                      " of the appended data, behind the file's end; the file is cut or damaged"));
+  }
+  return stored;
+}
+
 }  // namespace
 
 PlainValues plain_vtk_values(std::unique_ptr<InputFile> file, const VtkXmlHeader& header, const VtkXmlArray& array,
                              std::uint64_t bytes, const SourceOptions& options, const std::string& where) {
-  std::uint64_t begin = array.begin;
-  std::uint64_t end = array.end;
-  bool base64 = array.format == Format::binary;
-  if (array.format == Format::appended) {
-    base64 = header.appended_base64;
-    end = file->size();
-    if (__builtin_add_overflow(*header.appended, array.begin, &begin) || begin >= end) {
-      throw Error(ErrorKind::input, cat(where, ": its data are to begin at byte ", array.begin,
-                                        " of the appended data, behind the file's end; the file is cut or damaged"));
-    }
-  }
+  const auto [begin, end, base64] = stored_bytes(*file, header, array, where);
   check_plausible(end - begin, header, array, bytes, where);
   const auto files = make_posix_file_system();
   if (array.format == Format::ascii) {
@@ -149,22 +158,44 @@ PlainValues plain_vtk_values(std::unique_ptr<InputFile> file, const VtkXmlHeader
 
   EncodedBytes encoded(*file, begin, end, base64, where);
   if (header.zlib) {
-    const BlockList list = read_block_list(encoded, header, bytes, options, where);
+    const BlockList list = read_block_list(encoded, header, bytes, options.memory, where);
     SpoolFile spool(*files, options, file->path(), bytes);
-    inflate_blocks(encoded, list, spool, where);
+    inflate_blocks(
+        encoded, list, [&](std::span<const std::byte> part) { spool.write(part); }, where);
     return {spool.finish(), 0, header.big_endian};
   }
   if (const std::uint64_t found = read_size(encoded, header); found != bytes) wrong_size(where, found, bytes);
   if (base64) {
     SpoolFile spool(*files, options, file->path(), bytes);
-    copy_values(encoded, bytes, spool);
+    copy_values(encoded, bytes, [&](std::span<const std::byte> part) { spool.write(part); });
     return {spool.finish(), 0, header.big_endian};
   }
-  begin += header.word_bytes;
-  if (begin > end || bytes > end - begin) {
+  const std::uint64_t first = begin + header.word_bytes;
+  if (first > end || bytes > end - first) {
     throw Error(ErrorKind::input, cat(where, ": its data end too early; the file is cut or damaged"));
   }
-  return {std::move(file), begin, header.big_endian};
+  return {std::move(file), first, header.big_endian};
+}
+
+void read_vtk_values(InputFile& file, const VtkXmlHeader& header, const VtkXmlArray& array, std::span<std::byte> values,
+                     const std::string& where) {
+  const auto [begin, end, base64] = stored_bytes(file, header, array, where);
+  EncodedBytes encoded(file, begin, end, base64, where);
+  std::size_t filled = 0;
+  const auto fill = [&](std::span<const std::byte> part) {
+    if (part.size() > values.size() - filled) wrong_size(where, filled + part.size(), values.size());
+    std::copy(part.begin(), part.end(), values.begin() + static_cast<std::ptrdiff_t>(filled));
+    filled += part.size();
+  };
+  if (header.zlib) {
+    constexpr std::uint64_t kListBytes = std::uint64_t{1} << 20U;
+    inflate_blocks(encoded, read_block_list(encoded, header, values.size(), kListBytes, where), fill, where);
+  } else {
+    if (const std::uint64_t found = read_size(encoded, header); found != values.size()) {
+      wrong_size(where, found, values.size());
+    }
+    copy_values(encoded, values.size(), fill);
+  }
 }
 
 }  // namespace weir

@@ -1,8 +1,10 @@
 // The values of one array of a VTK XML file, found or decoded.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 
 #include "ingest/files/input_file.h"
@@ -23,5 +25,10 @@ struct PlainValues {
 /// options.memory does not hold the list of compressed blocks; what SpoolFile throws.
 PlainValues plain_vtk_values(std::unique_ptr<InputFile> file, const VtkXmlHeader& header, const VtkXmlArray& array,
                              std::uint64_t bytes, const SourceOptions& options, const std::string& where);
+
+/// The same of an array that is not text, a few bytes, into memory: `values` holds exactly them, in the file's byte
+/// order.
+void read_vtk_values(InputFile& file, const VtkXmlHeader& header, const VtkXmlArray& array, std::span<std::byte> values,
+                     const std::string& where);
 
 }  // namespace weir

@@ -43,6 +43,7 @@ class XmlParser {
     read_file(file);
     const pugi::xml_node image = required_child(file, "ImageData");
     read_image(image);
+    read_time(image.child("FieldData"));
     const pugi::xml_node piece = required_child(image, "Piece");
     if (piece.next_sibling("Piece")) {
       const auto pieces = image.children("Piece");
@@ -139,6 +140,14 @@ class XmlParser {
     }
   }
 
+  /// vtkXMLWriter writes the time of a step so; an array of another length is something else.
+  void read_time(const pugi::xml_node& fields) {
+    const pugi::xml_node node = fields.find_child_by_attribute("DataArray", "Name", "TimeValue");
+    if (!node || std::string_view(node.attribute("NumberOfTuples").as_string("1")) != "1") return;
+    VtkXmlArray array = read_array(node, false);
+    if (array.components == 1) header_.time = std::move(array);
+  }
+
   VtkXmlArray read_array(const pugi::xml_node& node, bool cells) const {
     VtkXmlArray array;
     array.name = node.attribute("Name").value();
@@ -156,6 +165,9 @@ class XmlParser {
     if (array.obstacle.empty()) {
       array.obstacle = components ? components_obstacle(*components) : "its NumberOfComponents is no whole number";
     }
+    const auto least = parse_double(node.attribute("RangeMin").value());
+    const auto largest = parse_double(node.attribute("RangeMax").value());
+    if (least && largest) array.range = {*least, *largest};
     read_place(node, array);
     return array;
   }

@@ -30,7 +30,8 @@ struct VtkXmlHeader {
   bool appended_base64 = false;
   VtkImage image;
   std::vector<VtkXmlArray> arrays;
-  std::string scalars;  ///< name of the array that the file marks as its scalars; empty where none
+  std::optional<VtkXmlArray> time;  ///< TimeValue of the field data, one number
+  std::string scalars;              ///< name of the array that the file marks as its scalars; empty where none
 };
 
 /// Reads the markup of one piece of image data. Pure. Throws Error(input), beginning with `path`, naming element and

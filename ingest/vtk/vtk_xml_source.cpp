@@ -8,9 +8,11 @@
 #include "ingest/headers/named_choice.h"
 #include "ingest/values/raw_values.h"
 #include "ingest/vtk/file_text.h"
+#include "ingest/vtk/vtk_marks.h"
 #include "ingest/vtk/vtk_xml_data.h"
 #include "ingest/vtk/vtk_xml_header.h"
 #include "ingest/vtk/vtk_xml_skeleton.h"
+#include "ingest/vtk/vtk_xml_time.h"
 
 namespace weir {
 namespace {
@@ -24,7 +26,7 @@ VtkXmlHeader read_xml_header(InputFile& file) {
 
 const VtkXmlArray& choose_array(const VtkXmlHeader& header, const std::string& path, const SourceOptions& options) {
   const std::string& wanted = options.dataset;
-  const std::vector<NamedVolume> volumes = volumes_of_kind(header.arrays, wanted, options.component);
+  const std::vector<NamedVolume> volumes = vtk_volumes(header.arrays, options);
   const auto usable = [](const NamedVolume& array) { return array.obstacle.empty(); };
   const bool marked = std::any_of(volumes.begin(), volumes.end(), [&](const NamedVolume& array) {
     return usable(array) && array.name == header.scalars;
@@ -59,6 +61,8 @@ std::unique_ptr<VolumeSource> open_vtk_xml(const std::string& path, const Source
   const VtkXmlHeader header = read_xml_header(*file);
   const VtkXmlArray& array = choose_array(header, path, options);
   VtkVolume volume = vtk_volume(*file, "vtk-xml", header.image, array, options);
+  volume.info.details.time = vtk_xml_time(*file, header, options);
+  volume.info.details.values_note = marks_note_of(array, header.arrays);
   PlainValues plain = plain_vtk_values(std::move(file), header, array, volume.bytes, options, volume.where);
   RawLayout layout{plain.offset, array.type, plain.big_endian, {}, volume.components};
   options.complete(layout.mapping);
@@ -76,6 +80,7 @@ std::vector<DatasetInfo> list_vtk_xml(const std::string& path, const SourceOptio
     info.layout = layout_text(header, array);
     info.components = array.components;
     info.obstacle = array.obstacle;
+    info.by_name_only = marks_places(array);
     if (info.obstacle.empty()) {
       const bool swapped =
           header.big_endian && scalar_bytes(array.type) > 1 && array.format != VtkXmlArray::Format::ascii;

@@ -74,6 +74,19 @@ TEST(MetaImageSource, TakesPlaceAndIntensity) {
   EXPECT_EQ(read_volume(*source)[23], 10.5F);
 }
 
+TEST(MetaImageSource, DistanceUnits_AreOfAllAxes) {
+  const Scratch scratch;
+  const auto path = [&](const std::string& units) {
+    return write_headed(scratch, "a.mha", header("DistanceUnits = " + units + "\n"), stored(ramp()));
+  };
+  const SourceInfo info = open_source(path("mm"), {})->info();
+  for (const AxisDetails& axis : info.details.axes) EXPECT_EQ(axis.units, "mm");
+  EXPECT_EQ(info.details.units_note, "");
+  EXPECT_EQ(list_meta_image(path("um"), {}).at(0).attributes.back(),
+            (std::pair<std::string, std::string>{"length unit", "um"}));
+  EXPECT_EQ(open_source(path("?"), {})->info().details.axes[0].units, "") << "MetaIO's word for unknown";
+}
+
 TEST(MetaImageSource, SpacingIgnoresTheAxisDirections) {
   const Scratch scratch;
   // 36.87 degrees about z, rounded as writers do.

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <limits>
 
 #include "ingest/source_registry.h"
 #include "tests/ingest/support/header_file.h"
@@ -80,6 +81,66 @@ TEST(NiftiSource, TakesPlaceAndScale) {
       {"length unit", "mm"},
       {"orientation", "axes along -x, +y, +z of the file's world; voxels keep the file's order"}};
   EXPECT_EQ(list_nifti(path, {}).at(0).attributes, attributes);
+}
+
+TEST(NiftiSource, LengthUnit_IsOfAllAxes) {
+  const Scratch scratch;
+  for (const auto& [code, unit] : {std::pair('\0', ""), {'\1', "m"}, {'\2', "mm"}, {'\3', "um"}, {'\4', ""}}) {
+    NiftiBytes header(1);
+    const std::string path =
+        scratch.write("a.nii", whole_file(header.set_text(123, std::string(1, code)), stored(ramp())));
+    const SourceInfo info = open_source(path, {})->info();
+    for (const AxisDetails& axis : info.details.axes) EXPECT_EQ(axis.units, unit);
+    EXPECT_FALSE(info.details.time) << "it has no fourth axis";
+  }
+}
+
+/// Two volumes of 4 x 3 x 1 voxels, half a unit of time apart, the first one at 3.
+NiftiBytes two_times(int version, bool big_endian, std::int32_t units) {
+  NiftiBytes header(version, big_endian);
+  if (version == 1) {
+    header.set_all<std::int16_t>(40, {4, 4, 3, 1, 2}).set(123, static_cast<std::uint8_t>(units));
+    return header.set<float>(92, 0.5F).set<float>(136, 3);
+  }
+  header.set_all<std::int64_t>(16, {4, 4, 3, 1, 2}).set(500, units);
+  return header.set<double>(136, 0.5).set<double>(216, 3);
+}
+
+TEST(NiftiSource, TimeOfAVolume_IsThatOfItsPositionOnTheFourthAxis) {
+  const Scratch scratch;
+  SourceOptions second;
+  second.index = {1};
+  SourceOptions first;
+  first.index = {0};
+  for (const int version : {1, 2}) {
+    for (const auto& [code, unit] : {std::pair(8, "s"), {16, "ms"}, {24, "us"}}) {
+      const NiftiBytes header = two_times(version, version == 2, code + 2);
+      const std::string path = scratch.write("a.nii", whole_file(header, stored(ramp())));
+      const auto at = [&](const SourceOptions& options) { return open_source(path, options)->info().details.time; };
+      ASSERT_TRUE(at(second)) << version << unit;
+      EXPECT_EQ(at(second)->value, 3.5);
+      EXPECT_EQ(at(second)->units, unit);
+      EXPECT_EQ(at(first)->value, 3);
+      EXPECT_EQ(open_source(path, second)->info().details.axes[2].units, "mm");
+    }
+    for (const int code : {0, 32, 40, 48}) {  // none, Hz, ppm, rad/s
+      const std::string path = scratch.write("a.nii", whole_file(two_times(version, false, code), stored(ramp())));
+      EXPECT_FALSE(open_source(path, second)->info().details.time) << version << ' ' << code;
+    }
+  }
+}
+
+TEST(NiftiSource, TimeWithoutAStep_IsKnownOfTheFirstVolumeOnly) {
+  const Scratch scratch;
+  for (const float step : {0.0F, -1.0F, std::numeric_limits<float>::quiet_NaN()}) {
+    NiftiBytes header = two_times(1, false, 8);
+    const std::string path = scratch.write("a.nii", whole_file(header.set<float>(92, step), stored(ramp())));
+    SourceOptions options;
+    options.index = {1};
+    EXPECT_FALSE(open_source(path, options)->info().details.time) << step;
+    options.index = {0};
+    EXPECT_EQ(open_source(path, options)->info().details.time->value, 3) << step;
+  }
 }
 
 TEST(NiftiSource, ReadsPairsAndExtensions) {

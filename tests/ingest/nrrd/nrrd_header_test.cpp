@@ -91,6 +91,14 @@ TEST(NrrdHeader, ParsesFieldsOfTheAxes) {
   EXPECT_EQ(header.centerings, (std::vector<std::string>{"cell", "???", "node"}));
 }
 
+TEST(NrrdHeader, ParsesUnits) {
+  EXPECT_EQ(parse(with("units: \"mm\" \"\" \"a \\\"b\\\"\"")).units, (std::vector<std::string>{"mm", "", "a \"b\""}));
+  EXPECT_EQ(parse(with("space units: \"mm\" \"um\"")).space_units, (std::vector<std::string>{"mm", "um"}));
+  for (const std::string other : {"units: \"mm\"", "units: \"mm\" \"mm\" \"mm", "units: mm mm mm"}) {
+    EXPECT_TRUE(parse(with(other)).units.empty()) << other;
+  }
+}
+
 TEST(NrrdHeader, AcceptsEveryTypeNameAndNoOther) {
   const std::vector<std::pair<ScalarType, std::vector<std::string>>> names{
       {ScalarType::int8, {"signed char", "int8", "int8_t"}},

@@ -85,6 +85,83 @@ TEST(NrrdSource, SpacingsAndAxisRangesGiveThePlacement) {
   EXPECT_EQ(ranges.origin, (std::array<double, 3>{1, 0, 10}));
 }
 
+// The axis that the ranges 20 to 0 and the space direction -1 both describe.
+TEST(NrrdSource, FallingAxisMins_PlaceTheVoxels) {
+  const Scratch scratch;
+  const auto open = [&](const std::string& fields) {
+    return open_source(write_headed(scratch, "a.nrrd", header(fields), stored(ramp())), {});
+  };
+  const std::string falls = "axes along -x, +y, +z of the file's world; voxels keep the file's order";
+  const auto cells = open("axis mins: 20 0 0\naxis maxs: 0 12 8\n");
+  EXPECT_EQ(cells->info().spacing, (std::array<double, 3>{5, 4, 4}));
+  EXPECT_EQ(cells->info().origin, (std::array<double, 3>{17.5, 2, 2})) << "the first sample lies within the range";
+  EXPECT_EQ(cells->info().details.orientation, falls);
+  EXPECT_EQ(read_volume(*cells), as_floats(ramp()));
+  EXPECT_EQ(list_nrrd(cells->info().path, {}).at(0).attributes.back(),
+            (std::pair<std::string, std::string>{"orientation", falls}));
+  const auto directions =
+      open("space dimension: 3\nspace directions: (-5,0,0) (0,4,0) (0,0,4)\nspace origin: (17.5,2,2)\n");
+  EXPECT_EQ(directions->info().spacing, cells->info().spacing);
+  EXPECT_EQ(directions->info().origin, cells->info().origin);
+  EXPECT_EQ(directions->info().details.orientation, falls);
+
+  const SourceInfo nodes = open("axis mins: 20 0 0\naxis maxs: 5 8 1\ncenterings: node node node\n")->info();
+  EXPECT_EQ(nodes.spacing, (std::array<double, 3>{5, 4, 1}));
+  EXPECT_EQ(nodes.origin, (std::array<double, 3>{20, 0, 0}));
+  EXPECT_EQ(nodes.details.orientation, falls);
+  const SourceInfo rising = open("axis mins: 0 0 0\naxis maxs: 20 12 8\n")->info();
+  EXPECT_EQ(rising.origin, (std::array<double, 3>{2.5, 2, 2}));
+  EXPECT_EQ(rising.details.orientation, "");
+}
+
+TEST(NrrdSource, FallingAxesWithSpacings_AreSaid) {
+  const Scratch scratch;
+  const auto info = [&](const std::string& fields) {
+    return open_source(write_headed(scratch, "a.nrrd", header(fields), stored(ramp())), {})->info();
+  };
+  // The range says the direction, the spacing the distance.
+  const SourceInfo both = info("spacings: 5 nan 4\naxis mins: 20 12 0\naxis maxs: 0 0 8\n");
+  EXPECT_EQ(both.spacing, (std::array<double, 3>{5, 4, 4}));
+  EXPECT_EQ(both.origin, (std::array<double, 3>{17.5, 10, 2}));
+  EXPECT_EQ(both.details.orientation, "axes along -x, -y, +z of the file's world; voxels keep the file's order");
+  const SourceInfo spacings = info("spacings: 1 1 -2\n");
+  EXPECT_EQ(spacings.spacing, (std::array<double, 3>{1, 1, 2}));
+  EXPECT_EQ(spacings.details.orientation, "axes along +x, +y, -z of the file's world; voxels keep the file's order");
+}
+
+TEST(NrrdSource, UnitsOfAxes_AreKept_AndSaidWhereTheyDiffer) {
+  const Scratch scratch;
+  const auto info = [&](const std::string& fields) {
+    return open_source(write_headed(scratch, "a.nrrd", header(fields), stored(ramp())), {})->info();
+  };
+  const auto units = [](const SourceInfo& of) {
+    return std::array<std::string, 3>{of.details.axes[0].units, of.details.axes[1].units, of.details.axes[2].units};
+  };
+  const SourceInfo same = info("units: \"mm\" \"mm\" \"mm\"\nspacings: 1 1 2\n");
+  EXPECT_EQ(units(same), (std::array<std::string, 3>{"mm", "mm", "mm"}));
+  EXPECT_EQ(same.details.units_note, "");
+  const SourceInfo mixed = info("units: \"mm\" \"mm\" \"um\"\nlabels: \"\" \"\" \"depth\"\n");
+  EXPECT_EQ(units(mixed), (std::array<std::string, 3>{"mm", "mm", "um"}));
+  EXPECT_EQ(mixed.details.units_note, "axis x is in mm, y in mm, z (depth) in um");
+  // Those of the world's axes that the array's run along: here x along the world's z.
+  const std::string space = "space dimension: 3\nspace units: \"mm\" \"mm\" \"um\"\n";
+  const SourceInfo turned = info(space + "space directions: (0,0,2) (0,-1,0) (1,0,0)\n");
+  EXPECT_EQ(units(turned), (std::array<std::string, 3>{"um", "mm", "mm"}));
+  EXPECT_EQ(turned.details.units_note, "axis x is in um, y in mm, z in mm");
+  const SourceInfo oblique = info(space + "space directions: (1,1,0) (1,-1,0) (0,1,1)\n");
+  EXPECT_EQ(units(oblique), (std::array<std::string, 3>{"mm", "mm", ""}));
+  const auto listed = list_nrrd(scratch.path("a.nrrd"), {}).at(0).attributes;
+  EXPECT_EQ(listed.at(2), (std::pair<std::string, std::string>{"axis units", "mm,mm,"}));
+}
+
+TEST(NrrdSource, AxisWithoutADirection_IsPlacedByItsSpacing) {
+  const Scratch scratch;
+  const std::string fields =
+      "kinds: domain domain domain\nspace dimension: 3\nspace directions: (2,0,0) (0,2,0) none\nspacings: nan nan 3\n";
+  const auto source = open_source(write_headed(scratch, "a.nrrd", header(fields), stored(ramp())), {});
+  EXPECT_EQ(source->info().spacing, (std::array<double, 3>{2, 2, 3}));
+}
+
 TEST(NrrdSource, KeepsTheOrderOfFlippedAxesAndSaysSo) {
   const Scratch scratch;
   const std::string path =

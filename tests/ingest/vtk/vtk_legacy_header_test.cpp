@@ -36,6 +36,29 @@ TEST(VtkLegacyHeader, ParsesPlacementAndArrays) {
   EXPECT_EQ(header.arrays[1].type, ScalarType::int8);
 }
 
+TEST(VtkLegacyHeader, TimeValue_IsReadFromTheFieldData) {
+  const std::string image = "DIMENSIONS 2 2 1\nPOINT_DATA 4\n";
+  const auto field = [](const std::string& array, const std::string& values) {
+    return "FIELD FieldData 2\nCYCLE 1 1 int\n" + std::string(4, '\0') + "\n" + array + "\n" + values + "\n";
+  };
+  const std::string half("\x3F\xE0\0\0\0\0\0\0", 8);  // 0.5
+  EXPECT_EQ(parse(kHead + field("TimeValue 1 1 double", half) + image).time, 0.5);
+  EXPECT_EQ(parse(kHead + field("TimeValue 1 1 int", std::string("\0\0\0\7", 4)) + image).time, 7);
+  EXPECT_EQ(parse(kHead + field("TimeValue 1 2 double", half + half) + image).time, std::nullopt);
+  EXPECT_EQ(parse(kHead + field("timevalue 1 1 double", half) + image).time, std::nullopt);
+  EXPECT_EQ(parse(kHead + field("TimeValue 1 1 double", std::string("\x7F\xF0\0\0\0\0\0\0", 8)) + image).time,
+            std::nullopt)
+      << "infinity is no time";
+  EXPECT_EQ(refusal(kHead + "FIELD FieldData 1\nTimeValue 1 1 double\n" + half.substr(0, 5)),
+            "a.vtk: before byte 105: 8 bytes of values belong behind it, and the file ends after 5; is it complete?");
+
+  const std::string text = "# vtk DataFile Version 3.0\ntitle\nASCII\nDATASET STRUCTURED_POINTS\n";
+  EXPECT_EQ(parse(text + "FIELD FieldData 1\nTimeValue 1 1 double\n 1.25e-3 \n" + image).time, 1.25e-3);
+  EXPECT_EQ(parse(text + "FIELD FieldData 1\nTimeValue 1 1 double\nearly\n" + image).time, std::nullopt);
+  EXPECT_EQ(refusal(text + "FIELD FieldData 1\nTimeValue 1 1 double\n"),
+            "a.vtk: before byte 104: a value belongs before it, and there is none; is the file complete?");
+}
+
 TEST(VtkLegacyHeader, RefusesUnsupportedFiles) {
   EXPECT_EQ(refusal("x"), "a.vtk: before byte 1: the file does not begin with '# vtk DataFile Version'");
   EXPECT_EQ(refusal("# vtk DataFile Version 2.0\n\nHEX\n"),
