@@ -1,4 +1,6 @@
+#include <array>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "bindings/c/conversion_options.h"
@@ -8,15 +10,15 @@
 #include "bindings/mpi/weir_mpi.h"
 #include "compressor/conversion_identity.h"
 #include "format/base/text.h"
+#include "ingest/source/stored_value.h"
 
 /// What outlives a PushedBoxes comes before it.
 struct weir_mpi_push {
-  weir_mpi_push(const weir_convert_options& given, MPI_Comm communicator)
-      : callbacks(given), control(callbacks.control()), team(communicator) {}
+  explicit weir_mpi_push(MPI_Comm communicator) : team(communicator) {}
 
-  weir::c::Callbacks callbacks;
-  weir::ConversionControl control;
   weir::MpiTeam team;
+  std::optional<weir::c::Callbacks> callbacks;
+  weir::ConversionControl control;
   std::array<std::int64_t, 3> extent{};
   weir::ScalarType type{};
   std::unique_ptr<weir::PushedBoxes> boxes;
@@ -46,6 +48,10 @@ std::string said_by_all(const SourceInfo& info, const ConversionOptions& options
   ConversionIdentity said = identify_conversion(info, options);
   said.erase("source");  // where and of when a file would be
   said.erase("source modified (ns)");
+  for (std::size_t i = 0; i < 3; ++i) {
+    said["spacing"] += cat(stored_value_text(info.spacing.at(i)), ' ');
+    said["origin"] += cat(stored_value_text(info.origin.at(i)), ' ');
+  }
   said["output"] = options.output;
   said["certify"] = options.certify == Certify::gradient ? "gradient" : "values";
   said["overwrite"] = options.overwrite ? "yes" : "no";
@@ -74,13 +80,15 @@ using namespace weir::c;
 weir_status weir_mpi_push_begin(MPI_Comm comm, const weir_volume* volume, const weir_convert_options* options,
                                 const char* output, weir_mpi_push** push, weir_error* error) {
   return guarded(error, [&] {
-    required(push, "push");
     if (comm == MPI_COMM_NULL) throw usage("comm is MPI_COMM_NULL");
-    const weir_convert_options given = options_or_defaults(options);
-    auto made = std::make_unique<weir_mpi_push>(given, comm);
+    // What is wrong in one process alone is told to all, which would wait for it.
+    auto made = std::make_unique<weir_mpi_push>(comm);
     SourceInfo info;
     ConversionOptions conversion;
     made->team.run([&] {
+      required(push, "push");
+      const weir_convert_options given = options_or_defaults(options);
+      made->control = made->callbacks.emplace(given).control();
       const DenseArray array = read_volume(volume);
       info = array_info(array);
       made->type = array.type;

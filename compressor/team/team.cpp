@@ -19,9 +19,9 @@ class NoTeam final : public Team {
   void merge(Bytes&, const Merge&) override {}
 };
 
-// An error as bytes: its kind, then its text.
+// An error as bytes: its kind, then its message, whose options each process words as its user knows them.
 Team::Bytes failure_bytes(const Error& error) {
-  const std::string text = error.what();
+  const std::string text = error.message().packed();
   Team::Bytes bytes(1 + text.size());
   bytes.front() = static_cast<std::byte>(error.kind());
   std::memcpy(bytes.data() + 1, text.data(), text.size());
@@ -30,7 +30,7 @@ Team::Bytes failure_bytes(const Error& error) {
 
 Error error_of(const Team::Bytes& bytes) {
   const auto* text = reinterpret_cast<const char*>(bytes.data() + 1);
-  return {static_cast<ErrorKind>(bytes.front()), std::string(text, bytes.size() - 1)};
+  return {static_cast<ErrorKind>(bytes.front()), Message::unpack({text, bytes.size() - 1})};
 }
 
 }  // namespace

@@ -44,6 +44,47 @@ std::string Message::worded(OptionWording wording) const {
   return line;
 }
 
+std::string Message::packed() const {
+  std::string packed;
+  const auto add = [&](char kind, const std::string& first, const std::string& second) {
+    packed += cat(kind, first, '\0', second, '\0');
+  };
+  for (const auto& part : parts_) {
+    if (const auto* const option = std::get_if<OptionName>(&part)) {
+      add('o', option->key, option->value);
+    } else if (const auto* const text = std::get_if<CommandLineText>(&part)) {
+      add('c', text->command_line, text->elsewhere);
+    } else {
+      add('t', std::get<std::string>(part), {});
+    }
+  }
+  return packed;
+}
+
+Message Message::unpack(std::string_view packed) {
+  Message message;
+  const auto next = [&] {
+    const std::size_t end = packed.find('\0');
+    const std::string text(packed.substr(0, end));
+    packed.remove_prefix(std::min(packed.size(), text.size() + 1));
+    return text;
+  };
+  while (!packed.empty()) {
+    const char kind = packed.front();
+    packed.remove_prefix(1);
+    const std::string first = next();
+    const std::string second = next();
+    if (kind == 'o') {
+      message += OptionName{first, second};
+    } else if (kind == 'c') {
+      message += CommandLineText{first, second};
+    } else {
+      message += first;
+    }
+  }
+  return message;
+}
+
 std::vector<std::string> Message::option_keys() const {
   std::vector<std::string> keys;
   for (const auto& part : parts_) {

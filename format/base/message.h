@@ -58,6 +58,9 @@ class Message {
   /// Keys of the options named, in their order.
   std::vector<std::string> option_keys() const;
   bool empty() const { return parts_.empty(); }
+  /// As bytes for another process, which unpack() makes the message of again. Texts hold no NUL.
+  std::string packed() const;
+  static Message unpack(std::string_view packed);
   /// The same line as one that tells how what was asked for came out, and warns of nothing.
   Message as_remark() const;
   bool is_remark() const { return remark_; }

@@ -1,6 +1,6 @@
 /* push_boxes VOLUME.raw X Y Z TYPE OUT.nvdb KIND BUDGET MODE: hands a raw volume over in boxes, by all processes of the
  * job, and prints status and message of the end. MODE: all; or, what must be refused: missing, twice, outside, null,
- * differing. */
+ * differing, elsewhere, options. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -46,6 +46,8 @@ int main(int argc, char** argv) {
   char* const values = read_all(argv[1], value * (size_t)(volume.extent[0] * volume.extent[1] * volume.extent[2]));
 
   if (rank == size - 1 && strcmp(mode, "differing") == 0) volume.extent[2] -= 1;
+  if (rank == size - 1 && strcmp(mode, "elsewhere") == 0) volume.origin[0] = 100;
+  if (rank == size - 1 && strcmp(mode, "options") == 0) options.struct_size = 0;
   weir_error error;
   weir_mpi_push* push = NULL;
   weir_status status = weir_mpi_push_begin(MPI_COMM_WORLD, &volume, &options, argv[6], &push, &error);

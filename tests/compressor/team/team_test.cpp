@@ -97,6 +97,20 @@ TEST(Team, SumsConcatenatesGathersAndFollows) {
   EXPECT_EQ(followed, (std::vector<int>{7, 7, 7}));
 }
 
+TEST(Team, ErrorsNameOptionsAsEachProcessDoes) {
+  const auto lines = on_ranks<std::string>(2, [](Team& team) {
+    try {
+      team.run([&] {
+        if (team.rank() == 1) throw usage_error(compose("choose ", option("missing-policy", "keep")));
+      });
+    } catch (const Error& error) {
+      return error.message().worded(key_wording);
+    }
+    return std::string("none");
+  });
+  EXPECT_EQ(lines, std::vector<std::string>(2, "choose missing_policy keep"));
+}
+
 TEST(Team, ErrorOfTheLowestRankReachesEveryRank) {
   const auto errors = on_ranks<std::string>(4, [](Team& team) {
     return failure_of([&] {

@@ -19,5 +19,14 @@ TEST(Message, Remark_IsTheSameLine) {
   EXPECT_EQ(line.as_remark().text(), line.text());
 }
 
+TEST(Message, PackedForAnotherProcess_IsWordedThere) {
+  const Message line = compose("NaN at 1; choose ", option("nonfinite", "keep"), " or ", option("background"), ": ",
+                               CommandLineText{"weir convert a", "a"});
+  const Message there = Message::unpack(line.packed());
+  EXPECT_EQ(there.text(), line.text());
+  EXPECT_EQ(there.worded(key_wording), "NaN at 1; choose nonfinite keep or background: a");
+  EXPECT_TRUE(Message::unpack("").empty());
+}
+
 }  // namespace
 }  // namespace weir::message_test
