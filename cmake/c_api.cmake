@@ -90,5 +90,7 @@ function(weir_c_tests)
                  WEIR_CC="${CMAKE_C_COMPILER}" WEIR_CXX="${CMAKE_CXX_COMPILER}" WEIR_CMAKE="${CMAKE_COMMAND}"
                  WEIR_GENERATOR="${CMAKE_GENERATOR}" WEIR_NVCC="${CMAKE_CUDA_COMPILER}"
                  WEIR_C_LIBRARY="$<TARGET_FILE:weir_c>" ${installs})
+    set_property(SOURCE ${PROJECT_SOURCE_DIR}/tests/tools/install/fortran_test.cpp APPEND PROPERTY COMPILE_DEFINITIONS
+                 WEIR_C_LIBRARY="$<TARGET_FILE:weir_c>" ${installs})
   endif()
 endfunction()

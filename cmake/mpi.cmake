@@ -59,13 +59,16 @@ function(weir_mpi_tests)
     target_compile_options(${target} PRIVATE -pedantic -Wall -Wextra -Wconversion -Wshadow)
     set_target_properties(${target} PROPERTIES C_STANDARD 99 C_STANDARD_REQUIRED ON C_EXTENSIONS OFF)
   endforeach()
+  cmake_path(GET MPI_C_COMPILER PARENT_PATH wrappers)  # the Fortran compiler's wrapper of the same MPI, where there is one
   add_executable(weir_tests_mpi tests/bindings/mpi/mpi_test.cpp)
   add_dependencies(weir_tests weir_tests_mpi)
   add_dependencies(weir_tests_mpi weir weir-mpi weir_mpi_push_boxes weir_mpi_heat)
   target_link_libraries(weir_tests_mpi PRIVATE weir_test_support GTest::gtest_main)
   target_compile_definitions(weir_tests_mpi PRIVATE WEIR_SOURCE_DIR="${PROJECT_SOURCE_DIR}" WEIR_COMMAND="$<TARGET_FILE:weir>"
                              WEIR_MPIEXEC="${MPIEXEC_EXECUTABLE}" WEIR_MPI_COMMAND="$<TARGET_FILE:weir-mpi>"
-                             WEIR_MPI_PUSH="$<TARGET_FILE:weir_mpi_push_boxes>" WEIR_MPI_EXAMPLE="$<TARGET_FILE:weir_mpi_heat>")
+                             WEIR_MPI_PUSH="$<TARGET_FILE:weir_mpi_push_boxes>" WEIR_MPI_EXAMPLE="$<TARGET_FILE:weir_mpi_heat>"
+                             WEIR_MPI_FORTRAN="${wrappers}/mpifort" WEIR_MPI_LIBRARY="$<TARGET_FILE:weir_mpi>"
+                             WEIR_C_LIBRARY="$<TARGET_FILE:weir_c>")
   gtest_discover_tests(weir_tests_mpi DISCOVERY_TIMEOUT 120 NO_PRETTY_VALUES TEST_FILTER *-${WEIR_TESTS_LEFT_OUT}
                        PROPERTIES PROCESSORS 2)
 endfunction()

@@ -103,10 +103,10 @@ static void volumes(void) {
   REFUSE_VOLUME(WEIR_ERROR_USAGE, "reserved is 1, it must be 0", v.reserved = 1);
   REFUSE_VOLUME(WEIR_ERROR_USAGE, "memory: the spacing has 0; each must be finite and above 0", v.spacing[1] = 1);
   REFUSE_VOLUME(WEIR_ERROR_USAGE, "memory: the origin has nan; each must be finite", v.origin[2] = NAN);
-  REFUSE_VOLUME(WEIR_ERROR_INPUT, "memory: extent 70x37x0 has 0 voxels along z; each axis must be 1 to 2147483647",
+  REFUSE_VOLUME(WEIR_ERROR_USAGE, "extent 70x37x0 has 0 voxels along z; each axis must be 1 to 2147483647",
                 v.extent[2] = 0);
-  REFUSE_VOLUME(WEIR_ERROR_INPUT,
-                "memory: extent 70x37x-9223372036854775808 has -9223372036854775808 voxels along z; each axis must be "
+  REFUSE_VOLUME(WEIR_ERROR_USAGE,
+                "extent 70x37x-9223372036854775808 has -9223372036854775808 voxels along z; each axis must be "
                 "1 to 2147483647",
                 v.extent[2] = INT64_MIN);
   const int64_t stride[3] = {4, INT64_MAX, 4};

@@ -268,6 +268,12 @@ TEST_F(Mpi, PushOfMissingOrRepeatedVoxels_IsRefused) {
   refused("differing",
           "begin: 2 process 2 of 3 gives another volume, output or other options than process 0; all must give the "
           "same\n");
+  refused("elsewhere",
+          "begin: 2 process 2 of 3 gives another volume, output or other options than process 0; all must give the "
+          "same\n");
+  refused("options",
+          cat("begin: 2 weir_convert_options: struct_size is 0, and must be at least ", offsetof(weir_convert_options, preview),
+              "; set it up with weir_convert_options_init\n"));
   refused("null",
           "box: 2 data is a null pointer\n"
           "end: 2 memory: 1000 voxels are missing, those of 10:20,20:30,30:40 first\n");
@@ -284,6 +290,32 @@ TEST_F(Mpi, ExampleSavesTheSameBytesForAnyNumberOfProcesses) {
     EXPECT_FALSE(one.empty()) << name;
     EXPECT_TRUE(one == read_file(directory_ / cat("3/", name))) << name;
   }
+}
+
+TEST_F(Mpi, ExampleInFortranSavesTheBytesOfTheOneInC) {
+  const std::string compiler = WEIR_MPI_FORTRAN;
+  if (run_command({"sh", "-c", cat("'", compiler, "' --version")}).exit_code != 0) {
+    GTEST_SKIP() << "no Fortran compiler behind " << compiler;
+  }
+  const std::string examples = WEIR_SOURCE_DIR "/examples/";
+  const std::string library = WEIR_C_LIBRARY;
+  const CommandResult compiled =
+      run_command({compiler, "-std=f2008", "-Wall", "-Wextra", "-Werror", "-O1", "-ffp-contract=off", "-o",
+                   "heat_fortran", examples + "push/weir.f90", examples + "mpi/weir_mpi.f90", examples + "mpi/heat.f90",
+                   WEIR_MPI_LIBRARY, library, cat("-Wl,-rpath,", library.substr(0, library.rfind('/')))},
+                  here());
+  ASSERT_EQ(compiled.exit_code, 0) << compiled.err;
+  for (const char* name : {"c", "fortran"}) fs::create_directory(directory_ / name);
+  const CommandResult c = run_mpi(1, {WEIR_MPI_EXAMPLE, "c", "40", "20"}, directory_.path());
+  ASSERT_EQ(c.exit_code, 0) << c.err;
+  const CommandResult fortran = run_mpi(3, {directory_ / "heat_fortran", "fortran", "40", "20"}, directory_.path());
+  ASSERT_EQ(fortran.exit_code, 0) << fortran.out << fortran.err;
+  for (const char* name : {"heat_0000.nvdb", "heat_0020.nvdb"}) {
+    EXPECT_TRUE(read_file(directory_ / cat("c/", name)) == read_file(directory_ / cat("fortran/", name))) << name;
+  }
+  const CommandResult refused = run_mpi(2, {directory_ / "heat_fortran", "none", "40", "20"}, directory_.path());
+  EXPECT_NE(refused.exit_code, 0);
+  EXPECT_NE(refused.out.find("the directory none does not exist"), std::string::npos) << refused.out << refused.err;
 }
 
 TEST(MpiDocument, ShowsTheExampleAsItIs) {

@@ -200,6 +200,25 @@ class Convert(FolderTest):
             if pass_ == "survey":
                 self.assertEqual(all_, total)
 
+    def test_rounding_that_a_bound_does_not_count_is_said(self):
+        values = numpy.random.default_rng(3).integers(2**30, 2**40, (9, 9, 9))
+        for budget, name in (({"max_error": 1}, "max_error"), ({"lossless": True}, "lossless")):
+            with self.assertLogs("weir", logging.WARNING) as logs:
+                record = weir.convert(values, self.folder / "a.nvdb", overwrite=True, **budget)
+            loss = record["conversion_loss"]
+            self.assertGreater(loss["max_abs_error"], 1000)
+            self.assertEqual(
+                [line for line in logs.output if "rounded" in line],
+                [
+                    f"WARNING:weir:memory: {loss['inexact']} values were rounded to float32, by up to "
+                    f"{loss['max_abs_error']:g}, besides what {name} allows: files hold float32"
+                ],
+            )
+
+    def test_names_that_are_too_long_are_refused(self):
+        message = self.refused(weir.UsageError, weir.convert, ramp(4, 4, 4), self.folder / "a.nvdb", dataset="x" * 256)
+        self.assertEqual(message, "dataset has 256 bytes, a grid's name has at most 255")
+
     def test_notices_go_to_the_logger(self):
         with self.assertLogs("weir", logging.WARNING) as logs:
             weir.convert(ramp(9, 9, 9), self.folder / "a.nvdb")

@@ -140,6 +140,33 @@ class Remote(FolderTest):
         copy = pickle.loads(pickle.dumps(weir.open(url, cache="1MiB")))
         self.assertTrue(same(copy[5], self.here[5]))
 
+    def test_a_forked_process_has_connections_of_its_own(self):
+        _, url = self.served()
+        grid = weir.open(url)
+        children = []
+        for first in (0, 60, 120, 180):
+            child = os.fork()
+            if child == 0:
+                good = all(same(grid[z], self.here[z]) for z in range(first, first + 60, 9))
+                os._exit(0 if good else 1)
+            children.append(child)
+        self.assertEqual([os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) for child in children], [0, 0, 0, 0])
+        self.assertTrue(same(grid[200], self.here[200]))
+
+    def test_a_server_that_is_not_there(self):
+        server, url = self.served()
+        server.close()
+        message = self.refused(weir.IoError, weir.open, url)
+        self.assertIn("cannot be read: Failed to establish a new connection: ", message)
+        self.assertNotIn("<", message)
+
+    def test_convert_reads_no_url(self):
+        message = self.refused(weir.UsageError, weir.convert, "http://127.0.0.1/a.raw", self.folder / "a.nvdb")
+        self.assertEqual(
+            message,
+            "source is 'http://127.0.0.1/a.raw': weir.convert reads files of this machine; copy it here first",
+        )
+
     def test_what_needs_all_of_the_file_says_so(self):
         _, url = self.served()
         grid = weir.open(url)

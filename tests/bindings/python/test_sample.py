@@ -65,6 +65,8 @@ class Sample(FolderTest):
         self.assertEqual(grid.sample(points).dtype, numpy.float32)
         self.assertEqual(grid.sample((4.5, 4.5, 4.5)).shape, ())
         self.assertEqual(grid.sample(numpy.zeros((0, 3))).shape, (0,))
+        for wrong in (["1", "2", "3"], numpy.zeros(3, complex), [True, False, True]):
+            self.assertIn("it must be numbers", self.refused(weir.UsageError, grid.sample, wrong))
         self.assertEqual(grid.sample(points[::-1, ::2, :, ::-1]).shape, (2, 3, 7))
         self.assertEqual(grid.sample([[4, 4, 4]]), 3.5 * 10101)
 

@@ -126,6 +126,19 @@ class Interrupts(FolderTest):
         self.assertEqual(calls, ["survey"])
         self.assertEqual(self.names(), [])
 
+    def test_what_progress_raises_at_the_end_leaves_nothing_either(self):
+        class Enough(Exception):
+            pass
+
+        def stop(pass_, done, total):
+            if pass_ == "encode" and done == total:
+                raise Enough
+
+        for shape in ((16, 16, 16), (192, 192, 192)):
+            with self.assertRaises(Enough):
+                weir.convert(noise(shape, numpy.float32), self.folder / "a.nvdb", lossless=True, progress=stop)
+            self.assertEqual(self.names(), [])
+
     def test_what_progress_raises_ends_a_picture(self):
         grid = self.lossless(ramp(32, 32, 32))
 

@@ -239,6 +239,44 @@ class Convert(FolderTest):
             xarray.testing.assert_equal(again.drop_vars("time").sortby("lat", ascending=False), self.array().drop_vars("time"))
             self.assertEqual(again.time, self.array().time)
 
+    def test_coordinates_that_rise_and_fall_are_not_turned_round(self):
+        longitudes = numpy.concatenate([numpy.arange(0, 180, 90), numpy.arange(-180, 0, 90)]).astype(float)
+        array = self.array().assign_coords(lon=("lon", longitudes))
+        with self.assertLogs("weir") as logs:
+            weir.convert(array, self.folder / "a.nvdb", lossless=True)
+        (said,) = [line for line in logs.output if "lon" in line]
+        self.assertIn(
+            "qc: axis x (lon): coordinates from 0 to -90 that rise and fall, taken as indices; source.sortby('lon') puts "
+            "them in order",
+            said,
+        )
+        with weir.open(self.folder / "a.nvdb") as grid:
+            self.assertTrue(same(grid.to_numpy(), array.values[:, ::-1]))  # lat alone falls
+            numpy.testing.assert_array_equal(grid.to_xarray().lon, longitudes)
+
+    def test_dates_along_an_axis_are_kept(self):
+        days = numpy.datetime64("2000-01-01") + numpy.arange(6).astype("timedelta64[D]")
+        array = xarray.DataArray(
+            ramp(4, 5, 6), dims=("day", "lat", "lon"), coords={"day": days.astype("datetime64[ns]")}, name="rain"
+        )
+        with self.assertLogs("weir") as logs:
+            weir.convert(array, self.folder / "a.nvdb", lossless=True)
+        self.assertIn("rain: axis z (day): dates from 2000-01-01T00:00:00", logs.output[0])
+        with xarray.open_dataset(self.folder / "a.nvdb", engine="weir") as dataset:
+            numpy.testing.assert_array_equal(dataset["rain"].day, days.astype("datetime64[ns]"))
+
+    def test_coordinates_that_are_no_numbers_are_said(self):
+        array = self.array().assign_coords(lon=("lon", list("abcd")), lat=("lat", [0, 1, numpy.nan, 3, 4]))
+        with self.assertLogs("weir") as logs:
+            weir.convert(array, self.folder / "a.nvdb", lossless=True)
+        said = "\n".join(logs.output)
+        self.assertIn("axis x (lon): coordinates of type <U1, taken as indices", said)
+        self.assertIn("axis y (lat): coordinates that are missing or not finite, taken as indices", said)
+
+    def test_texts_that_are_no_unicode_are_replaced(self):
+        record = weir.convert(self.array(attrs={"units": "m\ud800"}), self.folder / "a.nvdb", lossless=True)
+        self.assertEqual(record["source"]["units"], "m?")
+
     def test_axes_are_ordered_by_what_they_are(self):
         values = ramp(4, 5, 6)
         for dims in (("x", "y", "z"), ("lon", "lat", "level"), ("x", "depth", "y")):
