@@ -50,6 +50,12 @@ void describe_details(const FieldDetails& details, Sidecar::Source& source) {
 
 }  // namespace
 
+std::string grid_name(const std::string& dataset) {
+  if (!dataset.empty() && dataset.size() <= kMaxGridNameBytes) return dataset;
+  const std::string last = dataset.substr(dataset.rfind('/') + 1);
+  return last.empty() || last.size() > kMaxGridNameBytes ? "density" : last;
+}
+
 Sidecar describe_source(const SourceInfo& info, const Survey& survey, const ConversionOptions& options) {
   Sidecar sidecar;
   sidecar.source.path = info.path;

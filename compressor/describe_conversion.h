@@ -2,7 +2,7 @@
 // and of the error between the two.
 #pragma once
 
-#include <cstdint>
+#include <string>
 
 #include "compressor/conversion_options.h"
 #include "compressor/encode/encode_attempts.h"
@@ -14,6 +14,10 @@
 #include "ingest/source/volume_source.h"
 
 namespace weir {
+
+/// The name of the grid of a volume that its file calls `dataset`: that, or where it has more than kMaxGridNameBytes
+/// its part after the last slash, or "density".
+std::string grid_name(const std::string& dataset);
 
 /// A sidecar with all that is known once the volume is surveyed, but for the source's digest.
 Sidecar describe_source(const SourceInfo& info, const Survey& survey, const ConversionOptions& options);

@@ -311,7 +311,12 @@ class SurveyedConversion {
     const GridType type = grid_type_of(file.encoding);
     head_.type = type;
     head_.breadth_first = type != GridType::fpn;
-    head_.name = info_.dataset.empty() || info_.dataset.size() > 255 ? "density" : info_.dataset;
+    head_.name = grid_name(info_.dataset);
+    if (head_.name != info_.dataset && !info_.dataset.empty() && parts_.control.notice) {
+      parts_.control.notice(cat(info_.path, ": its dataset's name has ", info_.dataset.size(),
+                                " bytes, and a grid's at most ", kMaxGridNameBytes, ": the grid is called ",
+                                head_.name));
+    }
     head_.voxel_size = info_.spacing;
     head_.origin = info_.origin;
     team_.lead([&] {
@@ -360,6 +365,7 @@ class SurveyedConversion {
     std::vector<char> record(text.begin(), text.end());
     team_.follow(record);  // times are the leading rank's
     check_source(parts_.source, team_);
+    if (parts_.control.before_commit) team_.run(parts_.control.before_commit);
     parts_.output.commit({record.begin(), record.end()});
   }
 

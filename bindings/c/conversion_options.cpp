@@ -14,12 +14,13 @@
 #include "compressor/build_commit.h"
 #include "compressor/options/conversion_request.h"
 #include "format/base/scalar_type.h"
+#include "format/nanovdb/grid_head.h"
+#include "ingest/source/extent.h"
 
 namespace weir::c {
 namespace {
 
 constexpr std::uint64_t kMaxMemory = std::uint64_t{1} << 50U;
-constexpr std::size_t kMaxNameBytes = 255;
 
 constexpr std::array kTypes{ScalarType::uint8,   ScalarType::int8,    ScalarType::uint16,  ScalarType::int16,
                             ScalarType::uint32,  ScalarType::int32,   ScalarType::uint64,  ScalarType::int64,
@@ -127,11 +128,14 @@ DenseArray read_volume(const weir_volume* given) {
   DenseArray array;
   array.type = scalar_type(volume.type);
   array.extent = index_of(volume.extent);
+  if (const std::string obstacle = extent_obstacle(array.extent, scalar_bytes(array.type)); !obstacle.empty()) {
+    throw usage(obstacle);
+  }
   if (!all_zero(volume.spacing)) array.spacing = array_of(volume.spacing);
   array.origin = array_of(volume.origin);
   if (volume.name != nullptr) array.name = volume.name;
-  if (array.name.size() > kMaxNameBytes) {
-    throw usage(cat("name has ", array.name.size(), " bytes, a grid's has at most ", kMaxNameBytes));
+  if (array.name.size() > kMaxGridNameBytes) {
+    throw usage(cat("name has ", array.name.size(), " bytes, a grid's has at most ", kMaxGridNameBytes));
   }
   if (const auto missing = missing_of(volume.missing)) array.missing = {*missing};
   if (volume.reserved != 0) throw usage(cat("reserved is ", volume.reserved, ", it must be 0"));

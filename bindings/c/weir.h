@@ -294,7 +294,8 @@ typedef struct weir_grid_info {
   uint64_t grid_offset; /* bytes before the grid */
   uint64_t grid_bytes;  /* of the grid, padding included */
   uint64_t data_bytes;  /* of the grid without padding at its end: what a copy of it needs */
-  /* What the sidecar certifies. certified is 0, and all after it, where there is none or it is another file's. */
+  /* What the sidecar certifies. certified is 0, and all after it, where there is none that
+     can be read, or it is another file's. */
   double psnr_db;         /* infinite where lossless */
   double mse;             /* mean squared error, of decoded against float32 values */
   double max_abs_error;   /* largest error of a voxel */

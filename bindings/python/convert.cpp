@@ -18,6 +18,7 @@
 #include "format/base/error.h"
 #include "format/base/process_memory.h"
 #include "format/base/text.h"
+#include "format/nanovdb/grid_head.h"
 #include "format/output/output_files.h"
 #include "gpu/packed/coder_choice.h"
 #include "ingest/series_names.h"
@@ -58,6 +59,7 @@ Sidecar convert(const ConversionOptions& options, const OpenSource& open, const 
     control.pass_started = [&](const std::string& pass, std::uint64_t bytes) { watch.start(pass, bytes); };
     control.pass_advanced = [&](std::uint64_t done) { watch.advance(done); };
     control.notice = [&](const Message& line) { watch.notice(line); };
+    control.before_commit = [&] { watch.settle(); };
     const std::unique_ptr<BlockCoder> coder =
         choose_coder(options.backend, options.encoding == Encoding::packed, options.memory, control.notice);
     control.coder = coder.get();
@@ -80,6 +82,10 @@ DenseArray dense_array(const void* data, const std::array<std::int64_t, 3>& shap
   if (options.spacing) dense.spacing = *options.spacing;
   if (options.origin) dense.origin = *options.origin;
   dense.name = options.dataset;
+  if (dense.name.size() > kMaxGridNameBytes) {
+    throw usage_error(compose(option("dataset"), " has ", dense.name.size(), " bytes, a grid's name has at most ",
+                              kMaxGridNameBytes));
+  }
   if (options.missing) dense.missing.push_back(*options.missing);
   dense.keeps_missing = options.keeps_missing;
   return dense;

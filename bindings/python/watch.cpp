@@ -60,15 +60,36 @@ void Watch::stop_if_cancelled() const {
   if (cancelled_) throw Error(ErrorKind::interrupted, "interrupted");
 }
 
+void Watch::settle() {
+  std::unique_lock lock(mutex_);
+  settling_ = true;
+  ended_.notify_one();
+  settled_.wait(lock, [this] { return !settling_; });
+  lock.unlock();
+  stop_if_cancelled();
+}
+
+void Watch::delivered() {
+  const std::lock_guard lock(mutex_);
+  settling_ = false;
+  settled_.notify_one();
+}
+
 void Watch::finish() {
   const std::lock_guard lock(mutex_);
   finished_ = true;
   ended_.notify_one();
 }
 
+bool Watch::settling() {
+  const std::lock_guard lock(mutex_);
+  return settling_;
+}
+
 bool Watch::wait(std::chrono::milliseconds at_most) {
   std::unique_lock lock(mutex_);
-  return ended_.wait_for(lock, at_most, [this] { return finished_; });
+  ended_.wait_for(lock, at_most, [this] { return finished_ || settling_; });
+  return finished_;
 }
 
 std::vector<Watch::Event> Watch::take() {
@@ -98,9 +119,11 @@ void run_watched(const py::object& progress, const std::function<void(Watch&)>& 
       ended = watch.wait(kPause);
     }
     if (raised) {
+      watch.delivered();
       if (!ended) interrupt_quietly(interrupt);
       continue;
     }
+    const bool settling = watch.settling();  // before its events are taken: all that came before are among them
     try {
       if (!ended && PyErr_CheckSignals() != 0) throw py::error_already_set();
       deliver(watch, progress);
@@ -108,6 +131,7 @@ void run_watched(const py::object& progress, const std::function<void(Watch&)>& 
       raised = std::current_exception();
       watch.cancel();
     }
+    if (settling || raised) watch.delivered();
   }
   worker.join();
   if (raised) std::rethrow_exception(raised);

@@ -34,18 +34,27 @@ class Watch {
   /// Throws Error(interrupted) where `cancel` was called.
   void stop_if_cancelled() const;
 
+  /// Waits until all that was told before has been handed on; throws as stop_if_cancelled. For the work's thread.
+  void settle();
+
   void cancel() { cancelled_ = true; }
   void finish();
-  /// Waits for the end of the work, that long at most; whether it has ended.
+  /// Waits for the end of the work, or until it settles, that long at most; whether it has ended.
   bool wait(std::chrono::milliseconds at_most);
+  /// Whether the work's thread waits in settle().
+  bool settling();
+  /// Ends its wait.
+  void delivered();
   /// What was told since the last call: of each pass the last state only.
   std::vector<Event> take();
 
  private:
   std::mutex mutex_;
   std::condition_variable ended_;
+  std::condition_variable settled_;
   std::atomic<bool> cancelled_{false};
   bool finished_ = false;
+  bool settling_ = false;
   bool changed_ = false;  // pass_ since the last take()
   Event pass_;
   std::vector<Event> earlier_;

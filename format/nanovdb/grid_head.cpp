@@ -187,7 +187,7 @@ std::uint32_t head_checksum(std::span<const std::byte> grid_head) {
 
 std::vector<std::byte> encode_head(const GridHead& head, const TreeLayout& layout) {
   if (head.name.empty() || head.name.size() >= nvdb::grid::kNameBytes) {
-    throw Error(ErrorKind::usage, cat("grid name of ", head.name.size(), " bytes; use 1 to 255"));
+    throw Error(ErrorKind::usage, cat("grid name of ", head.name.size(), " bytes; use 1 to ", kMaxGridNameBytes));
   }
   std::vector<std::byte> file(layout.uppers);
   store_grid(Image(file).subspan(layout.grid), head, layout);

@@ -23,9 +23,12 @@ struct RootTile {
   float value = 0;          ///< value tiles only
 };
 
+/// Of a grid's name in a NanoVDB file.
+inline constexpr std::size_t kMaxGridNameBytes = 255;
+
 struct GridHead {
   GridType type = GridType::float32;
-  std::string name;                           ///< 1 to 255 bytes
+  std::string name;                           ///< 1 to kMaxGridNameBytes bytes
   std::array<double, 3> voxel_size{1, 1, 1};  ///< > 0
   std::array<double, 3> origin{0, 0, 0};      ///< world position of index (0, 0, 0)
   float background = 0;

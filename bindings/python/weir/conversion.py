@@ -13,7 +13,7 @@ from . import _core
 from .device import DeviceArray, array_of, is_array_elsewhere
 from .errors import UsageError
 from .labelled import is_data_array, take_apart
-from .options import box_text, given_options, path_bytes, text_of
+from .options import box_text, given_options, is_url, path_bytes, text_of
 
 if TYPE_CHECKING:
     import xarray
@@ -103,9 +103,10 @@ def convert(
     size
         The file has exactly so many bytes.
     psnr, max_error
-        The smallest file of at least so many dB, or in which every voxel is within that of its value.
+        The smallest file of at least so many dB, or in which every voxel is within that of its value as float32.
     lossless
-        The smallest file that preserves every bit of every valid voxel.
+        The smallest file that preserves every bit of every valid voxel as float32. Values of other types that float32
+        does not hold are rounded first: the record's conversion_loss counts them, and a warning says so.
     at_most
         With rate or size: a shorter file, not padding, where the volume needs less.
 
@@ -217,6 +218,8 @@ def convert(
         overwrite=overwrite,
     )
     target = b"" if output is None else path_bytes(output)
+    if is_url(source):
+        raise UsageError(f"source is {source!r}: weir.convert reads files of this machine; copy it here first")
     if isinstance(source, (str, os.PathLike)):
         texts = _core.convert_files(path_bytes(source), target, options, several, progress)
     elif isinstance(source, numpy.ndarray) or is_array_elsewhere(source):

@@ -14,7 +14,7 @@ from . import _core
 from .conversion import Numbers, Path, Progress
 from .errors import UsageError
 from .indexing import select
-from .options import LONGEST_BOX, described, given_options, path_bytes
+from .options import LONGEST_BOX, described, given_options, is_url, path_bytes
 
 if TYPE_CHECKING:
     import xarray
@@ -254,7 +254,10 @@ class Grid:
         if filter not in ("trilinear", "nearest"):
             raise UsageError(f"filter is {filter!r}, it must be 'trilinear' or 'nearest'")
         try:
-            positions = numpy.asarray(points, dtype=numpy.float32, order="C")
+            given = numpy.asarray(points)
+            if given.dtype.kind not in "iuf":
+                raise TypeError
+            positions = numpy.asarray(given, dtype=numpy.float32, order="C")
         except (TypeError, ValueError):
             raise UsageError(f"points is {described(points)}, it must be numbers, (x, y, z) along the last axis") from None
         if positions.ndim == 0 or positions.shape[-1] != 3:
@@ -340,7 +343,7 @@ def open(path: Path, *, cache: Union[int, str] = "256MiB", storage_options: Opti
     Raises InputError where it is no valid one; where it is missing or may not be read, that is a FileNotFoundError or
     PermissionError too.
     """
-    from .remote import RemoteGrid, is_url
+    from .remote import RemoteGrid
 
     if is_url(path):
         return RemoteGrid(str(path), cache=cache, storage_options=storage_options)

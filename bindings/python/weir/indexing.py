@@ -69,7 +69,7 @@ def _with_all_axes(parts: tuple[Any, ...]) -> list[Any]:
 def _position(part: Any, axis: int, shape: tuple[int, int, int]) -> int:
     """A whole number as a place along `axis`, counted from 0."""
     try:
-        if isinstance(part, (bool, numpy.bool_, numpy.ndarray)):
+        if isinstance(part, (bool, numpy.bool_)) or (isinstance(part, numpy.ndarray) and part.ndim > 0):
             raise TypeError
         place = operator.index(part)
     except TypeError:

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 #: Regular coordinates may be off their places by this part of the spacing, and by a rounding of float32.
 _TOLERANCE = 1e-3
+_EPOCH = "seconds since 1970-01-01 00:00:00"
 _KNOWN = {"x": "x", "lon": "x", "longitude": "x", "y": "y", "lat": "y", "latitude": "y", "z": "z"}
 
 
@@ -52,14 +53,19 @@ def take_apart(array: xarray.DataArray) -> Labelled:
         origin.append(first)
         if falls:
             values = numpy.flip(values, place)
-    attributes = {key: str(array.attrs[key]) for key in ("units", "long_name") if array.attrs.get(key)}
+    attributes = {key: _text(array.attrs[key]) for key in ("units", "long_name") if array.attrs.get(key)}
     meaning: dict[str, Any] = {"axes": axes, **attributes}
     time = _time(array)
     if time is not None:
         meaning["time"] = time
     x, y, z = spacing
     a, b, c = origin
-    return Labelled(values, (x, y, z), (a, b, c), None if array.name is None else str(array.name), meaning)
+    return Labelled(values, (x, y, z), (a, b, c), None if array.name is None else _text(array.name), meaning)
+
+
+def _text(value: Any) -> str:
+    """As UTF-8 has it."""
+    return str(value).encode("utf-8", "replace").decode()
 
 
 def _z_y_x(array: xarray.DataArray) -> tuple[Any, ...]:
@@ -79,18 +85,34 @@ def _z_y_x(array: xarray.DataArray) -> tuple[Any, ...]:
 def _axis(array: xarray.DataArray, place: int) -> tuple[dict[str, Any], float, float, bool]:
     """What is said of it, its spacing, its first coordinate, and whether the coordinates fall."""
     name = array.dims[place]
-    axis: dict[str, Any] = {"name": str(name)}
-    if name not in array.coords or array.coords[name].dtype.kind not in "iuf":
+    axis: dict[str, Any] = {"name": _text(name)}
+    if name not in array.coords:
         return axis, 1.0, 0.0, False
     coordinate = array.coords[name]
     if coordinate.attrs.get("units"):
-        axis["units"] = str(coordinate.attrs["units"])
+        axis["units"] = _text(coordinate.attrs["units"])
+    if coordinate.dtype.kind == "M":  # a distance is no time
+        axis["units"] = _EPOCH
+        axis["coordinates"] = _seconds(coordinate).tolist()
+        axis["note"] = f"dates from {coordinate.values[0]} to {coordinate.values[-1]}, taken as indices"
+        return axis, 1.0, 0.0, False
+    if coordinate.dtype.kind not in "iuf":
+        axis["note"] = f"coordinates of type {coordinate.dtype}, taken as indices"
+        return axis, 1.0, 0.0, False
     positions = coordinate.values.astype(float)
     if not numpy.isfinite(positions).all():
+        axis["note"] = "coordinates that are missing or not finite, taken as indices"
         return axis, 1.0, 0.0, False
     if len(positions) == 1:
         return axis, 1.0, float(positions[0]), False
-    falls = bool(positions[0] > positions[-1])
+    falls = bool((numpy.diff(positions) < 0).all())
+    if not falls and not (numpy.diff(positions) > 0).all():
+        axis["coordinates"] = positions.tolist()
+        axis["note"] = (
+            f"coordinates from {positions[0]:.9g} to {positions[-1]:.9g} that rise and fall, taken as indices; "
+            f"source.sortby({str(name)!r}) puts them in order"
+        )
+        return axis, 1.0, 0.0, False
     if falls:
         positions = positions[::-1]
     first, last = float(positions[0]), float(positions[-1])
@@ -105,14 +127,18 @@ def _axis(array: xarray.DataArray, place: int) -> tuple[dict[str, Any], float, f
     return axis, 1.0, 0.0, falls
 
 
+def _seconds(coordinate: xarray.DataArray) -> Any:
+    """Of dates, since _EPOCH."""
+    return (coordinate.values - numpy.datetime64("1970-01-01")) / numpy.timedelta64(1, "s")
+
+
 def _time(array: xarray.DataArray) -> Optional[tuple[float, str]]:
     """The scalar coordinate `time`, and what it counts."""
     if "time" not in array.coords or array.coords["time"].ndim != 0:
         return None
     coordinate = array.coords["time"]
     if coordinate.dtype.kind == "M":
-        since = coordinate.values - numpy.datetime64("1970-01-01")
-        return float(since / numpy.timedelta64(1, "s")), "seconds since 1970-01-01 00:00:00"
+        return float(_seconds(coordinate)), _EPOCH
     if coordinate.dtype.kind == "m":
         return float(coordinate.values / numpy.timedelta64(1, "s")), "s"
     if coordinate.dtype.kind in "iuf":

@@ -37,6 +37,11 @@ def path_bytes(path: Any) -> bytes:
     return found
 
 
+def is_url(path: Any) -> bool:
+    """Whether weir.open takes it for a URL."""
+    return isinstance(path, str) and "://" in path
+
+
 def described(value: Any, longest: int = 40) -> str:
     """In a few words: of an array its type and shape, of anything long its type."""
     if isinstance(value, numpy.ndarray):

@@ -12,11 +12,6 @@ from .options import text_of
 from .remote_file import FsspecFile, HttpFile, RemoteFile
 
 
-def is_url(path: Any) -> bool:
-    """Whether weir.open takes it for a URL."""
-    return isinstance(path, str) and "://" in path
-
-
 def open_remote_file(url: str, storage_options: Optional[dict[str, Any]]) -> RemoteFile:
     """What reads ranges of the file at `url`."""
     if urlsplit(url).scheme in ("http", "https") and not storage_options:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import re
 import threading
+import weakref
 from typing import TYPE_CHECKING, Any, Callable, Iterator, Optional, Sequence
 
 from .errors import InputError, InputNotFoundError, InputPermissionError, IoError, UsageError
@@ -36,6 +38,16 @@ class RemoteFile:
         self.bytes_read = 0
         self._lock = threading.Lock()
         self._reads: list[_Read] = []  # those under way
+        _files.add(self)
+
+    def begin_again(self) -> None:
+        """In a process that was forked: connections, locks and threads are those of the other one."""
+        self._lock = threading.Lock()
+        self._reads = []
+        self._connect()
+
+    def _connect(self) -> None:
+        """Makes what requests go through, anew."""
 
     def read(self, ranges: Sequence[Range]) -> list[bytes]:
         """The bytes of each range, all there or an exception. In pieces, several at once."""
@@ -78,6 +90,18 @@ class RemoteFile:
             self.requests += 1
             self.bytes_read += len(data)
         return data
+
+
+#: All there are, which a fork copies.
+_files: weakref.WeakSet[RemoteFile] = weakref.WeakSet()
+
+
+def _begin_again() -> None:
+    for file in list(_files):
+        file.begin_again()
+
+
+os.register_at_fork(after_in_child=_begin_again)
 
 
 def _start(work: Callable[[], None], threads: int) -> int:
@@ -152,14 +176,16 @@ class HttpFile(RemoteFile):
             raise UsageError(f"{url}: reading it wants urllib3; install python3-urllib3") from None
         self._url = url
         self._failures = urllib3.exceptions.HTTPError
+        self._connect()
+        self._version: Optional[str] = None  # by which the server tells that the file has changed
+
+    def _connect(self) -> None:
         self._given_up = threading.Event()
         self._pool = _connections(self._given_up)
-        self._version: Optional[str] = None  # by which the server tells that the file has changed
 
     def _give_up(self) -> None:
         self._given_up.set()
-        self._given_up = threading.Event()
-        self._pool = _connections(self._given_up)
+        self._connect()
 
     def _read_piece(self, piece: Range) -> bytes:
         for wait in _WAITS:
@@ -217,7 +243,7 @@ class HttpFile(RemoteFile):
         try:
             response = self._pool.request("GET", url, headers=headers, preload_content=False)
         except self._failures as error:
-            raise IoError(f"{url}: cannot be read: {error}") from error
+            raise IoError(f"{url}: cannot be read: {_reason(error)}") from error
         try:
             yield response
         finally:
@@ -245,8 +271,9 @@ class FsspecFile(RemoteFile):
         except ImportError:
             raise UsageError(f"{url}: reading it wants fsspec; install python3-fsspec") from None
         self._url = url
+        self._options = options
         try:
-            self._system, self._path = fsspec.core.url_to_fs(url, **options)
+            self._connect()
         except (ImportError, ValueError) as error:
             raise UsageError(f"{url}: cannot be opened: {error}") from error
         self._version: Optional[dict[str, Any]] = None  # as of the first bytes that were read
@@ -259,6 +286,11 @@ class FsspecFile(RemoteFile):
         if self._version is not None and version is not None and version != self._version:
             raise InputError(f"{self._url}: changed while it was read; open it again")
         return found
+
+    def _connect(self) -> None:
+        import fsspec.core
+
+        self._system, self._path = fsspec.core.url_to_fs(self._url, **self._options)
 
     def _found_version(self, _: Range) -> Optional[dict[str, Any]]:
         """What the file system says of the file now; None where it says nothing."""
@@ -312,6 +344,12 @@ def _connections(given_up: threading.Event) -> urllib3.PoolManager:
 
     retries = Retries(total=len(_WAITS), backoff_factor=0.2, status_forcelist=(429, 500, 502, 503, 504), raise_on_status=False)
     return urllib3.PoolManager(maxsize=_AT_ONCE, block=True, retries=retries, timeout=urllib3.Timeout(connect=10, read=30))
+
+
+def _reason(error: Exception) -> str:
+    """What went wrong, without urllib3's own words for its objects."""
+    text = str(getattr(error, "reason", None) or error)
+    return re.sub(r"^<[^>]*>: ", "", text)
 
 
 def _pieces(offset: int, count: int) -> list[Range]:

@@ -84,7 +84,9 @@ def data_array(grid: Grid, level: int = 0, decode_times: bool = True) -> xarray.
     variable = xarray.Variable(names, values, _attributes(sidecar), {"preferred_chunks": chunks})
     coordinates = {name: _coordinate(grid, source, level, axis, name) for axis, name in enumerate(names)}
     if "time" in source and "time" not in coordinates:
-        coordinates["time"] = _time(source["time"], decode_times)
+        coordinates["time"] = _time(source["time"])
+    if decode_times:
+        coordinates = {name: _as_dates(name, variable) for name, variable in coordinates.items()}
     name = _variable_name(grid.name, coordinates)
     array = xarray.Dataset({name: variable}, coordinates)[name]  # DataArray(variable) would read all values
     return array.rename(None) if name == _UNNAMED else array
@@ -159,13 +161,15 @@ def _coordinate(grid: Grid, source: dict[str, Any], level: int, axis: int, name:
     return xarray.Variable((name,), positions, {"units": units} if units else {})
 
 
-def _time(time: dict[str, Any], decode: bool) -> xarray.Variable:
-    """A date where the units say since when, and the calendar is one that xarray knows here; else the number."""
-    attributes = {key: time[key] for key in ("units", "calendar") if time.get(key)}
-    variable = xarray.Variable((), time["value"], attributes)
-    if not decode or " since " not in attributes.get("units", ""):
+def _time(time: dict[str, Any]) -> xarray.Variable:
+    return xarray.Variable((), time["value"], {key: time[key] for key in ("units", "calendar") if time.get(key)})
+
+
+def _as_dates(name: str, variable: xarray.Variable) -> xarray.Variable:
+    """Dates where the units say since when, and the calendar is one that xarray knows here; else the numbers."""
+    if " since " not in variable.attrs.get("units", ""):
         return variable
     try:
-        return xarray.decode_cf(xarray.Dataset(coords={"time": variable}))["time"].variable
+        return xarray.decode_cf(xarray.Dataset(coords={name: variable}))[name].variable
     except (ImportError, ValueError):  # cftime is missing, or the units are of no calendar
         return variable
