@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <optional>
 
 #include "format/base/toml_reader.h"
@@ -17,6 +18,7 @@ namespace {
 constexpr std::array kModes{RenderMode::path, RenderMode::dvr, RenderMode::iso, RenderMode::mip};
 constexpr Bounds kUnit{0, 1};
 constexpr Bounds kRadiance{0, 1e6};
+constexpr Bounds kFloats{-std::numeric_limits<float>::max(), std::numeric_limits<float>::max()};
 constexpr Bounds kCoordinate{-1e15, 1e15};
 
 const toml::table& as_table(const TomlReader& reader, const toml::node& node, std::string_view key) {
@@ -86,7 +88,7 @@ void read_region(TomlReader& reader, SceneVolume& volume) {
 
 void read_volume(TomlReader reader, SceneVolume& volume) {
   reader.read("colormap", volume.colormap);
-  if (reader.read("range", volume.range, {-3.4e38, 3.4e38}) && (*volume.range)[0] > (*volume.range)[1]) {
+  if (reader.read("range", volume.range, kFloats) && (*volume.range)[0] > (*volume.range)[1]) {
     reader.fail(*reader.find("range"), "range must not fall");
   }
   read_points<2>(reader, "opacity", [&](const std::array<double, 2>& p) { volume.opacity.push_back({p[0], p[1]}); });
@@ -98,7 +100,7 @@ void read_volume(TomlReader reader, SceneVolume& volume) {
   reader.read("anisotropy", volume.anisotropy, {-0.99, 0.99});
   reader.read("emission", volume.emission, kRadiance);
   reader.read("shading", volume.shading, kUnit);
-  reader.read("iso", volume.iso, {-3.4e38, 3.4e38});
+  reader.read("iso", volume.iso, kFloats);
   reader.read("max_bounces", volume.max_bounces, {0, 1 << 20});
   read_region(reader, volume);
   reader.finish();

@@ -49,12 +49,17 @@ WEIR_HOST_DEVICE constexpr Float3 cross(const Float3& a, const Float3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 WEIR_HOST_DEVICE inline float length(const Float3& a) { return std::sqrt(dot(a, a)); }
+WEIR_HOST_DEVICE constexpr float max_component(const Float3& a) { return greater(a.x, greater(a.y, a.z)); }
 /// `a` scaled to length 1; `fallback` where a is zero or not finite.
 WEIR_HOST_DEVICE inline Float3 normalised(const Float3& a, const Float3& fallback) {
   const float l = length(a);
-  return l > 0.0F && is_finite(l) ? a * (1.0F / l) : fallback;
+  if (l > 1e-15F && l < 1e15F) return a * (1.0F / l);
+  // Squares of such values leave the range of floats.
+  const float largest = max_component({std::abs(a.x), std::abs(a.y), std::abs(a.z)});
+  const Float3 scaled = a / Float3{largest, largest, largest};
+  const float s = length(scaled);
+  return s > 0.0F && is_finite(s) ? scaled * (1.0F / s) : fallback;
 }
-WEIR_HOST_DEVICE constexpr float max_component(const Float3& a) { return greater(a.x, greater(a.y, a.z)); }
 WEIR_HOST_DEVICE inline Float3 mix(const Float3& a, const Float3& b, float t) { return a * (1.0F - t) + b * t; }
 
 /// Two unit vectors that complete unit `n` to a right-handed orthonormal frame.

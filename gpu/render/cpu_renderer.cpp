@@ -45,13 +45,14 @@ Image render_cpu(std::span<const RenderTask<Volume>> tasks, const CpuRenderOptio
     const RenderTask<Volume>& task = tasks.size() == 1 ? tasks.front() : tasks[thread];
     for (std::int32_t y = y0; y < y1; ++y) {
       for (std::int32_t x = x0; x < x1; ++x) {
+        if (cancelled()) return;  // a pixel of a dense volume may take milliseconds
         Float3& sum = image.pixels[image.index(x, y)];
         for (std::uint32_t s = first; s < last; ++s) sum += render_sample(task, x, y, s);
       }
+      done += static_cast<std::uint64_t>(x1 - x0) * (last - first);
+      if (!options.progress) continue;
+      if (const std::unique_lock lock(reporting, std::try_to_lock); lock) options.progress(done.load());
     }
-    done += static_cast<std::uint64_t>(x1 - x0) * static_cast<std::uint64_t>(y1 - y0) * (last - first);
-    if (!options.progress) return;
-    if (const std::unique_lock lock(reporting, std::try_to_lock); lock) options.progress(done.load());
   };
 
   // More threads than cores are granted too: who asks for them wants to see them.
@@ -68,7 +69,6 @@ Image render_cpu(std::span<const RenderTask<Volume>> tasks, const CpuRenderOptio
       oneapi::tbb::parallel_for(tiles, [&](const auto& range) {
         for (std::int32_t ty = range.rows().begin(); ty < range.rows().end(); ++ty) {
           for (std::int32_t tx = range.cols().begin(); tx < range.cols().end(); ++tx) {
-            if (cancelled()) return;
             render_tile(tx * kTile, std::min((tx + 1) * kTile, frame.width), ty * kTile,
                         std::min((ty + 1) * kTile, frame.height), first, last);
           }

@@ -50,11 +50,18 @@ MinMax value_range(const NvdbGrid& grid, const MacrocellGrid& cells) {
   return range.min <= range.max ? range : MinMax{0, 1};
 }
 
+// In double: scenes may have directions of any length.
+Float3 unit_vector(const Double3& v) {
+  const double largest = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
+  if (!(largest > 0)) return {0, 0, 1};
+  return normalised(narrow(Double3{v[0] / largest, v[1] / largest, v[2] / largest}), {0, 0, 1});
+}
+
 Lighting make_lighting(const Scene& scene, const ModeDefaults& defaults, const Environment* environment) {
   Lighting light;
   if (environment != nullptr) light.environment = environment->view();
   const SceneLighting& s = scene.lighting;
-  light.up = normalised(narrow(scene.camera.up), {0, 0, 1});
+  light.up = unit_vector(scene.camera.up);
   light.zenith = narrow(s.zenith.value_or(Double3{0.6, 0.68, 0.8}));
   light.horizon = narrow(s.horizon.value_or(Double3{0.6, 0.6, 0.6}));
   light.ground = narrow(s.ground.value_or(Double3{0.22, 0.2, 0.18}));
@@ -68,18 +75,9 @@ Lighting make_lighting(const Scene& scene, const ModeDefaults& defaults, const E
   if (environment != nullptr) key.clear();  // it has its own sun
   for (const SceneLight& l : s.lights.value_or(key)) {
     if (light.light_count == kMaxLights) break;
-    light.lights[light.light_count++] = {normalised(narrow(l.direction), {0, 0, 1}), narrow(l.irradiance)};
+    light.lights[light.light_count++] = {unit_vector(l.direction), narrow(l.irradiance)};
   }
   return light;
-}
-
-// Between the background and the value farthest from it: a surface of the background's noise shows nothing.
-float default_iso(const TransferFunction& transfer, float background) {
-  const double low = transfer.low();
-  const double high = transfer.high();
-  const double from = is_finite(background) ? std::clamp<double>(background, low, high) : low;
-  const double farthest = high - from >= from - low ? high : low;
-  return static_cast<float>(from + 0.35 * (farthest - from));
 }
 
 }  // namespace
@@ -105,6 +103,22 @@ TransferFunction picture_transfer(const VolumeInfo& volume, const Scene& scene, 
                                 defaults_of(scene.mode).colormap);
 }
 
+// Between the background and the value farthest from it: a surface of the background's noise shows nothing.
+float picture_iso(const SceneVolume& volume, const TransferFunction& transfer, float background) {
+  if (volume.iso) return static_cast<float>(*volume.iso);
+  const double low = transfer.low();
+  const double high = transfer.high();
+  const double from = is_finite(background) ? std::clamp<double>(background, low, high) : low;
+  const double farthest = high - from >= from - low ? high : low;
+  return static_cast<float>(from + 0.35 * (farthest - from));
+}
+
+float picture_density(const Scene& scene, const GridFrame& frame) {
+  const Double3 size = frame.size();
+  return static_cast<float>(scene.volume.density.value_or(defaults_of(scene.mode).density) /
+                            *std::max_element(size.begin(), size.end()));
+}
+
 RenderSetup::RenderSetup(const VolumeInfo& volume, const MacrocellGrid& cells, const Scene& scene,
                          const RenderOptions& options)
     : domain_(volume.frame.domain),
@@ -126,13 +140,12 @@ RenderSetup::RenderSetup(const VolumeInfo& volume, const MacrocellGrid& cells, c
   medium_.shown = {local(seen.lo), local(seen.hi)};
   medium_.cell_values = cells_.bounds().data();
   medium_.stretch = narrow(volume.frame.stretch());
-  medium_.density = static_cast<float>(scene.volume.density.value_or(defaults.density) / longest);
+  medium_.density = picture_density(scene, volume.frame);
   medium_.albedo = static_cast<float>(scene.volume.albedo);
   medium_.emission = static_cast<float>(scene.volume.emission);
   medium_.g = static_cast<float>(scene.volume.anisotropy);
 
-  frame_.iso = scene.volume.iso ? static_cast<float>(*scene.volume.iso)
-                                : default_iso(transfer_, options.background.value_or(volume.background));
+  frame_.iso = picture_iso(scene.volume, transfer_, options.background.value_or(volume.background));
   frame_.iso_color = rgb(transfer_.at(frame_.iso));
   frame_.lighting = make_lighting(scene, defaults, environment_.get());
   frame_.camera =

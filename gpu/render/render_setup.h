@@ -68,6 +68,13 @@ bool levels_are_of_use(int first, float coarsest);
 /// The colours and opacities that a picture of the scene is made with. Throws Error(usage) for an unknown colormap.
 TransferFunction picture_transfer(const VolumeInfo& volume, const Scene& scene, const RenderOptions& options);
 
+/// The value of the surface that a picture shows: the scene's, or one between `background` and the value of `transfer`
+/// that is farthest from it.
+float picture_iso(const SceneVolume& volume, const TransferFunction& transfer, float background);
+
+/// Optical depth of one voxel at opacity 1, along the frame's longest edge: the scene's, or that of its mode.
+float picture_density(const Scene& scene, const GridFrame& frame);
+
 class RenderSetup {
  public:
   /// `cells` must outlive the object. Throws Error(usage) for an unknown colormap, an impossible camera or a

@@ -22,6 +22,7 @@
 #include "tools/options/picture_options.h"
 #include "tools/options/table_options.h"
 #include "tools/report/progress.h"
+#include "tools/report/standard_output.h"
 #include "tools/view/source_preview.h"
 #include "tools/view/view_server.h"
 
@@ -178,7 +179,7 @@ void view(const ViewArguments& arguments) {
   address.port = server.port();
   const std::string url = "http://" + address.text() + "/";
   std::printf("%s\n", url.c_str());
-  std::fflush(stdout);
+  finish_stdout();  // nobody finds a page whose address could not be told
   nlohmann::ordered_json told{{"address", address.text()}};
   if (!token.empty()) told["token"] = token;
   announce(arguments.progress, told.dump());

@@ -8,8 +8,8 @@ namespace weir {
 namespace {
 
 constexpr double kSmallShare = 0.01;
-
-bool is_large(const PowerSpectrum::Shell& shell) { return shell.error > kSmallShare * shell.source; }
+// Of the largest power in a shell: below it there is the rounding of float32, and no signal to be lost.
+constexpr double kPowerRounding = 1e-12;
 
 std::string blocks_text(const PowerSpectrum& spectrum) {
   std::string text = cat(spectrum.blocks, spectrum.blocks == 1 ? " block" : " blocks", " of ", spectrum.block.x, " x ",
@@ -48,7 +48,11 @@ std::string spectrum_text(const PowerSpectrum& spectrum) {
   const auto& shells = spectrum.shells;
   const std::string blocks = blocks_text(spectrum);
   if (shells.empty()) return cat("spectrum   not defined: ", blocks, '\n');
-  const auto large = std::find_if(shells.begin(), shells.end(), is_large);
+  const auto by_power = [](const auto& a, const auto& b) { return a.source < b.source; };
+  const double rounding = kPowerRounding * std::max_element(shells.begin(), shells.end(), by_power)->source;
+  const auto large = std::find_if(shells.begin(), shells.end(), [&](const PowerSpectrum::Shell& shell) {
+    return shell.error > kSmallShare * shell.source && (shell.source > rounding || shell.error > rounding);
+  });
   if (large == shells.begin()) {
     return cat("spectrum   the error has more than 1 % of the source's power from the longest wavelength on, ",
                short_number(1 / large->wave_number), " world units; ", blocks, '\n');

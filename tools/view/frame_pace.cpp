@@ -28,8 +28,9 @@ FrameSize FramePace::next(std::int32_t width, std::int32_t height, int layers, i
     size.samples = static_cast<std::uint32_t>(std::clamp(affordable / full, 1.0, static_cast<double>(kMostSamples)));
     return size;
   }
-  const double stepped = std::exp2(std::floor(std::log2(share) * kStepsPerHalf) / kStepsPerHalf);
-  return scaled(width, height, std::max(stepped, kSmallest));
+  const auto stepped = [](double of) { return std::exp2(std::floor(std::log2(of) * kStepsPerHalf) / kStepsPerHalf); };
+  const double bearable = stepped(share * std::sqrt(kLongest_s / kFrame_s));
+  return scaled(width, height, std::max({stepped(share), std::min(kSmallest, bearable), kLeast}));
 }
 
 void FramePace::add(std::uint64_t samples, double seconds) {

@@ -18,7 +18,9 @@ struct FrameSize {
 class FramePace {
  public:
   static constexpr double kFrame_s = 0.05;          ///< between two pictures: 20 a second
-  static constexpr double kSmallest = 1.0 / 10;     ///< of the full width, at least
+  static constexpr double kSmallest = 1.0 / 10;     ///< of the full width, at least, where that does not take
+  static constexpr double kLongest_s = 0.5;         ///< so long; else
+  static constexpr double kLeast = 1.0 / 100;       ///< of it
   static constexpr std::uint32_t kMostSamples = 4;  ///< of a pixel, while the view moves
 
   /// The size to draw now, of a full picture of `width` x `height` pixels with `layers` of them above each other, where

@@ -8,6 +8,7 @@
 
 #include "format/base/error.h"
 #include "format/base/seconds_since.h"
+#include "format/base/text.h"
 #include "gpu/image/image_output.h"
 #include "tools/view/jpeg_picture.h"
 
@@ -20,6 +21,9 @@ constexpr int kSmallQuality = 90;   // of a still picture that is not whole yet
 constexpr int kMostGivenUp = 4;
 constexpr std::chrono::milliseconds kStillMoving{500};
 constexpr std::chrono::milliseconds kProgress{200};
+// A moving picture that takes longer is given up, and drawn again, smaller; that at the least size fails.
+constexpr double kLongestMoving_s = 2 * FramePace::kLongest_s;
+constexpr double kLongestSmall_s = 10;
 
 }  // namespace
 
@@ -129,11 +133,14 @@ void RenderLoop::run() {
       cancel_ = false;
     }
     bool done = false;
+    late_.reset();
     try {
       draw(*turn);
       done = true;
     } catch (const Error& error) {
-      if (error.kind() != ErrorKind::interrupted) {
+      if (error.kind() == ErrorKind::interrupted) {
+        if (late_) draw_smaller(*turn, *late_);
+      } else {
         done = true;
         if (turn->refinement) *turn->refinement = Refinement();  // nothing better would come of another pass
         events_.failed(turn->viewer, turn->request->id, error.what());
@@ -156,6 +163,19 @@ void RenderLoop::end_turn(const Turn& turn, bool done) {
   found->second.given_up = done ? 0 : found->second.given_up + 1;
 }
 
+void RenderLoop::draw_smaller(const Turn& turn, const Late& late) {
+  if (turn.least()) {
+    return events_.failed(turn.viewer, turn.request->id,
+                          cat("a picture of ", turn.size.width, " x ", turn.size.height, " pixels takes more than ",
+                              kLongestSmall_s, " s; choose a lower density, or another mode"));
+  }
+  const std::lock_guard lock(mutex_);
+  const auto found = viewers_.find(turn.viewer);
+  if (found == viewers_.end()) return;
+  found->second.pace.add(std::max<std::uint64_t>(late.samples, 1), late.seconds);
+  if (found->second.request == turn.request) found->second.fresh = true;
+}
+
 std::string RenderLoop::file_of(const ViewRequest& view, int layer) const {
   if (layer == 0) return series_.steps.path(view.step);
   return series_.against.at(series_.against.size() == 1 ? 0 : view.step);
@@ -171,7 +191,7 @@ std::vector<Image> RenderLoop::render(const Turn& turn, const FrameSize& size, s
   SampleOptions sampling;
   sampling.samples = size.samples;
   sampling.draft = turn.moving;
-  if (!turn.moving) sampling.cancel = &cancel_;
+  sampling.cancel = &cancel_;
   const int layers = view.against ? 2 : 1;
   const double all = static_cast<double>(size.width) * size.height * size.samples * layers;
   std::vector<Image> pictures;
@@ -183,7 +203,16 @@ std::vector<Image> RenderLoop::render(const Turn& turn, const FrameSize& size, s
       events_.progress(turn.viewer, view.id, "load", 0);
     }
     const std::shared_ptr<LoadedVolume> volume = shelf_.get(file);
-    if (!turn.moving) {
+    if (turn.moving) {
+      const auto begun = Clock::now();
+      const double longest_s = turn.least() ? kLongestSmall_s : kLongestMoving_s;
+      sampling.progress = [&, begun, longest_s, layer](std::uint64_t done) {
+        const double spent_s = seconds_since(begun);
+        if (spent_s < longest_s || cancel_) return;
+        late_ = Late{static_cast<std::uint64_t>(all / layers * layer) + done, spent_s};
+        cancel_ = true;
+      };
+    } else {
       sampling.progress = [&, layer](std::uint64_t done) {
         if (Clock::now() - told < kProgress) return;
         told = Clock::now();

@@ -82,6 +82,14 @@ class RenderLoop {
     bool moving = false;
     FrameSize size;
     std::shared_ptr<Refinement> refinement;  // null where it moves
+    // Whether it moves and cannot be drawn smaller.
+    bool least() const { return moving && size == scaled(request->width, request->height, FramePace::kLeast); }
+  };
+
+  // A moving picture that was given up.
+  struct Late {
+    std::uint64_t samples = 0;  // that were done
+    double seconds = 0;         // that they took
   };
 
   void run();
@@ -90,6 +98,7 @@ class RenderLoop {
   std::vector<Image> render(const Turn& turn, const FrameSize& size, std::uint64_t seed, ToneMapping& tone);
   void deliver(const Turn& turn, FrameHeader header, const Image& picture, const ToneMapping& tone,
                Clock::time_point started, std::uint64_t samples);
+  void draw_smaller(const Turn& turn, const Late& late);
   void end_turn(const Turn& turn, bool done);
   std::string file_of(const ViewRequest& view, int layer) const;
   int moving_viewers() const;
@@ -103,6 +112,7 @@ class RenderLoop {
   std::map<ViewerId, Viewer> viewers_;
   std::optional<Turn> turn_;  // that is being drawn
   bool loaded_ = false;       // while the picture was drawn; of thread_ alone
+  std::optional<Late> late_;  // of the turn; set by one of the renderer's threads, at most once
   std::string warned_;        // of, last: Picture::memory_note; of thread_ alone
   std::atomic<bool> cancel_{false};
   bool ended_ = false;

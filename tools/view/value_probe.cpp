@@ -7,15 +7,14 @@
 
 #include "gpu/math/narrow.h"
 #include "gpu/math/ray.h"
+#include "gpu/render/render_setup.h"
 #include "gpu/scene/scene_camera.h"
-#include "gpu/scene/scene_transfer.h"
 
 namespace weir {
 namespace {
 
 constexpr float kStep = 0.5F;              // in the shortest voxel edges
 constexpr float kMostProbeSteps = 20'000;  // along a ray
-constexpr double kStandardDensity = 200;   // as that of a picture whose scene gives none
 constexpr float kSeen = 1.0F / 512;        // share of a pixel's light below which nothing is seen
 
 // Voxels one after the other, most of them in the block of the one before.
@@ -48,8 +47,8 @@ Box shown_box(const NvdbGrid& grid, const Scene& scene) {
 
 }  // namespace
 
-std::optional<ProbedVoxel> probe_voxel(const NvdbGrid& grid, const Scene& scene, float background, double aspect,
-                                       double x, double y) {
+std::optional<ProbedVoxel> probe_voxel(const NvdbGrid& grid, const Scene& scene, const MinMax& range, float background,
+                                       double aspect, double x, double y) {
   const GridFrame frame = frame_of(grid);
   const Box box = shown_box(grid, scene);
   if (box.empty()) return std::nullopt;
@@ -65,12 +64,9 @@ std::optional<ProbedVoxel> probe_voxel(const NvdbGrid& grid, const Scene& scene,
                                                   static_cast<double>(box.hi.z - frame.domain.lo.z)})});
   if (!(length > 0)) return std::nullopt;
 
-  const MinMax range{grid.value_min(), grid.value_max()};
-  const TransferFunction transfer = make_transfer_function(scene.volume, range, background, "gray");
-  const Double3 size = frame.size();
-  const auto density =
-      static_cast<float>(scene.volume.density.value_or(kStandardDensity) / *std::max_element(size.begin(), size.end()));
-  const float iso = static_cast<float>(scene.volume.iso.value_or(0.5 * (transfer.low() + transfer.high())));
+  const TransferFunction transfer = picture_transfer({frame, range, background}, scene, {});
+  const float density = picture_density(scene, frame);
+  const float iso = picture_iso(scene.volume, transfer, background);
   const float step = std::max(kStep, length / kMostProbeSteps);
 
   NearbyVoxels voxels(grid);

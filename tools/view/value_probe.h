@@ -17,9 +17,10 @@ struct ProbedVoxel {
 
 /// The voxel that gives the point (x, y) of the picture, both in [0, 1] from the upper left, most of its colour: of a
 /// surface the first one it passes, of the largest value that voxel, else the one whose light is the largest share of
-/// the pixel's. `aspect` is the picture's width / height, `background` as RenderOptions has it. None where nothing is
-/// seen there. Looks at the voxels along one ray, a block at a time. Throws as make_camera and NvdbGrid::decode_block.
-std::optional<ProbedVoxel> probe_voxel(const NvdbGrid& grid, const Scene& scene, float background, double aspect,
-                                       double x, double y);
+/// the pixel's. `aspect` is the picture's width / height, `range` of the values, finite, `background` as RenderOptions
+/// has it. None where nothing is seen there. Looks at the voxels along one ray, a block at a time. Throws as
+/// make_camera and NvdbGrid::decode_block.
+std::optional<ProbedVoxel> probe_voxel(const NvdbGrid& grid, const Scene& scene, const MinMax& range, float background,
+                                       double aspect, double x, double y);
 
 }  // namespace weir

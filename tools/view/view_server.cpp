@@ -298,8 +298,9 @@ void ViewServer::answer_probe(ViewerId id, Viewer& viewer) {
         try {
           const auto file = open_files_.get(file_of(view->step, probe.side));
           const double aspect = static_cast<double>(view->width) / view->height;
-          const float background = (files_.series() ? common : seen_values(file->grid())).background;
-          if (const auto found = probe_voxel(file->grid(), view->scene, background, aspect, probe.x, probe.y)) {
+          const SeenValues values = files_.series() ? common : seen_values(file->grid());
+          if (const auto found =
+                  probe_voxel(file->grid(), view->scene, values.range, values.background, aspect, probe.x, probe.y)) {
             answer["found"] = true;
             answer["value"] = found->value;
             answer["voxel"] = {found->voxel.x, found->voxel.y, found->voxel.z};

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <string>
 
 #include "format/base/error.h"
@@ -156,6 +157,13 @@ TEST(Scene, WrongTypes) {
   EXPECT_EQ(message("[volume]\nmax_bounces = 1.5"), "s.toml:2:15: max_bounces must be a whole number");
   EXPECT_EQ(message("[volume]\nopacity = [[0, 1]]"),
             "s.toml:2:11: opacity must be an array of at least two points, each an array of 2 numbers");
+}
+
+TEST(Scene, RangesAndSurfacesAreAllValuesOfFloat32) {
+  const Scene scene = parse_scene(
+      "[volume]\nrange = [-3.4028234663852886e38, 3.4028234663852886e38]\niso = 3.4028234663852886e38", "s.toml");
+  EXPECT_EQ(scene.volume.range->at(1), static_cast<double>(std::numeric_limits<float>::max()));
+  EXPECT_EQ(scene.volume.iso, static_cast<double>(std::numeric_limits<float>::max()));
 }
 
 TEST(Scene, ValuesOutOfRange) {

@@ -27,6 +27,11 @@ TEST(SpectrumReport, SaysToWhichWavelengthTheErrorIsSmall) {
       spectrum_text(spectrum_of({0.02, 0, 0})),
       "spectrum   the error has more than 1 % of the source's power from the longest wavelength on, 4 world units; " +
           blocks);
+  PowerSpectrum wave = spectrum_of({1e-20, 1e-9, 1e-20});
+  wave.shells[0].source = wave.shells[2].source = 1e-21;
+  EXPECT_EQ(spectrum_text(wave),
+            "spectrum   the error has at most 1 % of the source's power at every wavelength; " + blocks)
+      << "where the source has no more than rounding, there is nothing to lose";
   PowerSpectrum none = spectrum_of({});
   none.blocks = 0;
   none.left_out = 2;

@@ -38,7 +38,14 @@ TEST(FramePace, FixedCosts_AreCounted) {
 }
 
 TEST(FramePace, PicturesAreNotSmallerThanATenth) {
-  EXPECT_EQ(settled(1, 0).next(800, 600, 1, 1), (FrameSize{80, 60, 1}));
+  EXPECT_EQ(settled(5e-5, 0).next(800, 600, 1, 1), (FrameSize{80, 60, 1}));
+}
+
+TEST(FramePace, PicturesThatWouldTakeLong_AreSmallerThanATenth) {
+  const FrameSize size = settled(1e-3, 0).next(800, 600, 1, 1);
+  EXPECT_LE(seconds(size, 1e-3), FramePace::kLongest_s);
+  EXPECT_GT(seconds(size, 1e-3), 0.5 * FramePace::kLongest_s);
+  EXPECT_EQ(settled(1, 0).next(800, 600, 1, 1), (FrameSize{8, 6, 1}));
 }
 
 TEST(FramePace, TwoViewers_ShareTheTime) {

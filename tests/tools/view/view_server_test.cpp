@@ -142,6 +142,43 @@ TEST_F(ViewServerTest, Probe_TellsTheVoxelUnderThePoint) {
   EXPECT_EQ(client.text("value").value()["found"], false);
 }
 
+TEST_F(ViewServerTest, ProbeOfASurface_GoesByThePicturesOwnDefault) {
+  ServedView served(volume_);
+  ViewClient client(served.port());
+  const std::string along_x = "mode = \"iso\"\n[camera]\nposition = [1000, 14, 9]\nlook_at = [0, 14, 9]\nzoom = 20\n";
+  client.show(1, false, {{"scene", along_x}});
+  client.send({{"type", "probe"}, {"id", 3}, {"x", 0.5}, {"y", 0.5}});
+  const Json answer = client.text("value").value();
+  ASSERT_EQ(answer["found"], true) << answer;
+  const NvdbFile file = open();
+  const float surface = 0.35F * file.grid().value_max();  // of values from the background, 0, on
+  // Between two voxels along the ray, one on each side of it.
+  const std::int64_t x = answer["voxel"][0].get<std::int64_t>();
+  const bool above = file.grid().value({x, 14, 9}) >= surface;
+  EXPECT_TRUE(x == 39 || (file.grid().value({x + 1, 14, 9}) >= surface) != above) << answer << " " << surface;
+}
+
+TEST_F(ViewServerTest, DenseMovingView_KeepsNobodyWaiting) {
+  auto served = std::make_unique<ServedView>(volume_);
+  const Json dense{{"width", 1600}, {"height", 1200}, {"scene", "mode = \"path\"\n[volume]\ndensity = 1e7\nalbedo = 1\n"}};
+  ViewClient client(served->port());
+  client.show(1, true, dense);
+  const auto first = client.frame();
+  ASSERT_TRUE(first) << "a picture comes, however small";
+  client.taken(*first);
+  auto gone = std::make_unique<ViewClient>(served->port());
+  gone->show(1, true, dense);
+  client.show(2, true, {{"scene", "mode = \"dvr\"\n"}});
+  const auto second = client.frame();
+  ASSERT_TRUE(second);
+  EXPECT_EQ(second->header["view"], 2);
+  gone->show(2, true, dense);
+  gone.reset();
+  const auto begun = std::chrono::steady_clock::now();
+  served.reset();
+  EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(10));
+}
+
 TEST_F(ViewServerTest, Histogram_IsCountedForAllWhoWaitForIt) {
   std::filesystem::remove(sidecar_path(volume_));
   ServedView served(volume_);
