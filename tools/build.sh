@@ -34,7 +34,7 @@ if ! cmake --preset "$preset" "${options[@]}" >"$log" 2>&1; then
   exit 1
 fi
 # A group of sources takes its compiler up to 1.5 GiB.
-jobs=$(awk -v most="$(nproc)" '/^MemAvailable:/ {jobs = int($2 / 1572864)} END {print jobs < 1 ? 1 : jobs > most ? most : jobs}' \
+jobs=$(awk -v most="$(nproc)" '/^MemAvailable:/ {jobs = int($2 / 1572864)} END {print (jobs < 1 ? 1 : jobs > most ? most : jobs)}' \
   /proc/meminfo)
 build=(cmake --build --preset "$preset" --parallel "$jobs")
 [[ $# -eq 0 ]] || build+=(--target "$@")

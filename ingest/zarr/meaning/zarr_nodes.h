@@ -26,8 +26,8 @@ struct ZarrNode {
 /// The node at `key`; nullopt where there is no metadata. Throws Error(input) where they are damaged.
 std::optional<ZarrNode> zarr_node(ZarrStore& store, const std::string& key);
 
-/// Of the attribute _Unsigned, by which NetCDF says that signed integers are meant as unsigned ones ("true"), or unsigned
-/// ones as signed ("false"); empty where there is none.
+/// Of the attribute _Unsigned, by which NetCDF says that signed integers are meant as unsigned ones ("true"), or
+/// unsigned ones as signed ("false"); empty where there is none.
 std::string unsigned_text(const nlohmann::json& attributes);
 
 /// The array that `node`, which is one, describes, of the type that is meant. Throws what parse_zarr_v2 and

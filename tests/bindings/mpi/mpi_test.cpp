@@ -271,9 +271,8 @@ TEST_F(Mpi, PushOfMissingOrRepeatedVoxels_IsRefused) {
   refused("elsewhere",
           "begin: 2 process 2 of 3 gives another volume, output or other options than process 0; all must give the "
           "same\n");
-  refused("options",
-          cat("begin: 2 weir_convert_options: struct_size is 0, and must be at least ", offsetof(weir_convert_options, preview),
-              "; set it up with weir_convert_options_init\n"));
+  refused("options", cat("begin: 2 weir_convert_options: struct_size is 0, and must be at least ",
+                         offsetof(weir_convert_options, preview), "; set it up with weir_convert_options_init\n"));
   refused("null",
           "box: 2 data is a null pointer\n"
           "end: 2 memory: 1000 voxels are missing, those of 10:20,20:30,30:40 first\n");

@@ -160,7 +160,8 @@ TEST_F(ViewServerTest, ProbeOfASurface_GoesByThePicturesOwnDefault) {
 
 TEST_F(ViewServerTest, DenseMovingView_KeepsNobodyWaiting) {
   auto served = std::make_unique<ServedView>(volume_);
-  const Json dense{{"width", 1600}, {"height", 1200}, {"scene", "mode = \"path\"\n[volume]\ndensity = 1e7\nalbedo = 1\n"}};
+  const Json dense{
+      {"width", 1600}, {"height", 1200}, {"scene", "mode = \"path\"\n[volume]\ndensity = 1e7\nalbedo = 1\n"}};
   ViewClient client(served->port());
   client.show(1, true, dense);
   const auto first = client.frame();
