@@ -59,11 +59,23 @@ void refuse_missing(const Survey& survey, const SourceInfo& info) {
                       option("missing-policy", "keep")));
 }
 
+// What float32 lost is in no error that a file is made by.
+void refuse_rounding(const Budget& budget, const Survey& survey, const SourceInfo& info) {
+  const double rounded = survey.loss.max_abs_error;
+  if (budget.kind != Budget::Kind::max_error || rounded <= budget.target) return;
+  throw Error(ErrorKind::budget,
+              compose(info.path, ": float32, which files hold, rounds ", survey.loss.inexact,
+                      survey.loss.inexact == 1 ? " value" : " values", " by up to ", rounded, ", more than ",
+                      option("max-error", budget.target), " allows; allow ", option("max-error", rounded),
+                      " or more, or subtract an offset from the values first"));
+}
+
 }  // namespace
 
 void refuse_values(const ConversionOptions& options, const Survey& survey, const SourceInfo& info) {
   if (options.non_finite == NonFinitePolicy::error) refuse_non_finite(survey, info);
   if (missing_policy_name(options) == "error") refuse_missing(survey, info);
+  refuse_rounding(options.budget, survey, info);
 }
 
 }  // namespace weir

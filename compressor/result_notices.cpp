@@ -1,21 +1,31 @@
 #include "compressor/result_notices.h"
 
+#include <cmath>
+
 #include "compressor/default_notice.h"
 #include "compressor/scene_notice.h"
 
 namespace weir {
 namespace {
 
-// What no certificate counts, where the user set a bound that it exceeds, or nearly: values were rounded to float32
-// before.
+// What no certificate counts, where it is not far less than what the file loses or may lose.
 Message rounding_notice(const Sidecar& sidecar, const Budget& budget) {
   const Sidecar::ConversionLoss& loss = sidecar.conversion_loss;
-  const bool bounded = budget.kind == Budget::Kind::max_error && loss.max_abs_error > 0.01 * budget.target;
-  if (loss.inexact == 0 || (!bounded && budget.kind != Budget::Kind::lossless)) return {};
-  return compose(sidecar.source.path, ": ", loss.inexact, loss.inexact == 1 ? " value was" : " values were",
-                 " rounded to float32, by up to ", loss.max_abs_error, ", besides what ",
-                 option(budget.kind == Budget::Kind::lossless ? "lossless" : "max-error"),
-                 " allows: files hold float32");
+  double counted = sidecar.error.max_abs;
+  if (budget.kind == Budget::Kind::max_error) counted = budget.target;
+  if (budget.kind == Budget::Kind::psnr) {
+    counted = (sidecar.value_range[1] - sidecar.value_range[0]) / std::pow(10, budget.target / 20);
+  }
+  if (loss.inexact == 0 || loss.max_abs_error <= 0.01 * counted) return {};
+  return cat(sidecar.source.path, ": ", loss.inexact, loss.inexact == 1 ? " value was" : " values were",
+             " rounded to float32, which files hold, by up to ", loss.max_abs_error, ", and no error counts that");
+}
+
+Message overflow_notice(const Sidecar& sidecar) {
+  const std::uint64_t overflow = sidecar.conversion_loss.overflow;
+  if (overflow == 0) return {};
+  return cat(sidecar.source.path, ": ", overflow, overflow == 1 ? " value is" : " values are",
+             " finite but beyond the 3.4e+38 of float32, and infinite in the file");
 }
 
 }  // namespace
@@ -24,6 +34,7 @@ void say_result(const Sidecar& sidecar, const ConversionOptions& options, const 
   if (!notice) return;
   if (const Message line = scene_notice(sidecar, options.output); !line.empty()) notice(line);
   if (const Message line = rounding_notice(sidecar, options.budget); !line.empty()) notice(line);
+  if (const Message line = overflow_notice(sidecar); !line.empty()) notice(line);
   if (options.budget.kind != Budget::Kind::automatic) return;
   if (const Message line = default_notice(sidecar, options.output); !line.empty()) notice(line);
 }

@@ -33,6 +33,25 @@ milliseconds delay_of(const WatchConfig& watch) {
   return milliseconds(static_cast<std::int64_t>(watch.delete_after_s * 1000));
 }
 
+// What of the values no error counts, where the output is called lossless or they are not even finite; empty: nothing.
+std::string loss_fault(const nlohmann::json& sidecar, const std::string& path) {
+  const auto member = [](const nlohmann::json& of, const char* key) {
+    return of.is_object() ? of.value(key, nlohmann::json()) : nlohmann::json();
+  };
+  const nlohmann::json loss = member(sidecar, "conversion_loss");
+  const auto count = [&](const char* key) {
+    const nlohmann::json value = member(loss, key);
+    return value.is_number_unsigned() ? value.get<std::uint64_t>() : 0;
+  };
+  const std::uint64_t overflow = count("overflow");
+  if (overflow > 0)
+    return cat(path, ": ", overflow, overflow == 1 ? " value is" : " values are", " infinite in float32");
+  const std::uint64_t inexact = count("inexact");
+  if (inexact == 0 || member(member(sidecar, "error"), "lossless") != true) return {};
+  return cat(path, ": ", inexact, inexact == 1 ? " value was" : " values were",
+             " rounded to float32, so the output is not lossless");
+}
+
 // Why the certificate is not that of the source as it is; empty: it is.
 std::string certificate_fault(const Job& job, const std::string& path) {
   const FileState record = look_at_file(path);
@@ -52,7 +71,7 @@ std::string certificate_fault(const Job& job, const std::string& path) {
       touched_since(look_at_file(job.source), record)) {
     return cat(path, " is of another file, or of this one as it was before");
   }
-  return {};
+  return loss_fault(sidecar, path);
 }
 
 std::string hidden_name(const Job& job) {

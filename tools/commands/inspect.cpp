@@ -66,8 +66,12 @@ struct Inspection {
 
 std::string shown_text(const Index3& i) { return cat(i.x, " x ", i.y, " x ", i.z); }
 std::string shown_text(const std::array<double, 3>& v) { return cat(v[0], ", ", v[1], ", ", v[2]); }
+// With the digits that tell the ends apart.
 std::string range_text(const std::array<double, 2>& range) {
-  return cat(short_number(range[0]), " .. ", short_number(range[1]));
+  const std::string low = short_number(range[0]);
+  const std::string high = short_number(range[1]);
+  if (low != high || range[0] == range[1]) return cat(low, " .. ", high);
+  return cat(range[0], " .. ", range[1]);
 }
 double two_decimals(double bits) { return std::round(100 * bits) / 100; }
 Json json_of(const Index3& i) { return {i.x, i.y, i.z}; }
@@ -175,7 +179,9 @@ Json packed_json(const PackedData& packed, const PackedCensus& census) {
 
 std::string certificate_text(const Sidecar& s, const Sidecar::CertifiedError& error) {
   if (error.lossless) {
-    return cat(lossless_text(s), lossless_everywhere(s) ? ": every voxel" : ": each of them", " as in the source");
+    const bool rounded = s.conversion_loss.inexact + s.conversion_loss.overflow > 0;
+    return cat(lossless_text(s), lossless_everywhere(s) ? ": every voxel" : ": each of them", " as in the source",
+               rounded ? " rounded to float32" : "");
   }
   return cat(error_text(s, error), ", RMSE ", short_number(error.rmse), ", NMSE ", short_number(error.nmse));
 }

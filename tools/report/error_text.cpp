@@ -29,9 +29,16 @@ std::string gradient_text(const Sidecar::GradientError& gradient, const std::str
 }
 
 std::string rounded_text(const Sidecar::ConversionLoss& loss) {
-  if (loss.inexact == 0) return "";
-  return cat(loss.inexact, loss.inexact == 1 ? " value" : " values", " rounded to float32, by up to ",
-             short_number(loss.max_abs_error));
+  std::string text;
+  if (loss.inexact > 0) {
+    text = cat(loss.inexact, loss.inexact == 1 ? " value" : " values", " rounded to float32, by up to ",
+               short_number(loss.max_abs_error));
+  }
+  if (loss.overflow > 0) {
+    text += cat(text.empty() ? "" : ", ", loss.overflow, loss.overflow == 1 ? " value" : " values",
+                " beyond float32 infinite");
+  }
+  return text;
 }
 
 }  // namespace weir

@@ -103,7 +103,8 @@ def convert(
     size
         The file has exactly so many bytes.
     psnr, max_error
-        The smallest file of at least so many dB, or in which every voxel is within that of its value as float32.
+        The smallest file of at least so many dB, or in which every voxel is within that of its value as float32; refused where
+        float32 rounds values by more.
     lossless
         The smallest file that preserves every bit of every valid voxel as float32. Values of other types that float32
         does not hold are rounded first: the record's conversion_loss counts them, and a warning says so.

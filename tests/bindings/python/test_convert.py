@@ -200,20 +200,24 @@ class Convert(FolderTest):
             if pass_ == "survey":
                 self.assertEqual(all_, total)
 
-    def test_rounding_that_a_bound_does_not_count_is_said(self):
+    def test_rounding_is_refused_beyond_the_bound_and_said_where_no_error_counts_it(self):
         values = numpy.random.default_rng(3).integers(2**30, 2**40, (9, 9, 9))
-        for budget, name in (({"max_error": 1}, "max_error"), ({"lossless": True}, "lossless")):
-            with self.assertLogs("weir", logging.WARNING) as logs:
-                record = weir.convert(values, self.folder / "a.nvdb", overwrite=True, **budget)
-            loss = record["conversion_loss"]
-            self.assertGreater(loss["max_abs_error"], 1000)
-            self.assertEqual(
-                [line for line in logs.output if "rounded" in line],
-                [
-                    f"WARNING:weir:memory: {loss['inexact']} values were rounded to float32, by up to "
-                    f"{loss['max_abs_error']:g}, besides what {name} allows: files hold float32"
-                ],
-            )
+        message = self.refused(weir.BudgetError, weir.convert, values, self.folder / "a.nvdb", max_error=1)
+        self.assertRegex(
+            message,
+            r"^memory: float32, which files hold, rounds 7\d\d values by up to 32\d\d\d, more than max_error 1 allows; "
+            r"allow max_error 32\d\d\d or more, or subtract an offset from the values first$",
+        )
+        with self.assertLogs("weir", logging.WARNING) as logs:
+            record = weir.convert(values, self.folder / "a.nvdb", lossless=True)
+        loss = record["conversion_loss"]
+        self.assertEqual(
+            [line for line in logs.output if "rounded" in line],
+            [
+                f"WARNING:weir:memory: {loss['inexact']} values were rounded to float32, which files hold, by up to "
+                f"{loss['max_abs_error']:g}, and no error counts that"
+            ],
+        )
 
     def test_names_that_are_too_long_are_refused(self):
         message = self.refused(weir.UsageError, weir.convert, ramp(4, 4, 4), self.folder / "a.nvdb", dataset="x" * 256)

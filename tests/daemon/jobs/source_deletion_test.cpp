@@ -170,6 +170,20 @@ TEST_F(SourceDeletionTest, WithAnotherSourcesCertificate_Stays) {
   EXPECT_TRUE(stays());
 }
 
+TEST_F(SourceDeletionTest, LosslessFileOfRoundedValues_Stays) {
+  write_output(R"(}, "error": {"lossless": true}, "conversion_loss": {"inexact": 2, "overflow": 0)");
+  delete_done();
+  EXPECT_TRUE(stays());
+  EXPECT_TRUE(logged("2 values were rounded to float32, so the output is not lossless"));
+}
+
+TEST_F(SourceDeletionTest, ValuesThatBecameInfinite_Stay) {
+  write_output(R"(}, "error": {"lossless": false}, "conversion_loss": {"inexact": 0, "overflow": 1)");
+  delete_done();
+  EXPECT_TRUE(stays());
+  EXPECT_TRUE(logged("1 value is infinite in float32"));
+}
+
 TEST_F(SourceDeletionTest, SourceThatTheWatchNoLongerTakes_Stays) {
   convert();
   WatchConfig& watch = config_.watches[0];
