@@ -251,8 +251,11 @@ FilePlan plan_best(const FileRequest& request, const RowStore& rows, WorkDirecto
   const FileSize size = candidate.size_for(request.budget);
   FilePlan quantised = candidate.plan(size);
   if (quantised.plan.loses_nothing && countable(quantised)) return quantised;
+  // A file of this kind may be shorter than what is allowed, as it has nothing to do with more.
+  const auto dense = static_cast<std::uint64_t>(request.domain.voxels()) * sizeof(float);
+  const std::uint64_t allowed = request.budget.by_size() ? asked_bytes(request.budget, dense) : size.bytes;
   if (const std::optional<FloatBound> bound = float_bound(request, rows, quantised)) {
-    const double least = bound->least_error(size.bytes);
+    const double least = bound->least_error(allowed);
     if (least > 0 && quantised.plan.expected_error <= least) {  // with no error, bits decide
       quantised.float_error = least;
       quantised.float_error_is_bound = true;
@@ -260,7 +263,7 @@ FilePlan plan_best(const FileRequest& request, const RowStore& rows, WorkDirecto
     }
   }
   Candidate other(request, Encoding::float32, rows, work);
-  if (other.bytes().minimum.file_bytes > size.bytes) return quantised;
+  if (other.bytes().minimum.file_bytes > allowed) return quantised;
   if (size.kind == "minimum") return quantised;
   FilePlan plain = other.plan(other.size_for(request.budget));
   if (countable(plain) != countable(quantised)) return std::move(countable(plain) ? plain : quantised);

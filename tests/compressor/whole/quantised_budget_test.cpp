@@ -49,6 +49,25 @@ void expect_refused(MemoryVolume& volume, const ConversionOptions& options, Erro
   }
 }
 
+TEST(QuantisedBudget, AtMost_LosesNoMoreThanAFileOfThatSize) {
+  MemoryVolume volume({{0, 0, 0}, {40, 40, 40}}, [](const Index3& i) {
+    return std::sin(static_cast<float>(i.x) * 0.21F) +
+           std::sin(static_cast<float>(i.y) * 0.17F) * static_cast<float>(i.z);
+  });
+  ConversionOptions options;
+  options.encoding = Encoding::automatic;
+  const std::uint64_t minimum = test::minimum_size(volume, options);
+  for (const std::uint64_t more : {50'000, 150'000, 280'000, 400'000, 2'000'000}) {
+    options.budget = {Budget::Kind::size, 8, minimum + more, 0};
+    const Converted padded = test::convert(volume, options);
+    options.budget.at_most = true;
+    const Converted shorter = test::convert(volume, options);
+    EXPECT_EQ(shorter.sidecar.error.mse, padded.sidecar.error.mse) << more;
+    EXPECT_EQ(shorter.sidecar.grid.type, padded.sidecar.grid.type) << more;
+    EXPECT_LE(shorter.file.size(), padded.file.size()) << more;
+  }
+}
+
 TEST(QuantisedBudget, WholeNumbersTakeTheFirstWidthThatHoldsThem) {
   for (const auto& [levels, width] : {std::pair{2, LeafWidth::bits1},
                                       {4, LeafWidth::bits2},
