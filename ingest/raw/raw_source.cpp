@@ -44,6 +44,10 @@ void refuse_gzip(InputFile& file) {
 
 RawShape resolve_shape(const std::string& path, const SourceOptions& options) {
   const auto name = parse_raw_name(path);
+  if (path.ends_with(".npy") || path.ends_with(".npz")) {
+    throw input_error(
+        path, "is an array of numpy, which weir's module for Python converts: weir.convert(numpy.load(PATH), OUTPUT)");
+  }
   RawShape shape;
   if (name && options.extent && *options.extent != name->extent) {
     throw contradiction(path, "dims", dims_text(*options.extent), extent_text(name->extent));

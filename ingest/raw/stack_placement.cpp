@@ -44,26 +44,34 @@ std::string coordinates_text(const AxisDetails& axis) {
 bool are_placed(const std::vector<StackedPlanes>& files) {
   std::uint64_t planes = 0;
   for (const StackedPlanes& file : files) planes += static_cast<std::uint64_t>(file.count);
+  const StackedPlanes& first = files.front();
   return planes <= kMaxCoordinates &&
          std::all_of(files.begin(), files.end(), [](const StackedPlanes& file) { return file.placed; }) &&
-         std::any_of(files.begin(), files.end(),
-                     [&](const StackedPlanes& file) { return first_of(file) != first_of(files.front()); });
+         std::any_of(files.begin(), files.end(), [&](const StackedPlanes& file) {
+           return !nearly(first_of(file), first_of(first), first.spacing);
+         });
 }
 
-bool single_planes(const std::vector<StackedPlanes>& files) {
-  return std::all_of(files.begin(), files.end(), [](const StackedPlanes& file) { return file.count == 1; });
+AxisPlace axis_of(std::vector<double> positions) {
+  AxisPlace axis;
+  axis.extent = std::ssize(positions);
+  place_by_coordinates(std::move(positions), kPlanePrecision, axis);
+  return axis;
 }
 
-// The first file whose planes do not come after those of the one before.
-void check_rising(const std::vector<StackedPlanes>& files, const std::vector<double>& positions) {
+// All rise, or all fall, as the first two do.
+void check_order(const std::vector<StackedPlanes>& files, const std::vector<double>& positions) {
+  const bool falls = positions[1] < positions[0];
   std::size_t at = 0;
-  for (std::size_t i = 0; i + 1 < files.size(); ++i) {
-    at += static_cast<std::size_t>(files[i].count);
-    if (positions[at] > positions[at - 1]) continue;
-    throw input_error(
-        files[i + 1].path,
-        compose("its planes begin at z = ", positions[at], ", not after those of ", files[i].path, ", which end at ",
-                positions[at - 1], "; rename the files, or give ", option("spacing"), " to take them as they are"));
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    for (std::int64_t plane = 0; plane < files[i].count; ++plane, ++at) {
+      if (at == 0 || (falls ? positions[at] < positions[at - 1] : positions[at] > positions[at - 1])) continue;
+      throw input_error(
+          files[i].path,
+          compose("its plane at z = ", positions[at], " is not ", falls ? "below" : "above", " the one before it, at ",
+                  positions[at - 1], " in ", plane > 0 ? "it" : files[i - 1].path, "; rename the files, or give ",
+                  option("spacing"), " to take them as they are"));
+    }
   }
 }
 
@@ -93,13 +101,22 @@ void check_placed_alike(const std::string& path, const SourceInfo& info, const S
         path, compose(what, ' ', found, " differs from ", expected, " of ", first.path,
                       "; a stack's files must be alike, or give ", option("spacing"), " to take them as they are"));
   };
+  const std::string& orientation = info.details.orientation;
+  if (orientation != first.details.orientation) {
+    throw differ("orientation", '"' + orientation + '"', '"' + first.details.orientation + '"');
+  }
+  const auto& time = info.details.time;
+  const auto& first_time = first.details.time;
+  if (time && first_time && time->value != first_time->value) {
+    throw differ("time", cat(time->value), cat(first_time->value));
+  }
   for (std::size_t axis = 0; axis < 2; ++axis) {
     const std::string name(1, "xy"[axis]);
     const double spacing = first.spacing.at(axis);
     if (!nearly(info.spacing.at(axis), spacing, spacing)) {
       throw differ("spacing along " + name, cat(info.spacing.at(axis)), cat(spacing));
     }
-    if (!nearly(first_position(info, axis), first_position(first, axis), spacing)) {
+    if (orientation.empty() && !nearly(first_position(info, axis), first_position(first, axis), spacing)) {
       throw differ("origin along " + name, cat(first_position(info, axis)), cat(first_position(first, axis)));
     }
     const AxisDetails& found = info.details.axes.at(axis);
@@ -120,7 +137,7 @@ void check_placed_alike(const std::string& path, const SourceInfo& info, const S
   if (info.units != first.units) throw differ("unit of the values", '"' + info.units + '"', '"' + first.units + '"');
 }
 
-bool stacked_backwards(const std::vector<StackedPlanes>& files) {
+bool stacked_backwards(const std::vector<StackedPlanes>& files, bool by_position) {
   for (const StackedPlanes& file : files) {
     if (file.reversed == files.front().reversed) continue;
     const StackedPlanes& falls = file.reversed ? file : files.front();
@@ -129,24 +146,23 @@ bool stacked_backwards(const std::vector<StackedPlanes>& files) {
                       "other files of the stack are not; a stack's files must be alike");
   }
   if (files.front().reversed) return true;
-  return single_planes(files) && are_placed(files) && first_of(files.back()) < first_of(files.front());
+  const bool single =
+      std::all_of(files.begin(), files.end(), [](const StackedPlanes& file) { return file.count == 1; });
+  return by_position && single && are_placed(files) && axis_of(positions_of(files)).falls;
 }
 
 void place_planes(const std::vector<StackedPlanes>& files, bool backwards, SourceInfo& info) {
   if (!are_placed(files)) return;
-  std::vector<double> positions = positions_of(files);
-  check_rising(files, positions);
-  AxisPlace axis;
-  axis.extent = info.extent.z;
+  const std::vector<double> positions = positions_of(files);
+  check_order(files, positions);
+  AxisPlace axis = axis_of(positions);
   axis.units = info.details.axes[2].units;
-  const std::string falls = cat("falls from ", positions.back(), " to ", positions.front());
-  place_by_coordinates(std::move(positions), kPlanePrecision, axis);
   if (backwards && axis.spacing) {
     axis.falls = true;
-    axis.note = falls;
+    axis.note = cat("falls from ", positions.back(), " to ", positions.front());
   }
-  info.spacing[2] = axis.spacing.value_or(1.0);
-  info.origin[2] = axis.origin.value_or(0.0);
+  info.spacing[2] = axis.spacing.value_or(info.spacing[2]);
+  info.origin[2] = axis.origin.value_or(positions.front());
   info.details.axes[2] = axis_details(axis, 2);
 }
 

@@ -26,16 +26,19 @@ double first_position(const SourceInfo& info, std::size_t axis);
 
 StackedPlanes stacked_planes(const std::string& path, const SourceInfo& info);
 
-/// Throws Error(input) where columns and rows of `info` lie elsewhere than those of `first`, or mean something else.
+/// Throws Error(input) where columns and rows of `info` lie elsewhere than those of `first`, or mean something else, or
+/// are of another time.
 void check_placed_alike(const std::string& path, const SourceInfo& info, const SourceInfo& first);
 
-/// Whether the files follow each other from the last to the first, since their planes are read in reverse order, or
-/// since the positions of single planes fall. Throws Error(input) where some are reversed and others are not.
-bool stacked_backwards(const std::vector<StackedPlanes>& files);
+/// Whether the files follow each other from the last to the first, since the planes of each are read in reverse order,
+/// or, with `by_position`, since single planes fall by equal steps. Throws Error(input) where some files are reversed
+/// and others are not.
+bool stacked_backwards(const std::vector<StackedPlanes>& files, bool by_position);
 
 /// Sets spacing, origin and what the sidecar says of the z axis of `info`, by the planes of all files in the order of
-/// the stack. Where all begin at one place, or one does not say where it lies, they stay what the first file says.
-/// Throws Error(input) where a file's planes do not come after those of the one before.
+/// the stack, which is `backwards` or not. Where all begin at one place, or one does not say where it lies, they stay
+/// what the first file says; where the planes are not equally spaced, the spacing stays. Throws Error(input) where the
+/// planes of the files neither rise nor fall.
 void place_planes(const std::vector<StackedPlanes>& files, bool backwards, SourceInfo& info);
 
 }  // namespace weir

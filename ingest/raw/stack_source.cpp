@@ -124,7 +124,11 @@ class StackSource final : public VolumeSource {
       access_ = source->access();
     }
     check_alike(path, info, first_);
-    if (!as_they_are_) check_placed_alike(path, info, first_);
+    if (!as_they_are_) {
+      check_placed_alike(path, info, first_);
+    } else if (info.details.time && first_.details.time && info.details.time->value != first_.details.time->value) {
+      info_.details.time.reset();  // they have none in common
+    }
     planes_.push_back(stacked_planes(path, info));
     info_.files.insert(info_.files.end(), info.files.begin(), info.files.end());
     slabs_.push_back({path, info.index_origin, info_.extent.z, info.extent.z});
@@ -136,14 +140,19 @@ class StackSource final : public VolumeSource {
 
   // By what the files say, but where the user places the stack.
   void place() {
-    const bool backwards = stacked_backwards(planes_);
+    const bool backwards = stacked_backwards(planes_, !as_they_are_);
     if (backwards) {
       std::reverse(planes_.begin(), planes_.end());
       std::reverse(slabs_.begin(), slabs_.end());
       std::int64_t z = 0;
       for (FileSlab& slab : slabs_) slab.z = std::exchange(z, z + slab.planes);
     }
-    if (!as_they_are_) place_planes(planes_, backwards, info_);
+    if (as_they_are_) {
+      info_.origin[2] = planes_.front().first;
+      if (backwards) info_.details.axes[2].note = "falls: planes are read in reverse order, so that positions rise";
+    } else {
+      place_planes(planes_, backwards, info_);
+    }
     planes_.clear();
   }
 

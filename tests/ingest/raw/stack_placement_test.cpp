@@ -74,12 +74,55 @@ TEST_F(StackPlacement, SinglePlanesThatFall_AreReadFromTheLastToTheFirst) {
   EXPECT_EQ(along_z(*source), (std::vector<float>{3, 2, 1, 0}));
 }
 
+TEST_F(StackPlacement, WithSpacing_FilesAreTakenAsTheyAre) {
+  for (int i = 0; i < 3; ++i) {
+    write_nrrd(scratch_, "s_" + std::to_string(i) + ".nrrd", static_cast<float>(i), 1, {0, 0, 3.0 - i});
+  }
+  const auto source = open(Triple{1, 1, 1});
+  EXPECT_EQ(along_z(*source), (std::vector<float>{0, 1, 2}));
+  EXPECT_EQ(source->info().origin[2], 3);
+  EXPECT_FALSE(source->info().details.axes[2].reversed);
+}
+
+TEST_F(StackPlacement, PlanesThatFallWithGaps_AreNotTurnedRound) {
+  const std::array<double, 3> z{9, 4, 1};
+  for (int i = 0; i < 3; ++i) {
+    write_nrrd(scratch_, "s_" + std::to_string(i) + ".nrrd", static_cast<float>(i), 1,
+               {0, 0, z[static_cast<std::size_t>(i)]});
+  }
+  const auto source = open();
+  EXPECT_EQ(along_z(*source), (std::vector<float>{0, 1, 2}));
+  EXPECT_EQ(source->info().details.axes[2].coordinates, (std::vector<double>{9, 4, 1}));
+  EXPECT_EQ(source->info().details.axes[2].note, "irregular coordinates from 9 to 1, taken as indices");
+}
+
+TEST_F(StackPlacement, PlanesOfNearlyOnePlace_AreStackedByTheirNames) {
+  for (int i = 0; i < 3; ++i) {
+    write_nrrd(scratch_, "s_" + std::to_string(i) + ".nrrd", static_cast<float>(i), 2, {0, 0, i == 1 ? 1e-6 : 0});
+  }
+  EXPECT_EQ(along_z(*open()), (std::vector<float>{0, 0, 1, 1, 2, 2}));
+}
+
+TEST_F(StackPlacement, AxesThatFallOrLieAcross_AreThoseOfTheFirstFile) {
+  const auto write = [&](const std::string& directions, const Triple& second) {
+    write_nrrd(scratch_, "s_0.nrrd", 1, 2, {0, 0, 9}, directions);
+    write_nrrd(scratch_, "s_1.nrrd", 2, 2, second, directions);
+  };
+  write("(1,0,0) (0,1,0) (0,0,-1)", {0, 0, 7});
+  EXPECT_EQ(along_z(*open()), (std::vector<float>{1, 1, 2, 2}));
+  EXPECT_EQ(open()->info().spacing[2], 1);
+  write("(1,0,0) (0,.8,.6) (0,-.6,.8)", {0, -1.2, 10.6});
+  EXPECT_EQ(along_z(*open()), (std::vector<float>{1, 1, 2, 2}));
+  write_nrrd(scratch_, "s_1.nrrd", 2, 2, {0, 0, 9});
+  EXPECT_TRUE(refused().find(": orientation \"\" differs from \"axes") != std::string::npos) << refused();
+}
+
 TEST_F(StackPlacement, PlanesWithGaps_KeepTheirCoordinates) {
   const std::array<double, 4> z{0, 1, 3, 7};
   for (int i = 0; i < 4; ++i)
     write_nrrd(scratch_, "s_" + std::to_string(i) + ".nrrd", 0, 1, {0, 0, z[static_cast<std::size_t>(i)]});
   const auto source = open();
-  EXPECT_EQ(source->info().spacing[2], 1);
+  EXPECT_EQ(source->info().spacing[2], 0.5) << "what the files say of one plane";
   EXPECT_EQ(source->info().details.axes[2].coordinates, (std::vector<double>{0, 1, 3, 7}));
   EXPECT_EQ(source->info().details.axes[2].note, "irregular coordinates from 0 to 7, taken as indices");
 }
@@ -100,8 +143,9 @@ TEST_F(StackPlacement, FilesElsewhere_AreRefusedUnlessSpacingIsGiven) {
   write_nrrd(scratch_, "s_1.nrrd", 2, 2, {10, 20, 31}, "(2,0,0) (0,1,0) (0,0,0.5)");
   EXPECT_EQ(refused(), path + ": spacing along x 2 differs from 1" + end);
   write_nrrd(scratch_, "s_1.nrrd", 2, 2, {10, 20, 29});
-  EXPECT_EQ(refused(), path + ": its planes begin at z = 29, not after those of " + scratch_.path("s_0.nrrd") +
-                           ", which end at 30.5; rename the files, or give --spacing to take them as they are");
+  EXPECT_EQ(refused(), path + ": its plane at z = 29 is not above the one before it, at 30.5 in " +
+                           scratch_.path("s_0.nrrd") +
+                           "; rename the files, or give --spacing to take them as they are");
   const auto source = open(Triple{1, 1, 4});
   EXPECT_EQ(source->info().spacing[2], 4);
   EXPECT_EQ(along_z(*source), (std::vector<float>{1, 1, 2, 2}));
@@ -117,11 +161,11 @@ TEST_F(StackPlacement, ReversedPlanes_AreOfTheLastFileFirst) {
   };
   StackedPlanes rising = falling("c");
   rising.reversed = false;
-  EXPECT_TRUE(stacked_backwards({falling("a"), falling("b")}));
+  EXPECT_TRUE(stacked_backwards({falling("a"), falling("b")}, false));
   EXPECT_EQ(
       message_of_error(ErrorKind::input,
                        [&] {
-                         stacked_backwards({rising, falling("b")});
+                         stacked_backwards({rising, falling("b")}, true);
                        }),
       "b: its planes are read in reverse order, since their coordinates fall, and those of other files of the stack "
       "are not; a stack's files must be alike");
