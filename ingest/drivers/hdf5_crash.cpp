@@ -60,16 +60,16 @@ void end_stalled(int) {
   if (stall_line_now != nullptr) end_with(*stall_line_now);
 }
 
-// A signal to this thread once it has computed for longest_ms more; null where none is to come, or the system has no
+// A signal to this thread once it has computed for longest_ms more; none where none is to come, or the system has no
 // timer.
-timer_t start_timer() {
+std::optional<timer_t> start_timer() {
   const std::int64_t longest = longest_ms;
   timer_t timer = nullptr;
   struct sigevent event {};
   event.sigev_notify = SIGEV_THREAD_ID;
   event.sigev_signo = kStalled;
   event._sigev_un._tid = ::gettid();
-  if (longest == 0 || ::timer_create(CLOCK_THREAD_CPUTIME_ID, &event, &timer) != 0) return nullptr;
+  if (longest == 0 || ::timer_create(CLOCK_THREAD_CPUTIME_ID, &event, &timer) != 0) return std::nullopt;
   const struct itimerspec at {
     {0, 0}, { longest / 1000, longest % 1000 * 1'000'000 }
   };
@@ -106,7 +106,7 @@ Hdf5Call::Hdf5Call(const std::string& path)
 }
 
 Hdf5Call::~Hdf5Call() {
-  if (timer_ != nullptr) ::timer_delete(timer_);
+  if (timer_) ::timer_delete(*timer_);
   stall_line_now = nullptr;
   line_now = nullptr;
 }
@@ -118,6 +118,7 @@ Hdf5CrashRemoval::~Hdf5CrashRemoval() { removed_now = nullptr; }
 void report_hdf5_crashes(std::chrono::milliseconds longest) {
   struct sigaction stalled {};
   stalled.sa_handler = end_stalled;
+  stalled.sa_flags = SA_RESTART;
   ::sigemptyset(&stalled.sa_mask);
   if (::sigaction(kStalled, &stalled, nullptr) == 0) longest_ms = longest.count();
   for (const int signal : kCrashes) {

@@ -4,6 +4,8 @@
 
 #include <atomic>
 #include <chrono>
+#include <ctime>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,7 +35,7 @@ class Hdf5Call {
  private:
   std::string line_;
   std::string stall_line_;
-  void* timer_ = nullptr;
+  std::optional<timer_t> timer_;
 };
 
 /// While one exists, such a crash removes `paths`, files and empty directories, in their order: what a conversion has

@@ -7,6 +7,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -38,12 +39,34 @@ TEST_P(Hdf5Crash, WithinTheLibrary_EndsWithALineAndExitCode3) {
       "file again, or write it anew\n$");
 }
 
+// Computes so long on this thread.
+void compute_for(double seconds) {
+  const std::clock_t begun = std::clock();
+  while (static_cast<double>(std::clock() - begun) < seconds * CLOCKS_PER_SEC) continue;
+}
+
+TEST(Hdf5Stall, OfSeveralShortCalls_IsNone) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(
+      {
+        report_hdf5_crashes(std::chrono::milliseconds(300));
+        for (int i = 0; i < 4; ++i) {
+          {
+            const Hdf5Call call("/data/a.h5");
+            compute_for(0.1);
+          }
+          compute_for(0.15);
+        }
+        ::_exit(7);
+      },
+      ::testing::ExitedWithCode(7), "^$");
+}
+
 TEST(Hdf5Stall, WithinTheLibrary_EndsWithALineAndExitCode3) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   EXPECT_EXIT(
       {
         report_hdf5_crashes(std::chrono::milliseconds(1100));
-        { const Hdf5Call ended("/data/whole.h5"); }
         const Hdf5Call call("/data/a.h5");
         while (::getpid() != 0) continue;
       },
