@@ -70,6 +70,19 @@ std::vector<VolumeCheck> check_certificate(const Sidecar& s) {
     checks.push_back(at_most("sidecar zeros.lost", s.zeros->lost, s.zeros->count));
     checks.push_back(at_most("sidecar zeros.count", s.zeros->count, voxels));
   }
+  const auto one_of = [&](const char* name, const std::string& value, std::initializer_list<std::string_view> known) {
+    const bool is_known = std::find(known.begin(), known.end(), value) != known.end();
+    checks.push_back({cat("sidecar ", name), value, is_known ? value : "a name that weir writes", is_known});
+  };
+  one_of("source.type", s.source.type,
+         {"uint8", "int8", "uint16", "int16", "uint32", "int32", "uint64", "int64", "float16", "bfloat16", "float32",
+          "float64"});
+  one_of("nonfinite.policy", s.nonfinite.policy, {"error", "background", "keep"});
+  if (!s.missing.policy.empty()) one_of("missing.policy", s.missing.policy, {"error", "background", "nan", "keep"});
+  checks.push_back({"sidecar background.share", cat(s.background.share), "0 to 1",
+                    s.background.share >= 0 && s.background.share <= 1});
+  checks.push_back(at_most("sidecar conversion_loss.inexact", s.conversion_loss.inexact, voxels));
+  checks.push_back(at_most("sidecar conversion_loss.overflow", s.conversion_loss.overflow, voxels));
   if (s.visible) checks.push_back(at_most("sidecar visible.voxels", s.visible->voxels, voxels));
   // Weir 0.1 did not say what became of missing voxels, and so which it counted.
   if (!s.histogram.counts.empty() && !s.missing.policy.empty()) {

@@ -125,6 +125,13 @@ TEST_P(Documentation, CommandsGiveTheDocumentedResults) {
 
 INSTANTIATE_TEST_SUITE_P(All, Documentation, testing::ValuesIn(documents()), name_of);
 
+TEST(FormatDocument, LinksPointToExistingFiles) {
+  const std::filesystem::path format = std::filesystem::path(WEIR_SOURCE_DIR) / "format";
+  const auto links = parse_document(read_file(format / "FORMAT.md")).links;
+  EXPECT_GT(links.size(), 5U);
+  for (const std::string& link : links) EXPECT_TRUE(std::filesystem::exists(format / link)) << link;
+}
+
 // A page that nothing leads to is not read.
 TEST(DocumentationIndex, ReadmeLinksToEveryPage) {
   const auto links = parse_document(read_file(std::filesystem::path(WEIR_SOURCE_DIR) / "README.md")).links;

@@ -52,6 +52,10 @@ TEST_F(CertificateCheck, FigureThatContradictsAnother_Fails) {
   EXPECT_EQ(failed([](Sidecar& s) { s.selection.leaves_total = 1; }),
             "sidecar selection.leaves_kept of leaves_total\n");
   EXPECT_EQ(failed([](Sidecar& s) { s.zeros->lost = s.zeros->count + 1; }), "sidecar zeros.lost\n");
+  EXPECT_EQ(failed([](Sidecar& s) { s.source.type = "float32x"; }), "sidecar source.type\n");
+  EXPECT_EQ(failed([](Sidecar& s) { s.nonfinite.policy = "never"; }), "sidecar nonfinite.policy\n");
+  EXPECT_EQ(failed([](Sidecar& s) { s.background.share = 1.5; }), "sidecar background.share\n");
+  EXPECT_EQ(failed([](Sidecar& s) { s.conversion_loss.overflow = 1U << 30U; }), "sidecar conversion_loss.overflow\n");
   EXPECT_EQ(failed([](Sidecar& s) { s.histogram.counts[0] += 5; }), "sidecar histogram.counts\n");
   EXPECT_EQ(failed([](Sidecar& s) { s.histogram.counts[0] += 5, s.missing.policy = ""; }), "") << "as of weir 0.1";
   EXPECT_EQ(failed([](Sidecar& s) {
