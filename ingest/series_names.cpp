@@ -1,4 +1,5 @@
 #include "ingest/series_names.h"
+#include "ingest/files/input_directory.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -203,7 +204,7 @@ std::vector<std::string> series_outputs(std::span<const SeriesStep> steps, const
   std::vector<std::string> paths;
   for (const SeriesStep& step : steps) {
     std::filesystem::path path = output.substr(0, directory_end) + step_name(output.substr(directory_end), step);
-    if (output.empty()) path = std::filesystem::path(step.path).replace_filename(default_name(step));
+    if (output.empty()) path = std::filesystem::path(named_by_head(step.path)).replace_filename(default_name(step));
     if (directory) path /= default_name(step);
     path = with_level(path.string(), step);
     const auto [other, is_new] = taken.emplace(path.lexically_normal().string(), &step);

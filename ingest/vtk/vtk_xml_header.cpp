@@ -144,8 +144,13 @@ class XmlParser {
   void read_time(const pugi::xml_node& fields) {
     const pugi::xml_node node = fields.find_child_by_attribute("DataArray", "Name", "TimeValue");
     if (!node || std::string_view(node.attribute("NumberOfTuples").as_string("1")) != "1") return;
-    VtkXmlArray array = read_array(node, false);
-    if (array.components == 1) header_.time = std::move(array);
+    try {
+      VtkXmlArray array = read_array(node, false);
+      if (array.components == 1) header_.time = std::move(array);
+    } catch (const Error& error) {  // the volume is read without it, and that is said
+      header_.time.emplace();
+      header_.time->obstacle = error.what();
+    }
   }
 
   VtkXmlArray read_array(const pugi::xml_node& node, bool cells) const {

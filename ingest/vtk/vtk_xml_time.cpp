@@ -30,6 +30,7 @@ double time_in_text(InputFile& file, const VtkXmlArray& array, const std::string
 double time_value(InputFile& file, const VtkXmlHeader& header) {
   const VtkXmlArray& array = *header.time;
   const std::string where = cat(file.path(), ": array 'TimeValue' of its field data");
+  if (!array.obstacle.empty() && array.name.empty()) throw Error(ErrorKind::input, array.obstacle);
   if (!array.obstacle.empty()) throw Error(ErrorKind::input, cat(where, ": ", array.obstacle));
   if (array.format == VtkXmlArray::Format::ascii) return time_in_text(file, array, where);
   std::array<std::byte, sizeof(double)> buffer{};

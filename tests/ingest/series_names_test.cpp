@@ -77,6 +77,11 @@ TEST(SeriesNames, OfAFileThatHoldsOneVolume_AreItsStem) {
             Names{"out/none.nvdb"});
 }
 
+TEST(SeriesNames, OfAPlotfileNamedByItsHeader_LieBesideIt) {
+  EXPECT_EQ(series_outputs(std::vector<SeriesStep>{{"run/plt00042/Header", "", {}, "plt00042", ""}}, ""),
+            Names{"run/plt00042.nvdb"});
+}
+
 TEST(SeriesNames, OfAPositionChosen_HasItWithZerosBefore) {
   const Scratch scratch;
   scratch.write("a.raw", std::vector<std::byte>(4 * 3 * 2 * 5 * 12));

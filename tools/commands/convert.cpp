@@ -284,8 +284,16 @@ void convert(const CLI::App& command, const ConvertArguments& a) {
     check_level_budgets(steps, outputs, i, options, open);
     if (a.dry_run) {
       forecasts.push_back(forecast_step(steps[i], source_options, options, work));
-    } else {
+      continue;
+    }
+    try {
       sidecars.push_back(convert_step(steps[i], source_options, options, work));
+    } catch (const std::exception&) {
+      if (steps.size() > 1) {
+        spdlog::warn("{} of {} volumes were converted, and none after {}; --skip-done leaves out what is done", i,
+                     steps.size(), steps[i].path);
+      }
+      throw;
     }
   }
   if (trace) trace->close();

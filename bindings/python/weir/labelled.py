@@ -105,13 +105,15 @@ def _axis(array: xarray.DataArray, place: int) -> tuple[dict[str, Any], float, f
         return axis, 1.0, 0.0, False
     if len(positions) == 1:
         return axis, 1.0, float(positions[0]), False
-    falls = bool((numpy.diff(positions) < 0).all())
-    if not falls and not (numpy.diff(positions) > 0).all():
+    steps = numpy.diff(positions)
+    falls = bool((steps < 0).all())
+    if not falls and not (steps > 0).all():
         axis["coordinates"] = positions.tolist()
-        axis["note"] = (
-            f"coordinates from {positions[0]:.9g} to {positions[-1]:.9g} that rise and fall, taken as indices; "
-            f"source.sortby({str(name)!r}) puts them in order"
-        )
+        from_to = f"coordinates from {positions[0]:.9g} to {positions[-1]:.9g}"
+        if (steps == 0).any():
+            axis["note"] = f"{from_to}, some of them equal, taken as indices"
+        else:
+            axis["note"] = f"{from_to} that rise and fall, taken as indices; source.sortby({str(name)!r}) puts them in order"
         return axis, 1.0, 0.0, False
     if falls:
         positions = positions[::-1]

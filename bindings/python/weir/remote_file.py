@@ -38,16 +38,23 @@ class RemoteFile:
         self.bytes_read = 0
         self._lock = threading.Lock()
         self._reads: list[_Read] = []  # those under way
+        self._forked = False
         _files.add(self)
 
     def begin_again(self) -> None:
         """In a process that was forked: connections, locks and threads are those of the other one."""
         self._lock = threading.Lock()
         self._reads = []
-        self._connect()
+        self._forked = True
 
     def _connect(self) -> None:
         """Makes what requests go through, anew."""
+
+    def _leave_the_forks_connections(self) -> None:
+        with self._lock:
+            if self._forked:
+                self._connect()
+            self._forked = False
 
     def read(self, ranges: Sequence[Range]) -> list[bytes]:
         """The bytes of each range, all there or an exception. In pieces, several at once."""
@@ -57,6 +64,7 @@ class RemoteFile:
 
     def _run(self, work: Callable[[Range], Any], pieces: Sequence[Range]) -> list[Any]:
         """What `work` makes of each piece, by threads that interrupt() makes nobody wait for."""
+        self._leave_the_forks_connections()
         read = _Read(work, pieces)
         with self._lock:
             self._reads.append(read)
@@ -230,6 +238,7 @@ class HttpFile(RemoteFile):
             raise InputError(f"{self._url}: changed while it was read; open it again")
 
     def read_beside(self, url: str) -> Optional[str]:
+        self._leave_the_forks_connections()
         with self._answer(url, {"Accept-Encoding": "identity"}) as response:
             if response.status in (401, 403, 404, 410):  # some stores say 403 of what is missing
                 return None
@@ -313,6 +322,7 @@ class FsspecFile(RemoteFile):
         return self._count(data)
 
     def read_beside(self, url: str) -> Optional[str]:
+        self._leave_the_forks_connections()
         try:
             data = self._cat(self._path + ".json", 0, _LONGEST_SIDECAR + 1)
         except (FileNotFoundError, PermissionError):

@@ -1,7 +1,9 @@
 #include "ingest/hdf5/meaning/dimension_scales.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <span>
 #include <string>
@@ -97,7 +99,7 @@ void place_by_scale(hid_t scale, bool grows, AxisPlace& axis) {
   std::vector<double> coordinates = coordinate_values(scale);
   if (std::cmp_not_equal(coordinates.size(), axis.extent)) {
     axis.note = coordinates.empty()
-                    ? "its coordinates are no row of numbers whose meaning is clear, taken as indices"
+                    ? "its coordinates are no row of numbers, or packed by no number, taken as indices"
                     : cat("it has ", coordinates.size(), coordinates.size() == 1 ? " coordinate" : " coordinates",
                           " for ", axis.extent, " elements, taken as indices");
     return;
@@ -132,10 +134,18 @@ std::vector<double> coordinate_values(hid_t dataset) {
   const Storage storage = storage_of(dataset);
   const ValueMeaning meaning = value_meaning(
       dataset, meant, storage.fill_is_set ? std::span<const std::byte>(storage.fill) : std::span<const std::byte>());
-  if (!meaning.obstacle.empty()) return {};
+  if (!meaning.unpacks) return {};
   std::vector<std::byte> bytes(count * scalar_bytes(meant.scalar));
   if (H5Dread(dataset, type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data()) < 0) throw cut_short(hdf5_reason());
-  return decode_doubles(bytes, meant.scalar, meant.big_endian, meaning.mapping);
+  std::vector<double> values = decode_doubles(bytes, meant.scalar, meant.big_endian, meaning.mapping);
+  if (std::none_of(values.begin(), values.end(), [](double v) { return std::isnan(v); })) return values;
+  // What an attribute calls missing in the midst of a row that rises or falls is none.
+  ValueMapping all = meaning.mapping;
+  all.missing.clear();
+  std::vector<double> kept = decode_doubles(bytes, meant.scalar, meant.big_endian, all);
+  const auto unlike = [&](auto order) { return std::adjacent_find(kept.begin(), kept.end(), std::not_fn(order)); };
+  const bool in_order = unlike(std::less<>()) == kept.end() || unlike(std::greater<>()) == kept.end();
+  return in_order && std::isfinite(kept.front()) && std::isfinite(kept.back()) ? kept : values;
 }
 
 bool is_bare_dimension(hid_t dataset) {

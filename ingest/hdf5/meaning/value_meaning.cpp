@@ -111,8 +111,11 @@ ValueMeaning value_meaning(hid_t object, const StoredType& type, std::span<const
       is_netcdf(object)) {
     meaning.mapping.missing.push_back(*by_netcdf);
   }
-  meaning.mapping.scale = packing(object, "scale_factor", 1.0, meaning.obstacle);
-  meaning.mapping.offset = packing(object, "add_offset", 0.0, meaning.obstacle);
+  std::string packed_unclearly;
+  meaning.mapping.scale = packing(object, "scale_factor", 1.0, packed_unclearly);
+  meaning.mapping.offset = packing(object, "add_offset", 0.0, packed_unclearly);
+  meaning.unpacks = packed_unclearly.empty();
+  if (!meaning.unpacks) meaning.obstacle = packed_unclearly;
   for (const char* name : {"units", "Units"}) {
     const std::vector<std::string> texts = text_attribute(object, name);
     if (meaning.units.empty() && !texts.empty()) meaning.units = texts[0];

@@ -19,6 +19,7 @@ struct ValueMeaning {
   std::string units;              ///< attribute units (or Units); else empty
   std::optional<double> unit_si;  ///< of openPMD
   std::string obstacle;           ///< an attribute that makes the values unclear; else empty
+  bool unpacks = true;            ///< scale and offset are clear
   std::string note;               ///< an attribute that nothing is made of; else empty
 };
 

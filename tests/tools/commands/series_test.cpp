@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "format/base/text.h"
 #include "tests/support/run_command.h"
 
 namespace weir::series_test {
@@ -106,6 +107,21 @@ TEST_F(SeriesCommand, SeveralPositionsOfAnArray_HaveANameEach) {
   EXPECT_EQ(list_directory(directory_.path() / "out"),
             (std::vector<std::string>{"a_09.nvdb", "a_09.nvdb.json", "a_10.nvdb", "a_10.nvdb.json", "a_11.nvdb",
                                       "a_11.nvdb.json"}));
+}
+
+TEST_F(SeriesCommand, AStepThatFails_IsSaidWithWhatWasDone) {
+  for (int i = 0; i < 3; ++i) {
+    std::string bytes(16 * 16 * 16 * sizeof(float), '\0');
+    if (i == 1) bytes.replace(0, 4, "\xFF\xFF\xFF\xFF");  // NaN
+    write_file(directory_ / cat("n_", i, "_16x16x16_float32.raw"), bytes);
+  }
+  const auto made =
+      run_weir({"convert", directory_ / "n_%d_16x16x16_float32.raw", "-o", directory_ / "out/", "--size", "400000"});
+  EXPECT_EQ(made.exit_code, 3);
+  EXPECT_NE(made.err.find("1 of 3 volumes were converted, and none after " + (directory_ / "n_1_16x16x16_float32.raw") +
+                          "; --skip-done leaves out what is done"),
+            std::string::npos)
+      << made.err;
 }
 
 TEST_F(SeriesCommand, AStackIsOneVolume) {

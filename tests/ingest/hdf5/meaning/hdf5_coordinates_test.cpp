@@ -57,10 +57,23 @@ n.close()
   EXPECT_EQ(info.spacing, (Triple{1, 1, 1}));
   EXPECT_EQ(info.origin, (Triple{0, 0, 0}));
   const auto& axes = info.details.axes;
-  EXPECT_EQ(axes[0].note, "its coordinates are no row of numbers whose meaning is clear, taken as indices");
+  EXPECT_EQ(axes[0].note, "its coordinates are no row of numbers, or packed by no number, taken as indices");
   EXPECT_EQ(axes[1].note, "coordinates that are missing or not finite, taken as indices");
   EXPECT_EQ(axes[2].note, "coordinates that are missing or not finite, taken as indices");
   for (const AxisDetails& axis : axes) EXPECT_TRUE(axis.coordinates.empty());
+}
+
+TEST_F(Hdf5Coordinates, InOrderHaveNoneMissing) {
+  write_by_h5py(scratch_, R"(
+with h5py.File("a.nc", "w") as f:
+    d = f.create_dataset("t", data=values("f4"))
+    for axis, (name, attribute, value) in enumerate([("z", "_FillValue", 0.0), ("y", "missing_value", np.bytes_("none"))]):
+        f[name] = np.arange(SHAPE[axis]) * 2.0; f[name].make_scale(name); f[name].attrs[attribute] = value
+        d.dims[axis].attach_scale(f[name])
+)");
+  const SourceInfo info = info_of("t");
+  EXPECT_EQ(info.spacing, (Triple{1, 2, 2}));
+  EXPECT_EQ(info.details.axes[1].note + info.details.axes[2].note, "");
 }
 
 TEST_F(Hdf5Coordinates, OfTheEdgesOfCellsAreSaid) {
