@@ -63,7 +63,6 @@ class Fields {
     ended_by_file_ = true;
   }
 
-  const std::string& path() const { return path_; }
   std::size_t header_bytes() const { return header_bytes_; }
   bool ended_by_file() const { return ended_by_file_; }
 
@@ -137,10 +136,6 @@ bool is_gzip(const Fields& fields) {
 
 bool is_big_endian(const Fields& fields, ScalarType type) {
   if (fields.find("endian") == nullptr && scalar_bytes(type) == 1) return false;
-  if (fields.find("endian") == nullptr) {
-    throw Error(ErrorKind::input,
-                cat(fields.path(), ": its header has no field 'endian'; write 'endian: little' or big into it"));
-  }
   const std::string endian = lower_case(fields.required("endian").value);
   if (endian != "big" && endian != "little") throw fields.wrong("endian", "it must be little or big");
   return endian == "big";

@@ -86,12 +86,14 @@ double first_position(const SourceInfo& info, std::size_t axis) {
 StackedPlanes stacked_planes(const std::string& path, const SourceInfo& info) {
   const AxisDetails& z = info.details.axes[2];
   const bool irregular = !z.reversed && !z.note.empty();
+  // Steps along axes that fall, or lie across those of the world, are not those of its z.
+  const bool aligned = info.details.orientation.empty();
   return {path,
           info.extent.z,
           first_position(info, 2),
           info.spacing[2],
           z.coordinates,
-          !irregular || std::ssize(z.coordinates) == info.extent.z,
+          aligned && (!irregular || std::ssize(z.coordinates) == info.extent.z),
           z.reversed};
 }
 
