@@ -54,7 +54,7 @@ class Hdf5CrashRemoval {
 /// For main() of a program that does one thing and ends: SIGSEGV, SIGBUS and SIGABRT of a thread within a Hdf5Call, or
 /// that reads values as Hdf5Reads says, end it with a line of the file and exit code 3, since nothing that the library
 /// holds can be trusted any more. Elsewhere they do what they did, as where something else handles them already, like a
-/// sanitizer. A thread that computes for `longest` within one Hdf5Call, which opens files of a million objects in less,
+/// sanitizer. A thread that computes for `longest` within one Hdf5Call, far longer than a whole file takes,
 /// ends the program as well.
 void report_hdf5_crashes(std::chrono::milliseconds longest = std::chrono::minutes(5));
 

@@ -169,7 +169,7 @@ void print_text(const Comparison& c, const std::string& units) {
   const char* const counted = c.missing > 0 ? " valid" : " finite";
   if (e.lossless) {
     std::cout << cat(c.nonfinite_different == 0 ? "lossless: all " : "lossless over valid voxels: all ", c.finite,
-                     counted, " voxels read bit for bit", c.loss.inexact > 0 ? ", as float32" : "", "\n");
+                     counted, " voxels read bit for bit\n");
   } else {
     std::cout << cat("mse        ", short_number(e.mse), "\nrmse       ", short_number(e.rmse), "\nnmse       ",
                      short_number(e.nmse), '\n');

@@ -179,7 +179,9 @@ Json packed_json(const PackedData& packed, const PackedCensus& census) {
 
 std::string certificate_text(const Sidecar& s, const Sidecar::CertifiedError& error) {
   if (error.lossless) {
-    const bool rounded = s.conversion_loss.inexact + s.conversion_loss.overflow > 0;
+    // So that it is seen: float32 rounds all values to some digit.
+    const double seen = 1e-4 * (s.value_range[1] - s.value_range[0]);
+    const bool rounded = s.conversion_loss.overflow > 0 || s.conversion_loss.max_abs_error > seen;
     return cat(lossless_text(s), lossless_everywhere(s) ? ": every voxel" : ": each of them", " as in the source",
                rounded ? " rounded to float32" : "");
   }
