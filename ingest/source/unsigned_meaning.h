@@ -2,6 +2,7 @@
 // says: NetCDF-3 had signed ones alone, OPeNDAP unsigned bytes alone.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -13,43 +14,34 @@
 
 namespace weir {
 
+struct IntegerTypes {
+  ScalarType with_sign;
+  ScalarType without;
+};
+inline constexpr std::array kIntegerTypes{
+    IntegerTypes{ScalarType::int8, ScalarType::uint8}, IntegerTypes{ScalarType::int16, ScalarType::uint16},
+    IntegerTypes{ScalarType::int32, ScalarType::uint32}, IntegerTypes{ScalarType::int64, ScalarType::uint64}};
+
 /// The unsigned type of the width of `type`, a signed integer; any other type as it is.
 constexpr ScalarType unsigned_type(ScalarType type) {
-  switch (type) {
-    case ScalarType::int8:
-      return ScalarType::uint8;
-    case ScalarType::int16:
-      return ScalarType::uint16;
-    case ScalarType::int32:
-      return ScalarType::uint32;
-    case ScalarType::int64:
-      return ScalarType::uint64;
-    default:
-      return type;
+  for (const IntegerTypes& types : kIntegerTypes) {
+    if (types.with_sign == type) return types.without;
   }
+  return type;
 }
 
 /// The signed type of the width of `type`, an unsigned integer; any other type as it is.
 constexpr ScalarType signed_type(ScalarType type) {
-  switch (type) {
-    case ScalarType::uint8:
-      return ScalarType::int8;
-    case ScalarType::uint16:
-      return ScalarType::int16;
-    case ScalarType::uint32:
-      return ScalarType::int32;
-    case ScalarType::uint64:
-      return ScalarType::int64;
-    default:
-      return type;
+  for (const IntegerTypes& types : kIntegerTypes) {
+    if (types.without == type) return types.with_sign;
   }
+  return type;
 }
 
 /// What is said of such values is of the type that they are stored as: -1 stands for the 255 of what is meant as uint8.
 /// Of another `type` than an unsigned integer, the value as it is.
 inline StoredValue as_unsigned(const StoredValue& value, ScalarType type) {
-  const bool meant = type == ScalarType::uint8 || type == ScalarType::uint16 || type == ScalarType::uint32 ||
-                     type == ScalarType::uint64;
+  const bool meant = signed_type(type) != type;
   const auto* const negative = std::get_if<std::int64_t>(&value);
   if (!meant || negative == nullptr || *negative >= 0) return value;
   const auto bits = static_cast<unsigned>(8 * scalar_bytes(type));
