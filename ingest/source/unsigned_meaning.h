@@ -51,8 +51,7 @@ inline StoredValue as_unsigned(const StoredValue& value, ScalarType type) {
 /// The other way: 255 stands for the -1 of what is meant as int8. Of another `type` than a signed integer, the value as
 /// it is.
 inline StoredValue as_signed(const StoredValue& value, ScalarType type) {
-  const bool meant =
-      type == ScalarType::int8 || type == ScalarType::int16 || type == ScalarType::int32 || type == ScalarType::int64;
+  const bool meant = unsigned_type(type) != type;
   const auto* const natural = std::get_if<std::uint64_t>(&value);
   const auto bits = static_cast<unsigned>(8 * scalar_bytes(type));
   if (!meant || natural == nullptr || *natural < std::uint64_t{1} << (bits - 1)) return value;
