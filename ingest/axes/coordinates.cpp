@@ -26,10 +26,6 @@ std::string coordinate_text(double value, double precision) {
 
 void place(std::span<const double> coordinates, double precision, AxisPlace& axis) {
   if (coordinates.empty()) return;
-  if (!std::all_of(coordinates.begin(), coordinates.end(), [](double c) { return std::isfinite(c); })) {
-    axis.note = "coordinates that are missing or not finite, taken as indices";
-    return;
-  }
   const double first = coordinates.front();
   const double last = coordinates.back();
   if (coordinates.size() == 1) {
@@ -57,8 +53,12 @@ void place(std::span<const double> coordinates, double precision, AxisPlace& axi
 }  // namespace
 
 void place_by_coordinates(std::vector<double> coordinates, double precision, AxisPlace& axis) {
-  place(coordinates, precision, axis);
   const bool finite = std::all_of(coordinates.begin(), coordinates.end(), [](double c) { return std::isfinite(c); });
+  if (finite) {
+    place(coordinates, precision, axis);
+  } else {
+    axis.note = "coordinates that are missing or not finite, taken as indices";
+  }
   if (axis.is_time || (!axis.spacing && finite)) axis.coordinates = std::move(coordinates);
   if (axis.is_time) axis.falls = false;
 }

@@ -4,11 +4,14 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <initializer_list>
 #include <numeric>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "compressor/leaf/certificate.h"
+#include "format/base/scalar_type.h"
 #include "format/base/text.h"
 #include "format/sidecar/valid_voxels.h"
 
@@ -74,9 +77,8 @@ std::vector<VolumeCheck> check_certificate(const Sidecar& s) {
     const bool is_known = std::find(known.begin(), known.end(), value) != known.end();
     checks.push_back({cat("sidecar ", name), value, is_known ? value : "a name that weir writes", is_known});
   };
-  one_of("source.type", s.source.type,
-         {"uint8", "int8", "uint16", "int16", "uint32", "int32", "uint64", "int64", "float16", "bfloat16", "float32",
-          "float64"});
+  const auto type = parse_scalar(s.source.type);
+  one_of("source.type", s.source.type, {type ? scalar_name(*type) : "none"});  // by no alias
   one_of("nonfinite.policy", s.nonfinite.policy, {"error", "background", "keep"});
   if (!s.missing.policy.empty()) one_of("missing.policy", s.missing.policy, {"error", "background", "nan", "keep"});
   checks.push_back({"sidecar background.share", cat(s.background.share), "0 to 1",

@@ -79,6 +79,8 @@ TEST(VtkXmlTime, TimeThatCannotBeRead_IsLeftOut_AndSaid) {
             where + "its text is 'soon', not one number" + rest);
   EXPECT_EQ(said(with_field({}, time_array("type=\"String\"", "49 0"))),
             where + "its type is 'String', and Int8 to Float64 can be read" + rest);
+  EXPECT_EQ(said(with_field({}, time_array("type=\"Float64\" format=\"zipped\"", "1"))),
+            "a.vti: format of DataArray is 'zipped'; ascii, binary or appended" + rest);
   const VtiStorage storage;
   const auto binary = [&](const VtiData& data) {
     return with_field(storage, time_array("type=\"Float64\" format=\"binary\"", data.text(storage)));
