@@ -59,7 +59,7 @@ inline Result convert_by(BlockCoder* coder, VolumeSource& volume, ConversionOpti
   control.notice = [&](const Message& line) { result.notices.push_back(line.text()); };
   control.coder = coder;
   result.sidecar = convert_volume(volume, options, control, files);
-  result.file = files.content("out.nvdb");
+  result.file = files.take("out.nvdb");
   return result;
 }
 

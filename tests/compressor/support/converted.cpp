@@ -22,7 +22,7 @@ Converted convert(VolumeSource& volume, ConversionOptions options) {
   control.planned = [&](std::uint64_t /*bytes*/) { ++converted.files_made; };
   converted.sidecar = convert_volume(volume, options, control, files);
   EXPECT_EQ(files.names(), (std::vector<std::string>{"out.nvdb", "out.nvdb.json"}));
-  converted.file = files.content("out.nvdb");
+  converted.file = files.take("out.nvdb");
   EXPECT_EQ(converted.file.size(), converted.sidecar.file.bytes);
   return converted;
 }

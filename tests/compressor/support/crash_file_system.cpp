@@ -13,7 +13,14 @@ namespace weir::test {
 struct CrashFileSystem::Stored {
   std::mutex mutex;
   Bytes bytes;
-  Bytes flushed;
+  Bytes flushed;            ///< what was flushed last, where the file has changed since
+  bool is_flushed = false;  ///< bytes are what was flushed last
+
+  /// Called before bytes change. A file that is flushed and then left alone, as most are, is never copied.
+  void keep_flushed() {
+    if (is_flushed) flushed = bytes;
+    is_flushed = false;
+  }
 };
 
 class CrashFile final : public File {
@@ -25,6 +32,7 @@ class CrashFile final : public File {
   void write_at(std::uint64_t offset, std::span<const std::byte> bytes) override {
     const std::scoped_lock lock(stored_->mutex);
     if (bytes.empty()) return;
+    stored_->keep_flushed();
     if (stored_->bytes.size() < offset + bytes.size()) stored_->bytes.resize(offset + bytes.size());
     std::memcpy(stored_->bytes.data() + offset, bytes.data(), bytes.size());
   }
@@ -36,17 +44,21 @@ class CrashFile final : public File {
   }
   bool preallocate(std::uint64_t bytes) override {
     const std::scoped_lock lock(stored_->mutex);
-    if (stored_->bytes.size() < bytes) stored_->bytes.resize(bytes);
+    if (stored_->bytes.size() >= bytes) return true;
+    stored_->keep_flushed();
+    stored_->bytes.resize(bytes);
     return true;
   }
   void clear() override {
     const std::scoped_lock lock(stored_->mutex);
+    stored_->keep_flushed();
     stored_->bytes.clear();
   }
   void start_writeback() override {}
   void sync() override {
     const std::scoped_lock lock(stored_->mutex);
-    stored_->flushed = stored_->bytes;
+    stored_->is_flushed = true;
+    stored_->flushed = {};
   }
   std::uint64_t size() override {
     const std::scoped_lock lock(stored_->mutex);
@@ -62,10 +74,20 @@ class CrashFile final : public File {
   std::string path_;
 };
 
-CrashFileSystem::Bytes CrashFileSystem::content(const std::string& path) const {
+const CrashFileSystem::Bytes& CrashFileSystem::content(const std::string& path) const {
+  static const Bytes none;
   const std::scoped_lock lock(mutex_);
   const auto found = files_.find(path);
-  return found == files_.end() ? Bytes{} : found->second->bytes;
+  return found == files_.end() ? none : found->second->bytes;
+}
+
+CrashFileSystem::Bytes CrashFileSystem::take(const std::string& path) {
+  const std::scoped_lock lock(mutex_);
+  const auto found = files_.find(path);
+  if (found == files_.end()) return {};
+  Bytes bytes = std::move(found->second->bytes);
+  files_.erase(found);
+  return bytes;
 }
 
 std::vector<std::string> CrashFileSystem::names() const {
@@ -89,7 +111,9 @@ void CrashFileSystem::lose_unflushed() {
   });
   durable_files_ = files_;
   directories_ = durable_directories_;
-  for (const auto& [name, stored] : files_) stored->bytes = stored->flushed;
+  for (const auto& [name, stored] : files_) {
+    if (!stored->is_flushed) stored->bytes = stored->flushed;
+  }
 }
 
 std::unique_ptr<File> CrashFileSystem::create(const std::string& path) {

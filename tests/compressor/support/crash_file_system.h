@@ -19,8 +19,10 @@ class CrashFileSystem final : public FileSystem {
  public:
   using Bytes = std::vector<std::byte>;
 
-  /// Content of a file; empty where there is none.
-  Bytes content(const std::string& path) const;
+  /// Content of a file, until it is written again; empty where there is none.
+  const Bytes& content(const std::string& path) const;
+  /// Content of a file, which is removed; empty where there was none.
+  Bytes take(const std::string& path);
   std::vector<std::string> names() const;
   /// Those that were made and not removed.
   std::vector<std::string> directories() const;

@@ -55,7 +55,7 @@ Converted push(const SourceInfo& info, std::span<const std::byte> values, Conver
   }
   pushed.sidecar = volume.end();
   EXPECT_EQ(files.names(), (std::vector<std::string>{"out.nvdb", "out.nvdb.json"}));
-  pushed.file = files.content("out.nvdb");
+  pushed.file = files.take("out.nvdb");
   return pushed;
 }
 

@@ -92,7 +92,7 @@ class ResumeTest : public ::testing::Test {
     options.resume = Resume::off;
     Result result = run(options, files);
     EXPECT_EQ(files.names(), kResult);
-    result.file = files.content("out.nvdb");
+    result.file = files.take("out.nvdb");
     return result;
   }
 
