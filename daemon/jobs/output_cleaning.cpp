@@ -165,11 +165,16 @@ class Cleaner {
  private:
   // Null where another process has it.
   std::unique_ptr<File> hold(const std::string& lock_path) const {
+    bool was_free = false;
     for (;;) {
       try {
         return files->open(lock_path);
       } catch (const Error&) {
-        if (!is_written(lock_path)) throw;
+        // Its writer may have ended since: a free file that cannot be opened twice is another matter.
+        const bool is_free = !is_written(lock_path);
+        if (is_free && was_free) throw;
+        was_free = is_free;
+        if (is_free) continue;
         if (Clock::now() >= deadline_) return nullptr;
       }
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
