@@ -23,6 +23,7 @@
 #include "tools/options/table_options.h"
 #include "tools/report/progress.h"
 #include "tools/report/standard_output.h"
+#include "tools/view/memory_check.h"
 #include "tools/view/source_preview.h"
 #include "tools/view/view_server.h"
 
@@ -171,6 +172,12 @@ void view(const ViewArguments& arguments) {
   // What cannot be read at all ends the command, and not a person's patience.
   for (const std::string& fault : begin_with_readable(files)) {
     spdlog::warn("{}; the page begins with {}", fault, files.steps.front());
+  }
+  if (backend->name() == "cpu") {
+    require_memory(files, choice.memory, [&](const std::string& path) {
+      if (preview && path == preview->file()) return arguments.input;
+      return compared && path == compared->file() ? arguments.against : path;
+    });
   }
   ListenAddress address = settings.address;
   const std::string token = arguments.for_program ? settings.token : "";

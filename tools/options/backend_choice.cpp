@@ -1,6 +1,7 @@
 #include "tools/options/backend_choice.h"
 
 #include "format/base/error.h"
+#include "format/nanovdb/macrocells.h"
 #ifdef WEIR_HAVE_CUDA
 #include "gpu/cuda/render/cuda_backend.h"
 #include "gpu/cuda/runtime/check.h"
@@ -24,6 +25,13 @@ std::unique_ptr<Backend> make_backend(const BackendChoice& choice) {
   }
 #endif
   return make_cpu_backend(choice.threads, choice.memory);
+}
+
+std::int64_t own_macrocell([[maybe_unused]] const Backend& backend) {
+#ifdef WEIR_HAVE_CUDA
+  if (backend.name() == "cuda") return kDeviceMacrocell;
+#endif
+  return kMacrocell;
 }
 
 }  // namespace weir

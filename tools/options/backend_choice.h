@@ -22,4 +22,7 @@ struct BackendChoice {
 /// Throws Error(usage) for "cuda" where this build or this machine has none.
 std::unique_ptr<Backend> make_backend(const BackendChoice& choice);
 
+/// Voxels along the edge of the macrocells that the back end takes where Backend::load is asked for none.
+std::int64_t own_macrocell(const Backend& backend);
+
 }  // namespace weir

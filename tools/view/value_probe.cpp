@@ -47,12 +47,11 @@ Box shown_box(const NvdbGrid& grid, const Scene& scene) {
 
 }  // namespace
 
-std::optional<ProbedVoxel> probe_voxel(const NvdbGrid& grid, const Scene& scene, const MinMax& range, float background,
-                                       double aspect, double x, double y) {
+std::optional<ProbedVoxel> probe_voxel(const NvdbGrid& grid, const Scene& scene, const Camera& camera,
+                                       const MinMax& range, float background, double x, double y) {
   const GridFrame frame = frame_of(grid);
   const Box box = shown_box(grid, scene);
   if (box.empty()) return std::nullopt;
-  const Camera camera = make_camera(scene.camera, frame, std::array{box}, aspect);
   const Float3 stretch = narrow(frame.stretch());
   const Float3 direction = camera.direction(static_cast<float>(x), static_cast<float>(y));
   Ray ray{camera.position, direction / stretch};

@@ -6,6 +6,7 @@
 #include "format/base/index.h"
 #include "format/nanovdb/nvdb_grid.h"
 #include "format/sidecar/scene.h"
+#include "gpu/scene/camera.h"
 
 namespace weir {
 
@@ -17,10 +18,10 @@ struct ProbedVoxel {
 
 /// The voxel that gives the point (x, y) of the picture, both in [0, 1] from the upper left, most of its colour: of a
 /// surface the first one it passes, of the largest value that voxel, else the one whose light is the largest share of
-/// the pixel's. `aspect` is the picture's width / height, `range` of the values, finite, `background` as RenderOptions
-/// has it. None where nothing is seen there. Looks at the voxels along one ray, a block at a time. Throws as
-/// make_camera and NvdbGrid::decode_block.
-std::optional<ProbedVoxel> probe_voxel(const NvdbGrid& grid, const Scene& scene, const MinMax& range, float background,
-                                       double aspect, double x, double y);
+/// the pixel's. `camera` is the picture's, `range` of the values, finite, `background` as RenderOptions has it. None
+/// where nothing is seen there. Looks at the voxels along one ray, a block at a time. Throws as
+/// NvdbGrid::decode_block.
+std::optional<ProbedVoxel> probe_voxel(const NvdbGrid& grid, const Scene& scene, const Camera& camera,
+                                       const MinMax& range, float background, double x, double y);
 
 }  // namespace weir

@@ -11,6 +11,7 @@
 #include "daemon/http/socket_token.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "tools/options/backend_choice.h"
 #include "tools/view/base/file_identity.h"
 #include "tools/view/value_probe.h"
 #include "tools/view/view_access.h"
@@ -41,9 +42,9 @@ Json names_of(const std::vector<std::string>& paths) {
   return names;
 }
 
-RenderedSeries rendered_series_of(const StepList& steps, const ViewedFiles& files) {
-  // As weir render has it where there is one file: that file's own.
-  return {steps, files.against, files.series() ? files.heads.summary().background : std::nullopt};
+// As weir render has it where there is one file: that file's own.
+std::optional<float> picture_background(const ViewedFiles& files) {
+  return files.series() ? files.heads.summary().background : std::nullopt;
 }
 
 bool is_page_file(const RequestTarget& target) {
@@ -65,6 +66,7 @@ ViewServer::ViewServer(boost::asio::io_context& io, ViewSettings settings, Viewe
       steps_(files_.steps),
       rules_(rules_of(settings_)),
       backend_(backend),
+      cameras_(own_macrocell(backend)),
       shelf_(backend, volumes_held(files_)),
       scene_requests_(io,
                       {settings_.program, settings_.preview_of, settings_.allow_convert, settings_.forecast,
@@ -87,7 +89,7 @@ ViewServer::ViewServer(boost::asio::io_context& io, ViewSettings settings, Viewe
         return count_histogram(question, cancel);
       },
       [this](ViewerId id, const std::string& text) { send(id, text); });
-  loop_.emplace(backend_, shelf_, rendered_series_of(steps_, files_), render_events());
+  loop_.emplace(backend_, shelf_, RenderedSeries{steps_, files_.against, picture_background(files_)}, render_events());
   if (files_.grow) {
     step_watch_.emplace(io_, side_, steps_, files_, settings_.look_again,
                         [this](const SeriesSummary& summary) { tell_steps(summary); });
@@ -191,7 +193,7 @@ void ViewServer::receive(ViewerId id, std::string_view text) {
     std::visit([&](auto&& message) { handle(id, found->second, std::forward<decltype(message)>(message)); },
                parse_client_message(text, steps_.count(), !files_.against.empty(), settings_.pixels));
   } catch (const std::exception& error) {
-    send(id, error_message(0, error.what()));
+    send(id, refusal_message(text, error.what()));
   }
 }
 
@@ -297,10 +299,14 @@ void ViewServer::answer_probe(ViewerId id, Viewer& viewer) {
         Json answer{{"type", "value"}, {"id", probe.id}, {"found", false}};
         try {
           const auto file = open_files_.get(file_of(view->step, probe.side));
-          const double aspect = static_cast<double>(view->width) / view->height;
+          RenderOptions picture;
+          picture.width = view->width;
+          picture.height = view->height;
+          picture.background = picture_background(files_);
+          const Camera camera = cameras_.camera(file, view->scene, picture);
           const SeenValues values = files_.series() ? common : seen_values(file->grid());
           if (const auto found =
-                  probe_voxel(file->grid(), view->scene, values.range, values.background, aspect, probe.x, probe.y)) {
+                  probe_voxel(file->grid(), view->scene, camera, values.range, values.background, probe.x, probe.y)) {
             answer["found"] = true;
             answer["value"] = found->value;
             answer["voxel"] = {found->voxel.x, found->voxel.y, found->voxel.z};

@@ -23,6 +23,7 @@
 #include "tools/view/convert/scene_requests.h"
 #include "tools/view/histogram_counts.h"
 #include "tools/view/kept_texts.h"
+#include "tools/view/picture_cameras.h"
 #include "tools/view/render_loop.h"
 #include "tools/view/steps/step_list.h"
 #include "tools/view/steps/step_watch.h"
@@ -112,6 +113,7 @@ class ViewServer {
   std::shared_ptr<int> alive_ = std::make_shared<int>(0);  // what other threads post is dropped with it
   OpenFiles open_files_;
   KeptTexts facts_cache_;
+  PictureCameras cameras_;
   VolumeShelf shelf_;
   std::optional<HistogramCounts> histograms_;
   std::optional<RenderLoop> loop_;

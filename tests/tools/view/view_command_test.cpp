@@ -89,13 +89,26 @@ TEST_F(ViewCommandTest, WhatItCannotShow_IsRefused) {
   expect_refused({"view", volume_, "--against", directory_ / "none.nvdb"}, 3,
                  cat(directory_ / "none.nvdb", ": cannot open: No such file or directory"));
   std::filesystem::create_directory(directory_ / "empty");
-  expect_refused({"view", directory_ / "empty"}, 3,
-                 cat(directory_ / "empty", ": holds no .nvdb file; weir convert makes them of what it holds"));
+  expect_refused(
+      {"view", directory_ / "empty"}, 3,
+      cat(directory_ / "empty", ": holds no .nvdb file; weir convert makes them of what it holds: weir convert '",
+          directory_ / "empty", "/*' -o ", directory_ / "empty", "/"));
   expect_refused({"view", volume_, "--listen", "0.0.0.0:0"}, 2,
                  "--listen 0.0.0.0:0 can be reached from other machines, so it needs --token-file FILE; or listen on "
                  "127.0.0.1");
   write_file(directory_ / "broken.nvdb", std::string(5000, 'x'));
   EXPECT_EQ(run_weir({"view", directory_ / "broken.nvdb"}).exit_code, 3);
+}
+
+TEST_F(ViewCommandTest, MemoryTooSmallForAnyPicture_IsRefused) {
+  const std::string too_small =
+      ": --memory 100 B is too small to render this grid, which takes 288.1 KiB at least; give --memory 1MiB or more";
+  expect_refused({"view", volume_, "--backend", "cpu", "--memory", "100"}, 2, volume_ + too_small);
+  const std::string raw = directory_ / "v_40x30x20_float32.raw";
+  const CommandResult source =
+      run_weir({"view", raw, "--backend", "cpu", "--memory", "100", "--log-level", "error", "--progress", "never"});
+  EXPECT_EQ(source.exit_code, 2);
+  EXPECT_EQ(source.err.substr(0, source.err.find(" is too small")), cat("weir: ", raw, ": --memory 100 B"));
 }
 
 TEST_F(ViewCommandTest, DamagedFirstStep_IsSaidAndTheOthersAreShown) {

@@ -193,11 +193,18 @@ TEST_F(ViewServerTest, WrongScene_IsSaidAndTheViewerGoesOn) {
   ServedView served(volume_);
   ViewClient client(served.port());
   client.show(1, true, {{"scene", "mode = \"dream\"\n"}});
-  EXPECT_EQ(client.text("error").value()["message"], "scene:1:8: mode is \"dream\", it must be path, dvr, iso or mip");
+  const Json wrong = client.text("error").value();
+  EXPECT_EQ(wrong["message"], "scene:1:8: mode is \"dream\", it must be path, dvr, iso or mip");
+  EXPECT_EQ(wrong["view"], 1);
   client.show(2, true, {{"scene", "[volume]\ncolormap = \"puce\"\n"}});
   const Json error = client.text("error").value();
   EXPECT_EQ(error["view"], 2);
   EXPECT_NE(error["message"].get<std::string>().find("puce"), std::string::npos) << error;
+  client.send({{"type", "probe"}, {"id", 5}, {"x", 2}, {"y", 0}});
+  const Json refused = client.text("error").value();
+  EXPECT_EQ(refused["message"], "message: x must be a number from 0 to 1");
+  EXPECT_EQ(refused["view"], 0);
+  EXPECT_EQ(refused["id"], 5);
   client.show(3, true);
   EXPECT_EQ(client.frame().value().header["view"], 3);
 }

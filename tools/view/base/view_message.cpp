@@ -98,6 +98,41 @@ ConvertRequest read_convert(const nlohmann::json& message, std::size_t steps) {
   return request;
 }
 
+struct MessageName {
+  bool view = false;
+  std::optional<std::int64_t> id;
+};
+
+// The members on the way to where the text is no JSON.
+MessageName read_name(std::string_view text_of_message) {
+  using Event = nlohmann::json::parse_event_t;
+  MessageName name;
+  bool object = false;
+  std::string key;
+  const auto look = [&](int depth, Event event, const nlohmann::json& found) {
+    if (depth == 0) object = event == Event::object_start;
+    if (depth != 1 || !object) return true;
+    if (event == Event::key) {
+      key = found.get<std::string>();
+    } else if (event == Event::value && key == "type") {
+      name.view = found == "view";
+    } else if (event == Event::value && key == "id") {
+      const bool known = found.is_number_integer() && found.get<double>() >= 0 && found.get<double>() <= kMostId;
+      name.id = known ? std::optional(found.get<std::int64_t>()) : std::nullopt;
+    }
+    return true;
+  };
+  [[maybe_unused]] const nlohmann::json whole_message = nlohmann::json::parse(text_of_message, look, false);
+  return name;
+}
+
+std::string error_line(std::int64_t view, std::optional<std::int64_t> id, std::string_view message) {
+  nlohmann::ordered_json error{{"type", "error"}, {"view", view}};
+  if (id) error["id"] = *id;
+  error["message"] = message;
+  return error.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
 }  // namespace
 
 ClientMessage parse_client_message(std::string_view text_of_message, std::size_t steps, bool against,
@@ -127,9 +162,11 @@ std::string frame_message(const FrameHeader& header, std::span<const std::byte> 
   return message;
 }
 
-std::string error_message(std::int64_t view, std::string_view message) {
-  return nlohmann::ordered_json{{"type", "error"}, {"view", view}, {"message", message}}.dump(
-      -1, ' ', false, nlohmann::json::error_handler_t::replace);
+std::string error_message(std::int64_t view, std::string_view message) { return error_line(view, {}, message); }
+
+std::string refusal_message(std::string_view refused, std::string_view message) {
+  const MessageName name = read_name(refused);
+  return error_line(name.view ? name.id.value_or(0) : 0, name.id, message);
 }
 
 }  // namespace weir

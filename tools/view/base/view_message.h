@@ -87,4 +87,8 @@ std::string frame_message(const FrameHeader& header, std::span<const std::byte> 
 /// {"type": "error", "view": id, "message": message}
 std::string error_message(std::int64_t view, std::string_view message);
 
+/// The same of a client's message that is refused: "view" is its id where it is a view, else 0, and "id" that of any
+/// message. Both are looked for in text that is no JSON, too, up to where it is none; without an id there is no "id".
+std::string refusal_message(std::string_view refused, std::string_view message);
+
 }  // namespace weir

@@ -52,7 +52,8 @@ std::vector<std::string> find_steps(const StepChoice& choice) {
     if (files.empty()) files = expand_volumes(std::array{pattern});
   } catch (const Error& error) {
     if (!directory || error.kind() != ErrorKind::input) throw;
-    throw input_error(input, cat("holds no .nvdb file; weir convert makes them of what it holds"));
+    throw input_error(input, cat("holds no .nvdb file; weir convert makes them of what it holds: weir convert ",
+                                 shell_word(input + "/*"), " -o ", shell_word(input + '/')));
   }
   for (const std::string& file : files) {
     if (!file.ends_with(".nvdb") && fs::exists(file, none) && !is_nanovdb(file)) {

@@ -128,5 +128,33 @@ TEST(ViewMessage, Error_KeepsWhatIsNoUtf8OutOfTheJson) {
   EXPECT_EQ(error_message(4, "a\xFF"), "{\"type\":\"error\",\"view\":4,\"message\":\"a\xEF\xBF\xBD\"}");
 }
 
+TEST(ViewMessage, Refusal_HasTheIdOfWhatIsRefused) {
+  EXPECT_EQ(refusal_message(with("width", 0).dump(), "no"), R"({"type":"error","view":7,"id":7,"message":"no"})");
+  EXPECT_EQ(refusal_message(R"({"id": 8, "type": "view", "scene": 3})", "no"),
+            R"({"type":"error","view":8,"id":8,"message":"no"})");
+  EXPECT_EQ(refusal_message(R"({"type": "probe", "id": 3, "x": 2})", "no"),
+            R"({"type":"error","view":0,"id":3,"message":"no"})")
+      << "a probe is no view";
+  EXPECT_EQ(refusal_message(R"({"type": "draw", "id": 9})", "no"),
+            R"({"type":"error","view":0,"id":9,"message":"no"})");
+}
+
+TEST(ViewMessage, RefusalOfTextThatIsNoJson_HasTheIdThatStandsBeforeTheFault) {
+  EXPECT_EQ(refusal_message(R"({"type": "view", "id": 7, "scene": oops})", "no"),
+            R"({"type":"error","view":7,"id":7,"message":"no"})");
+  EXPECT_EQ(refusal_message(R"({"type": "view", "scene": "a, "id": 7})", "no"),
+            R"({"type":"error","view":0,"message":"no"})");
+  EXPECT_EQ(refusal_message("\xFF", "no"), R"({"type":"error","view":0,"message":"no"})");
+}
+
+TEST(ViewMessage, RefusalOfAMessageWithoutAnId_HasNone) {
+  for (const char* text :
+       {"{", "[]", "7", R"({"type": "view"})", R"({"type": "view", "id": "7"})", R"({"type": "view", "id": -1})",
+        R"({"type": "view", "id": 1.5})", R"({"type": "view", "id": 18446744073709551615})",
+        R"({"type": "view", "id": {"id": 7}})", R"({"type": "view", "id": [7]})", R"([{"type": "view", "id": 7}])"}) {
+    EXPECT_EQ(refusal_message(text, "no"), R"({"type":"error","view":0,"message":"no"})") << text;
+  }
+}
+
 }  // namespace
 }  // namespace weir::view_message_test
