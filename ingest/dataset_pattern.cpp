@@ -54,10 +54,15 @@ std::vector<std::string> matching_datasets(const std::string& path, std::span<co
                                            const std::string& pattern, const SourceOptions& options,
                                            const Notice& notice) {
   std::vector<std::string> found;
-  std::vector<Message> others;  // "/v: its voxels have no components; ..."
+  std::vector<Message> others;        // "/v: its voxels have no components; ..."
+  std::vector<Message> by_name_only;  // said only where there is nothing else
   for (const DatasetInfo& dataset : datasets) {
     if (dataset.name == pattern || dataset.name == '/' + pattern) return {dataset.name};
     if (!dataset.obstacle.empty() || !matches(pattern, dataset.name)) continue;
+    if (dataset.by_name_only) {
+      by_name_only.push_back(compose(dataset.name, ": it is read only where ", option("dataset"), " names it"));
+      continue;
+    }
     const Message why = left_out(dataset, options);
     if (why.empty()) {
       found.push_back(dataset.name);
@@ -65,6 +70,7 @@ std::vector<std::string> matching_datasets(const std::string& path, std::span<co
       others.push_back(compose(dataset.name, ": ", why));
     }
   }
+  if (found.empty()) others.insert(others.end(), by_name_only.begin(), by_name_only.end());
   if (found.empty() && others.empty()) {
     throw Error(ErrorKind::input,
                 cat(path, ": no dataset's name matches ", pattern, "; weir inspect lists what there is"));

@@ -13,9 +13,9 @@ namespace weir {
 
 /// The names of those of `datasets`, of the file `path`, that *, ? and [...] in `pattern`, which match slashes, too,
 /// match and that are volumes where --index and --component are as in `options`; or the one that is called like the
-/// pattern itself. `notice` gets a line for each other one that matches and that other options make a volume of, with
-/// these. Throws Error(input) where no name matches, and Error(usage), with what is said of each, where none of those
-/// that match is a volume.
+/// pattern itself. Those that are read by name only are left out of patterns without a word. `notice` gets a line for
+/// each other one that matches and that other options make a volume of, with these. Throws Error(input) where no name
+/// matches, and Error(usage), with what is said of each, where none of those that match is a volume.
 std::vector<std::string> matching_datasets(const std::string& path, std::span<const DatasetInfo> datasets,
                                            const std::string& pattern, const SourceOptions& options,
                                            const Notice& notice);

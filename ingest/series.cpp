@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 
+#include "format/base/ascii.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "format/io/real_path.h"
@@ -17,11 +18,13 @@
 namespace weir {
 namespace {
 
+std::string extension_of(const std::filesystem::path& name) { return lower_case(name.extension().string()); }
+
 // "run" for "run.zarr" and "run.ome.zarr", as it is called also in a zip file's name, "run.zarr.zip".
 std::string without_zarr(const std::filesystem::path& name) {
-  if (name.extension() != ".zarr") return name.string();
+  if (extension_of(name) != ".zarr") return name.string();
   const std::filesystem::path stem = name.stem();
-  return stem.extension() == ".ome" ? stem.stem().string() : stem.string();
+  return extension_of(stem) == ".ome" ? stem.stem().string() : stem.string();
 }
 
 // A directory's name has no suffix but Zarr's, and one that was named by its Header is meant as a whole.
@@ -30,7 +33,7 @@ std::string stem_of(const std::string& path) {
   if (is_input_directory(path)) return without_zarr(whole.filename());
   if (named_by_head(path).size() != path.size()) return without_zarr(whole.parent_path().filename());
   const std::filesystem::path stem = std::filesystem::path(path).stem();
-  return stem.extension() == ".nii" || stem.extension() == ".raw" ? stem.stem().string() : without_zarr(stem);
+  return extension_of(stem) == ".nii" || extension_of(stem) == ".raw" ? stem.stem().string() : without_zarr(stem);
 }
 
 std::vector<SeriesStep> files_of(const std::string& named, bool stack) {

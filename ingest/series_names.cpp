@@ -164,7 +164,8 @@ class FileNames {
 // No name tells volumes apart that have the same words.
 Message remedy_for_names(const SeriesStep& a, const SeriesStep& b) {
   if (a.stem != b.stem || dataset_part(a.dataset) != dataset_part(b.dataset) || a.step != b.step) {
-    return compose("give ", option("output"), " a directory, or a name with {stem}, {dataset} or {step}");
+    return compose("give ", option("output"),
+                   " a directory, with a slash at its end, or a name with {stem}, {dataset} or {step}");
   }
   const Message dataset = a.dataset == b.dataset ? Message() : compose(option("dataset"), " and ");
   return compose("convert them one at a time, with ", dataset, option("output", "NAME.nvdb"));

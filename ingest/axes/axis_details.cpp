@@ -30,6 +30,10 @@ AxisDetails axis_details(const AxisPlace& axis, std::size_t of_volume) {
 void describe_axes(const VolumeAxes& axes, FieldDetails& details) {
   for (std::size_t i = 0; i < axes.size(); ++i) details.axes.at(i) = axis_details(*axes.at(i), i);
   details.orientation = axes[0]->orientation;
+  if (details.orientation.empty()) {
+    details.orientation = down_note(axes);
+    details.points_down = !details.orientation.empty();
+  }
   details.order_note = order_note(axes);
   details.units_note = units_note(axes);
 }
@@ -67,6 +71,18 @@ std::string order_note(const VolumeAxes& axes) {
              ", slowest first, and x is the fastest: the file's ", text);
 }
 
+std::string down_note(const VolumeAxes& axes) {
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    const AxisPlace& axis = *axes.at(i);
+    if (!axis.points_down) continue;
+    return cat("axis ", "xyz"[i], axis.label.empty() ? "" : " (", axis.label, axis.label.empty() ? "" : ")",
+               " points down (positive = \"down\"): voxels lie where the file says, upside down where ", "xyz"[i],
+               " is up; to turn them round, ",
+               axis.spacing ? "negate these coordinates in the file" : "reverse the axis in the file");
+  }
+  return "";
+}
+
 std::vector<std::pair<std::string, std::string>> listed_axes(const VolumeAxes& axes) {
   std::vector<std::pair<std::string, std::string>> listed;
   if (std::any_of(axes.begin(), axes.end(), [](const AxisPlace* axis) { return axis->is_time; })) return listed;
@@ -83,6 +99,7 @@ std::vector<std::pair<std::string, std::string>> listed_axes(const VolumeAxes& a
     add(cat("axis ", std::string(1, "xyz"[i])), axis_note(axis, i), "");
   }
   add("order", order_note(axes), "");
+  add("orientation", down_note(axes), "");
   add("spacing x,y,z", spacing, "1,1,1");
   add("origin x,y,z", origin, "0,0,0");
   return listed;

@@ -33,8 +33,12 @@ std::string units_note(const VolumeAxes& axes);
 /// those of others among them; else empty.
 std::string order_note(const VolumeAxes& axes);
 
-/// What a listing says of them, as names and values: notes, order, spacing, origin. Nothing of where they are where one
-/// is a time.
+/// Which of them points down and what that means, where CF's `positive` says it and spacing and origin do not; else
+/// empty.
+std::string down_note(const VolumeAxes& axes);
+
+/// What a listing says of them, as names and values: notes, order, orientation, spacing, origin. Nothing of where they
+/// are where one is a time.
 std::vector<std::pair<std::string, std::string>> listed_axes(const VolumeAxes& axes);
 
 }  // namespace weir

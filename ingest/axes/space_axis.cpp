@@ -52,6 +52,8 @@ std::optional<std::size_t> space_direction(const std::string& label) {
   return std::nullopt;
 }
 
+bool is_down(std::string_view positive) { return lower_case(positive) == "down"; }
+
 bool is_space_axis(const AxisPlace& axis) {
   // Which direction these are depends on the field.
   constexpr std::array<std::string_view, 3> kNames{"j", "k", "eta"};

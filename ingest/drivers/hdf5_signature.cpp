@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstring>
 
+#include "format/base/ascii.h"
 #include "ingest/files/input_file.h"
 
 namespace weir {
@@ -37,7 +38,7 @@ bool is_classic_netcdf(std::span<const std::byte> head) {
 
 bool recognises_hdf5(std::string_view path, std::span<const std::byte> head) {
   if (begins_with(head, kSignature) || is_classic_netcdf(head)) return true;
-  const auto named = [&](std::string_view suffix) { return path.ends_with(suffix); };
+  const auto named = [name = lower_case(path)](std::string_view suffix) { return name.ends_with(suffix); };
   return std::any_of(kSuffixes.begin(), kSuffixes.end(), named) || has_hdf5_signature(std::string(path));
 }
 

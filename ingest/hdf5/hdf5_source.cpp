@@ -74,6 +74,8 @@ struct Opening {
     info.files_digest = files.digest();
     info.files = files.files();
   }
+  /// No value of it was ever written; of chunks that is said by their number.
+  bool all_fill() const { return facts.storage->is_all_fill && facts.storage->kind == StorageKind::contiguous; }
   /// Bytes of the array before the slice, which is in one piece.
   std::uint64_t first_byte() const {
     std::uint64_t position = 0;
@@ -192,10 +194,26 @@ std::unique_ptr<VolumeSource> open_interleaved(Opening opening) {
                                     "it with the time first, or into one file"));
 }
 
+// That `what` of the values was never written: refused, or noted with the fill value that they read as.
+void note_filled(Opening& opening, const std::string& what, bool one, const std::string& first) {
+  const char* const was = one ? " was" : " were";
+  if (opening.options.missing_chunks == MissingChunks::error) {
+    throw input_error(opening.object.where(),
+                      compose(what, was, " never written", first, ", and with ", option("missing-chunks", "error"),
+                              " all must be; write them, or use ", option("missing-chunks", "fill")));
+  }
+  std::array<float, 1> fill{};
+  const StoredType& type = *opening.facts.type;
+  decode_values(opening.facts.storage->fill, type.scalar, type.big_endian, {}, fill);
+  opening.info.details.chunks_note =
+      cat(what, was, " never written and ", one ? "reads" : "read", " as its fill value, ", fill[0]);
+}
+
 // Says, or refuses, chunks that read as the fill value. Of a volume whose axes are not the array's last three it counts
 // those of the whole array.
 void note_unwritten(Opening& opening) {
   const Storage& storage = *opening.facts.storage;
+  if (opening.all_fill()) return note_filled(opening, "its values", false, "");
   if (storage.kind != StorageKind::chunked || storage.chunk.empty()) return;
   const bool behind = !opening.slice.planar && !opening.slice.roles.interleaved();
   const std::string where = opening.object.where();
@@ -204,17 +222,8 @@ void note_unwritten(Opening& opening) {
       behind ? std::span<const std::int64_t>(opening.slice.positions) : std::span<const std::int64_t>(), where);
   if (unwritten.count == 0) return;
   const std::string count = cat(unwritten.count, " of its ", unwritten.all, unwritten.all == 1 ? " chunk" : " chunks");
-  const char* const was = unwritten.count == 1 ? " was" : " were";
-  if (opening.options.missing_chunks == MissingChunks::error) {
-    const std::string first = unwritten.first.empty() ? "" : cat(" (the first at ", corner_text(unwritten.first), ")");
-    throw input_error(where,
-                      compose(count, was, " never written", first, ", and with ", option("missing-chunks", "error"),
-                              " all must be; write them, or use ", option("missing-chunks", "fill")));
-  }
-  std::array<float, 1> fill{};
-  decode_values(storage.fill, opening.facts.type->scalar, opening.facts.type->big_endian, {}, fill);
-  opening.info.details.chunks_note =
-      cat(count, was, " never written and ", unwritten.count == 1 ? "reads" : "read", " as its fill value, ", fill[0]);
+  const std::string first = unwritten.first.empty() ? "" : cat(" (the first at ", corner_text(unwritten.first), ")");
+  note_filled(opening, count, unwritten.count == 1, first);
 }
 
 std::unique_ptr<VolumeSource> open_stored(Opening opening) {
@@ -223,7 +232,7 @@ std::unique_ptr<VolumeSource> open_stored(Opening opening) {
   if (opening.slice.planar) return open_planar(std::move(opening));
   switch (opening.facts.storage->kind) {
     case StorageKind::contiguous:
-      return open_contiguous(std::move(opening));
+      return opening.all_fill() ? open_by_library(std::move(opening)) : open_contiguous(std::move(opening));
     case StorageKind::external:
       return open_external(std::move(opening));
     case StorageKind::chunked:

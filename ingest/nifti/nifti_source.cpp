@@ -5,6 +5,8 @@
 #include <cmath>
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <system_error>
 
 #include "format/base/error.h"
 #include "format/base/text.h"
@@ -16,6 +18,14 @@
 
 namespace weir {
 namespace {
+
+// The file of a header's values, in capitals where that is how the header is named, and it is there.
+std::string image_of(const std::string& header) {
+  std::filesystem::path image = header;
+  std::error_code ignored;
+  if (image.extension() == ".HDR" && std::filesystem::exists(image.replace_extension(".IMG"), ignored)) return image;
+  return image.replace_extension(".img");
+}
 
 bool is_gzip(std::span<const std::byte> head) {
   return head.size() >= 2 && head[0] == std::byte{0x1F} && head[1] == std::byte{0x8B};
@@ -88,7 +98,7 @@ HeaderVolume describe_nifti(const std::string& path, std::span<const std::int64_
   volume.extents = header.extents;
   volume.type = header.type;
   volume.big_endian = header.big_endian;
-  volume.data_path = header.pair ? std::filesystem::path(path).replace_extension(".img").string() : path;
+  volume.data_path = header.pair ? image_of(path) : path;
   (volume.packed ? volume.packed_offset : volume.data_offset) = header.values_offset;
   volume.offset_key = "vox_offset";
   place(header, volume);

@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 
+#include "format/base/ascii.h"
 #include "format/base/text.h"
 
 namespace weir {
@@ -33,7 +34,7 @@ std::optional<Index3> parse_extent(std::string_view text) {
 
 std::optional<RawName> parse_raw_name(std::string_view path) {
   std::string_view file = path.substr(path.find_last_of('/') + 1);
-  if (!file.ends_with(kExtension)) return std::nullopt;
+  if (!lower_case(file).ends_with(kExtension)) return std::nullopt;
   file.remove_suffix(kExtension.size());
 
   const std::size_t before_type = file.rfind('_');

@@ -1,6 +1,7 @@
 // The naming pattern of raw volumes, NAME_XxYxZ_TYPE.raw, as the Open SciVis
 // data sets use it: "aneurism_256x256x256_uint8.raw". TYPE is any that --type takes: "float", "f4", ">u2". A "be" after
-// the type says that values are big-endian: "carotid_76x49x45_float32be.raw".
+// the type says that values are big-endian: "carotid_76x49x45_float32be.raw". The extension may
+// be in capitals.
 #pragma once
 
 #include <optional>

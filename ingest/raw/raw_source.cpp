@@ -33,18 +33,36 @@ Error contradiction(const std::string& path, std::string_view key, std::string_v
 
 std::string dims_text(const Index3& e) { return cat(e.x, ',', e.y, ',', e.z); }
 
-// The format's magic, behind a name that says it.
-void refuse_gzip(InputFile& file) {
-  constexpr std::array kMagic{std::byte{0x1F}, std::byte{0x8B}};
-  if (!lower_case(file.path()).ends_with(".gz") || file.size() < kMagic.size()) return;
-  std::array<std::byte, kMagic.size()> head{};
-  file.read_buffered(0, head, ReadPath::through);
-  if (head == kMagic) throw input_error(file.path(), "is packed by gzip; unpack it first, with gunzip -k");
+struct PackedBy {
+  std::string_view suffix;
+  std::string_view magic;
+  std::string_view program;
+  std::string_view unpack;
+};
+
+constexpr std::array<PackedBy, 4> kPackers{{{".gz", "\x1F\x8B", "gzip", "gunzip -k"},
+                                            {".xz",
+                                             "\xFD"
+                                             "7zXZ",
+                                             "xz", "xz -dk"},
+                                            {".bz2", "BZh", "bzip2", "bunzip2 -k"},
+                                            {".zst", "\x28\xB5\x2F\xFD", "zstd", "zstd -d"}}};
+
+// A packer's magic, behind a name that says it.
+void refuse_packed(InputFile& file) {
+  for (const PackedBy& by : kPackers) {
+    if (!lower_case(file.path()).ends_with(by.suffix) || file.size() < by.magic.size()) continue;
+    std::string head(by.magic.size(), '\0');
+    file.read_buffered(0, std::as_writable_bytes(std::span(head)), ReadPath::through);
+    if (head == by.magic) {
+      throw input_error(file.path(), cat("is packed by ", by.program, "; unpack it first, with ", by.unpack));
+    }
+  }
 }
 
 RawShape resolve_shape(const std::string& path, const SourceOptions& options) {
   const auto name = parse_raw_name(path);
-  if (path.ends_with(".npy") || path.ends_with(".npz")) {
+  if (const std::string lower = lower_case(path); lower.ends_with(".npy") || lower.ends_with(".npz")) {
     throw input_error(
         path, "is an array of numpy, which weir's module for Python converts: weir.convert(numpy.load(PATH), OUTPUT)");
   }
@@ -92,7 +110,7 @@ void check_size(const InputFile& file, const RawShape& shape, std::uint64_t offs
 
 std::unique_ptr<VolumeSource> open_raw(const std::string& path, const SourceOptions& options) {
   auto file = std::make_unique<InputFile>(path, options.direct_io);
-  refuse_gzip(*file);
+  refuse_packed(*file);
   const RawShape shape = resolve_shape(path, options);
   RawLayout layout{options.offset.value_or(0), shape.type, shape.big_endian, {}};
   check_size(*file, shape, layout.offset);

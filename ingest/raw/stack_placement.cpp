@@ -75,6 +75,8 @@ void check_order(const std::vector<StackedPlanes>& files, const std::vector<doub
   }
 }
 
+bool is_aligned(const SourceInfo& info) { return info.details.orientation.empty() || info.details.points_down; }
+
 }  // namespace
 
 double first_position(const SourceInfo& info, std::size_t axis) {
@@ -87,7 +89,7 @@ StackedPlanes stacked_planes(const std::string& path, const SourceInfo& info) {
   const AxisDetails& z = info.details.axes[2];
   const bool irregular = !z.reversed && !z.note.empty();
   // Steps along axes that fall, or lie across those of the world, are not those of its z.
-  const bool aligned = info.details.orientation.empty();
+  const bool aligned = is_aligned(info);
   return {path,
           info.extent.z,
           first_position(info, 2),
@@ -118,7 +120,7 @@ void check_placed_alike(const std::string& path, const SourceInfo& info, const S
     if (!nearly(info.spacing.at(axis), spacing, spacing)) {
       throw differ("spacing along " + name, cat(info.spacing.at(axis)), cat(spacing));
     }
-    if (orientation.empty() && !nearly(first_position(info, axis), first_position(first, axis), spacing)) {
+    if (is_aligned(info) && !nearly(first_position(info, axis), first_position(first, axis), spacing)) {
       throw differ("origin along " + name, cat(first_position(info, axis)), cat(first_position(first, axis)));
     }
     const AxisDetails& found = info.details.axes.at(axis);

@@ -32,7 +32,7 @@ const MarkKind* mark_kind(std::string_view name) {
 
 }  // namespace
 
-bool marks_places(const VtkArray& array) { return mark_kind(array.name) != nullptr; }
+bool marks_places(std::string_view name) { return mark_kind(name) != nullptr; }
 
 std::string marks_note(const VtkArray& field, const std::vector<VtkArray>& marks) {
   if (marks_places(field)) return "";

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "ingest/headers/named_choice.h"
@@ -11,15 +12,19 @@
 
 namespace weir {
 
-/// Whether `array` is such a one, by the name that VTK gives them.
-bool marks_places(const VtkArray& array);
+/// Why such a one is no volume where --dataset names none.
+inline constexpr const char* kMarkObstacle = "it marks points or cells, and is converted only where it is named";
+
+/// Whether an array called so is such a one, by the names that VTK gives them.
+bool marks_places(std::string_view name);
+inline bool marks_places(const VtkArray& array) { return marks_places(array.name); }
 
 /// What choose_volume chooses among, as volumes_of_kind says; arrays of marks only where options.dataset names one.
 template <typename Array>
 std::vector<NamedVolume> vtk_volumes(std::vector<Array> arrays, const SourceOptions& options) {
   for (Array& array : arrays) {
     if (!options.dataset.empty() || !array.obstacle.empty() || !marks_places(array)) continue;
-    array.obstacle = "it marks points or cells, and is converted only where it is named";
+    array.obstacle = kMarkObstacle;
   }
   return volumes_of_kind(arrays, options.dataset, options.component);
 }

@@ -125,7 +125,7 @@ bool recognises_zarr(std::string_view path, std::span<const std::byte> head) {
   if (directory_head) return !is_plotfile_head(*directory_head);
   if (is_head(path)) return !is_plotfile_head(path);
   const std::string lower = lower_case(path);
-  return lower.ends_with(".zip") || lower.ends_with(".ozx") || (!path.ends_with(".raw") && begins_as_zip(head));
+  return lower.ends_with(".zip") || lower.ends_with(".ozx") || (!lower.ends_with(".raw") && begins_as_zip(head));
 }
 
 std::unique_ptr<VolumeSource> open_zarr(const std::string& path, const SourceOptions& options) {

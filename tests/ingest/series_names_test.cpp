@@ -22,7 +22,7 @@ TEST(SeriesNames, StepsMayNotShareAName) {
   const std::vector<SeriesStep> volumes{{"c.nc", "/qc", {2}, "c", "2"}, {"c.nc", "/w", {2, 0}, "c", "2_0"}};
   EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { series_outputs(volumes, "c.nvdb"); }),
             "c.nvdb: 2 volumes, and two of them (c.nc: /qc at 2 and c.nc: /w at 2,0) would have this name; give -o a "
-            "directory, or a name with {stem}, {dataset} or {step}");
+            "directory, with a slash at its end, or a name with {stem}, {dataset} or {step}");
 }
 
 // Slashes in a file's name become dots: neither a directory nor {dataset} tells these apart.

@@ -30,6 +30,9 @@ TEST(Series, CompressedNamesLoseBothSuffixes) {
   EXPECT_EQ(expand({"head.nii.gz"})[0].stem, "head");
   EXPECT_EQ(expand({"a.b.raw"})[0].stem, "a.b");
   EXPECT_EQ(expand({"run.zarr.zip"})[0].stem, "run");
+  EXPECT_EQ(expand({"HEAD.NII.GZ"})[0].stem, "HEAD");
+  EXPECT_EQ(expand({"Scan.RAW.GZ"})[0].stem, "Scan");
+  EXPECT_EQ(expand({"RUN.OME.ZARR.ZIP"})[0].stem, "RUN");
 }
 
 TEST(Series, DirectoriesOfZarrLoseTheirSuffix) {

@@ -199,5 +199,34 @@ TEST(SourceRegistry, MissingFilesAreAnErrorOfTheInput) {
             path + ": cannot open for reading: No such file or directory");
 }
 
+TEST(SourceRegistry, ExtensionsInCapitals_AreThoseInSmallLetters) {
+  const Scratch scratch;
+  // Nothing but the name says what these are.
+  const auto format = [&](const std::string& name) {
+    return format_of(scratch.write(name, std::vector<std::byte>(24))).name;
+  };
+  for (const auto& [name, expected] : std::vector<std::pair<std::string, std::string>>{{"a.NRRD", "nrrd"},
+                                                                                       {"a.NHDR", "nrrd"},
+                                                                                       {"a.MHD", "meta-image"},
+                                                                                       {"a.MHA", "meta-image"},
+                                                                                       {"a.NII", "nifti"},
+                                                                                       {"a.NII.GZ", "nifti"},
+                                                                                       {"a.VDB", "openvdb"},
+                                                                                       {"a.NVDB", "nanovdb"},
+                                                                                       {"a.VTI", "vtk-xml"},
+                                                                                       {"a.VTK", "vtk-legacy"},
+                                                                                       {"a.ZARR.ZIP", "zarr"},
+                                                                                       {"a.H5", "hdf5"},
+                                                                                       {"a.HDF5", "hdf5"},
+                                                                                       {"a.Nc4", "hdf5"},
+                                                                                       {"a.RAW", "raw"}}) {
+    EXPECT_EQ(format(name), expected) << name;
+  }
+  // A raw file whose values begin as a zip file does.
+  std::vector<std::byte> bytes(24);
+  std::memcpy(bytes.data(), "PK\3\4", 4);
+  EXPECT_EQ(open_source(scratch.write("Scan_4x3x2_uint8.RAW", bytes), {})->info().extent, kExtent);
+}
+
 }  // namespace
 }  // namespace weir::source_registry_test

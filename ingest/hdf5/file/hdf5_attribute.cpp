@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <string_view>
 
 #include "format/base/error.h"
@@ -68,7 +69,37 @@ std::vector<std::string> fixed_texts(const Attribute& attribute) {
   return texts;
 }
 
+// Leaves the source's bytes in place.
+herr_t keep_stored(hid_t, hid_t, H5T_cdata_t* path, std::size_t, std::size_t, std::size_t, void*, void*, hid_t) {
+  if (path->command == H5T_CONV_INIT) path->need_bkg = H5T_BKG_NO;
+  return 0;
+}
+
+// Bytes of all texts, by the references that are stored in their place: a length of 32 bits, little-endian, and where
+// they lie ("HDF5 File Format Specification", variable-length types). The library has no call for it, and takes five
+// times as much memory to read them. nullopt where it does not give the references.
+std::optional<std::uint64_t> bytes_of_variable_texts(const Attribute& attribute) {
+  constexpr const char* kConversion = "weir: stored references";
+  const std::size_t width = static_cast<std::size_t>(H5Aget_storage_size(attribute.handle.get())) / attribute.values;
+  constexpr std::size_t kLengthBytes = 4;
+  if (width < kLengthBytes) return std::nullopt;
+  const Hdf5Handle as_stored(H5Tcreate(H5T_OPAQUE, width));
+  std::vector<unsigned char> references(width * attribute.values);
+  if (H5Tregister(H5T_PERS_SOFT, kConversion, attribute.type.get(), as_stored.get(), keep_stored) < 0) {
+    return std::nullopt;
+  }
+  const bool read = H5Aread(attribute.handle.get(), as_stored.get(), references.data()) >= 0;
+  H5Tunregister(H5T_PERS_SOFT, kConversion, -1, -1, keep_stored);
+  if (!read) return std::nullopt;
+  std::uint64_t bytes = 0;
+  for (std::size_t i = 0; i < attribute.values; ++i) {
+    for (std::size_t b = 0; b < kLengthBytes; ++b) bytes += std::uint64_t{references[i * width + b]} << (8 * b);
+  }
+  return bytes;
+}
+
 std::vector<std::string> variable_texts(const Attribute& attribute) {
+  if (bytes_of_variable_texts(attribute).value_or(0) > kMaxAttributeBytes) return {};
   // The library converts no character sets: the memory's must be the file's.
   const Hdf5Handle memory_type(H5Tcopy(H5T_C_S1));
   H5Tset_size(memory_type.get(), H5T_VARIABLE);
@@ -96,6 +127,20 @@ Error attribute_error(hid_t object, const char* name) {
   return input_error(object_text(object), cat("its attributes cannot be read, looking for ", name, ": ", reason,
                                               "; they are damaged, or of a later version of HDF5: copy the "
                                               "file again, or write it anew"));
+}
+
+void check_attribute_bytes(hid_t object) {
+  H5O_info_t info;
+  // All are in the object's header, of 64 KiB each at most, or none is.
+  if (H5Oget_info2(object, &info, H5O_INFO_NUM_ATTRS | H5O_INFO_HDR) < 0) return;
+  constexpr std::uint64_t kAttributeMessage = std::uint64_t{1} << 12U;
+  if (info.num_attrs == 0 || (info.hdr.mesg.present & kAttributeMessage) != 0) return;
+  if (H5Oget_info2(object, &info, H5O_INFO_META_SIZE) < 0) return;
+  const std::uint64_t bytes = info.meta_size.attr.heap_size;
+  if (bytes <= kMaxObjectAttributeBytes) return;
+  throw input_error(object_text(object),
+                    cat("its attributes take ", bytes, " bytes, and at most ", kMaxObjectAttributeBytes,
+                        " are read; shorten the longest, or make a dataset of it"));
 }
 
 bool has_attribute(hid_t object, const char* name) {

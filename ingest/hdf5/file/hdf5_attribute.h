@@ -16,6 +16,14 @@ namespace weir {
 inline constexpr std::size_t kMaxAttributeValues = 4096;
 inline constexpr std::size_t kMaxAttributeBytes = std::size_t{1} << 20U;
 
+/// Of all attributes of one object together, where the file keeps them in a heap of their own.
+inline constexpr std::size_t kMaxObjectAttributeBytes = std::size_t{16} << 20U;
+
+/// Throws Error(input) where `object` has more than that: the library takes twice the bytes of an attribute to look
+/// whether it is there. Of chunks it costs a look through their index: once for an object is enough. The caller holds
+/// Hdf5Lock.
+void check_attribute_bytes(hid_t object);
+
 /// All of them take an open dataset or group; the caller holds Hdf5Lock. An attribute that is absent or of another kind
 /// reads as empty. All throw Error(input) where the library cannot say whether the attribute is there, or cannot read
 /// it: taken as absent, it would give other values or places without a word.

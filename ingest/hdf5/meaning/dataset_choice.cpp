@@ -13,6 +13,7 @@
 #include "ingest/hdf5/meaning/hdf5_lookup.h"
 #include "ingest/hdf5/meaning/volume_slice.h"
 #include "ingest/source/convert_command.h"
+#include "ingest/vtk/vtk_marks.h"
 
 namespace weir {
 namespace {
@@ -64,7 +65,8 @@ Hdf5Object only_volume(hid_t file, const std::string& path, const SourceOptions&
   const auto look_at = [&](std::string name, Hdf5Handle handle) {
     if (is_bare_dimension(handle.get())) return;
     ++datasets;
-    const DatasetFacts facts = dataset_facts(file, {std::move(handle), path, name});
+    DatasetFacts facts = dataset_facts(file, {std::move(handle), path, name});
+    if (facts.obstacle.empty() && facts.marks) facts.obstacle = kMarkObstacle;
     if (facts.obstacle.empty()) {
       DatasetCandidate& candidate = candidates.emplace_back();
       candidate.info.name = name;

@@ -1,6 +1,8 @@
 #include "ingest/hdf5/meaning/dataset_facts.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -10,6 +12,8 @@
 #include "ingest/hdf5/file/hdf5_attribute.h"
 #include "ingest/hdf5/meaning/openpmd.h"
 #include "ingest/hdf5/meaning/volume_slice.h"
+#include "ingest/hdf5/meaning/vtk_hdf.h"
+#include "ingest/values/decode_values.h"
 
 namespace weir {
 namespace {
@@ -55,6 +59,15 @@ std::string time_obstacle(const DatasetFacts& facts) {
              "); a volume has three axes of space");
 }
 
+// Of a dataset that was never written: whether what it reads as is a value, and none that stands for no data.
+bool reads_as_data(hid_t object, const DatasetFacts& facts) {
+  if (!facts.type || !facts.storage || !facts.storage->is_all_fill) return false;
+  if (may_be_netcdf_fill(object, *facts.type, facts.storage->fill)) return false;
+  std::array<float, 1> fill{};
+  decode_values(facts.storage->fill, facts.type->scalar, facts.type->big_endian, facts.meaning.mapping, fill);
+  return std::isfinite(fill[0]);
+}
+
 void look_at_constant(hid_t object, DatasetFacts& facts) {
   const std::vector<double> value = number_attribute(object, "value");
   facts.type_text = "constant";
@@ -74,7 +87,10 @@ std::string DatasetFacts::layout_text() const {
 DatasetFacts dataset_facts(hid_t file, const Hdf5Object& object) {
   const hid_t handle = object.handle.get();
   DatasetFacts facts;
+  check_attribute_bytes(handle);
   const bool stored = is_dataset(handle);
+  const std::vector<Hdf5Handle> groups = enclosing_groups(file, object.name);
+  facts.marks = stored && is_vtk_hdf_mark(object, groups);
   facts.axes = axis_places(file, object, stored ? extents_of(handle) : openpmd_shape(handle));
   if (stored) {
     const Hdf5Handle type(H5Dget_type(handle));
@@ -95,9 +111,10 @@ DatasetFacts dataset_facts(hid_t file, const Hdf5Object& object) {
     facts.meaning = value_meaning(handle, *facts.type,
                                   set ? std::span<const std::byte>(facts.storage->fill) : std::span<const std::byte>());
   }
+  if (reads_as_data(handle, facts)) facts.storage->obstacle.clear();
   for (const std::string& obstacle :
        {type_obstacle(facts), shape_obstacle(facts), facts.storage ? facts.storage->obstacle : std::string(),
-        facts.meaning.obstacle, openpmd_obstacle(handle, enclosing_groups(file, object.name))}) {
+        facts.meaning.obstacle, openpmd_obstacle(handle, groups)}) {
     if (facts.obstacle.empty()) facts.obstacle = obstacle;
   }
   if (facts.obstacle.empty()) {

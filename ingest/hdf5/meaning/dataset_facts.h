@@ -24,6 +24,7 @@ struct DatasetFacts {
   std::optional<double> constant;  ///< of an openPMD constant component: its value
   ValueMeaning meaning;            ///< where there is a type
   std::string obstacle;            ///< why it cannot be converted; empty where it can
+  bool marks = false;              ///< an array of VTK's that is no field, and a volume only where it is named
   bool over_time = false;          ///< that is all: one of the three axes is a time, and no length
 
   /// "contiguous", "chunked 64 x 64 x 64, gzip", "constant 0".

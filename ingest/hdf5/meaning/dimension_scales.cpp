@@ -14,6 +14,7 @@
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "ingest/axes/coordinates.h"
+#include "ingest/axes/space_axis.h"
 #include "ingest/axes/time_axis.h"
 #include "ingest/hdf5/file/hdf5_attribute.h"
 #include "ingest/hdf5/file/hdf5_error.h"
@@ -85,6 +86,7 @@ bool first_axis_grows(hid_t dataset, std::size_t rank) {
 }
 
 void place_by_scale(hid_t scale, bool grows, AxisPlace& axis) {
+  check_attribute_bytes(scale);
   const std::string name = last_part(scale);
   if (axis.label.empty()) axis.label = name;
   if (is_bare_dimension(scale)) {
@@ -95,6 +97,7 @@ void place_by_scale(hid_t scale, bool grows, AxisPlace& axis) {
   axis.units = first_text(scale, "units");
   axis.calendar = first_text(scale, "calendar");
   axis.is_time = is_time_axis({name, axis.units, first_text(scale, "axis"), first_text(scale, "standard_name"), grows});
+  axis.points_down = is_down(first_text(scale, "positive"));
   if (axis.spacing) return;
   std::vector<double> coordinates = coordinate_values(scale);
   if (std::cmp_not_equal(coordinates.size(), axis.extent)) {

@@ -6,10 +6,12 @@
 
 #include "format/base/text.h"
 #include "ingest/axes/axis_details.h"
+#include "ingest/axes/volume_time.h"
 #include "ingest/hdf5/file/hdf5_attribute.h"
 #include "ingest/hdf5/file/hdf5_object.h"
 #include "ingest/hdf5/meaning/dimension_scales.h"
 #include "ingest/hdf5/meaning/openpmd.h"
+#include "ingest/hdf5/meaning/vtk_hdf.h"
 
 namespace weir {
 namespace {
@@ -19,23 +21,21 @@ std::string text_of(hid_t object, const char* name) {
   return texts.empty() ? "" : texts[0];
 }
 
-// The element of a time coordinate for position `at` of `extent`; a single one is for all.
-std::optional<TimePoint> time_in(hid_t coordinate, std::size_t at, std::size_t extent) {
+// Those of an auxiliary coordinate; none where it is no time.
+TimeValues times_of(hid_t coordinate) {
   const std::string units = text_of(coordinate, "units");
-  if (H5Iget_type(coordinate) != H5I_DATASET || units.find(" since ") == std::string::npos) return std::nullopt;
-  const std::vector<double> values = coordinate_values(coordinate);
-  if (values.size() != 1 && values.size() != extent) return std::nullopt;
-  return TimePoint{values[values.size() == 1 ? 0 : at], units, text_of(coordinate, "calendar")};
+  if (H5Iget_type(coordinate) != H5I_DATASET || units.find(" since ") == std::string::npos) return {};
+  return {coordinate_values(coordinate), units, text_of(coordinate, "calendar")};
 }
 
 // CF 5: coordinates = "lon lat time" names variables of the same group, or of one around it.
-std::optional<TimePoint> auxiliary_time(const Hdf5Object& object, std::span<const Hdf5Handle> groups, std::size_t at,
-                                        std::size_t extent) {
+std::optional<TimePoint> auxiliary_time(const Hdf5Object& object, std::span<const Hdf5Handle> groups,
+                                        const TimePosition& position) {
   for (const std::string& name : split(text_of(object.handle.get(), "coordinates"), ' ')) {
     for (const Hdf5Handle& group : groups) {
       const Hdf5Handle coordinate = open_linked(group.get(), name);
       if (!coordinate) continue;
-      if (auto time = time_in(coordinate.get(), at, extent)) return time;
+      if (auto time = position.in(times_of(coordinate.get()))) return time;
     }
   }
   return std::nullopt;
@@ -43,17 +43,15 @@ std::optional<TimePoint> auxiliary_time(const Hdf5Object& object, std::span<cons
 
 std::optional<TimePoint> time_of(hid_t file, const Hdf5Object& object, std::span<const AxisPlace> axes,
                                  const VolumeSlice& slice) {
-  std::size_t at = 0;
-  std::size_t extent = 0;
-  for (std::size_t i = 0; i < slice.index.size(); ++i) {
-    const AxisPlace& axis = axes[slice.roles.others[i]];
-    if (!axis.is_time) continue;
-    at = static_cast<std::size_t>(slice.index[i]);
-    extent = static_cast<std::size_t>(axis.extent);
-    if (at < axis.coordinates.size()) return TimePoint{axis.coordinates[at], axis.units, axis.calendar};
-  }
+  std::vector<const AxisPlace*> leading;
+  for (const std::size_t axis : slice.roles.others) leading.push_back(&axes[axis]);
+  const TimePosition position = time_position(leading, slice.index);
+  if (position.coordinate) return position.coordinate;
   const std::vector<Hdf5Handle> groups = enclosing_groups(file, object.name);
-  if (auto time = auxiliary_time(object, groups, at, extent)) return time;
+  if (auto time = auxiliary_time(object, groups, position)) return time;
+  if (position.extent == 0) {  // elements of an axis of time have their own, or none
+    if (auto time = position.in(vtk_hdf_time(object, groups))) return time;
+  }
   if (const auto seconds = openpmd_time(groups)) return TimePoint{*seconds, "s", {}};
   return std::nullopt;
 }

@@ -13,8 +13,8 @@
 namespace weir {
 
 /// Details of the volume `slice` of `object`, an array of `axes` (slowest first) in `file`. The time is the coordinate
-/// of a leading axis; else what CF's attribute `coordinates` names, of units "... since ..."; else that of openPMD's
-/// iteration, in seconds. The caller holds Hdf5Lock.
+/// of a leading axis; else what CF's attribute `coordinates` names, of units "... since ..."; else a VTKHDF file's;
+/// else that of openPMD's iteration, in seconds. The caller holds Hdf5Lock.
 FieldDetails field_details(hid_t file, const Hdf5Object& object, std::span<const AxisPlace> axes,
                            const VolumeSlice& slice);
 

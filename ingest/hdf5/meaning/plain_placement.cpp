@@ -44,7 +44,7 @@ void fill(hid_t dataset, std::span<const Hdf5Handle> groups, std::span<const Pla
   if (!values) return;
   for (std::size_t i = 0; i < 3; ++i) {
     auto& place = axes[i].*member;
-    if (!place) place = (*values)[i];
+    if (!place && !axes[i].is_time) place = (*values)[i];
   }
 }
 

@@ -8,6 +8,7 @@
 #include "ingest/hdf5/file/hdf5_attribute.h"
 #include "ingest/hdf5/file/hdf5_handle.h"
 #include "ingest/hdf5/meaning/openpmd.h"
+#include "ingest/source/unit_text.h"
 #include "ingest/source/unsigned_meaning.h"
 #include "ingest/values/decode_values.h"
 
@@ -90,6 +91,11 @@ std::string unused_attribute(hid_t object) {
 
 }  // namespace
 
+bool may_be_netcdf_fill(hid_t object, const StoredType& type, std::span<const std::byte> fill) {
+  const auto by_netcdf = netcdf_default_fill(type.scalar);
+  return is_netcdf(object) || (by_netcdf && equals(fill, type, *by_netcdf));
+}
+
 StoredType type_as_meant(hid_t object, StoredType type) {
   type.scalar = meant_type(unsigned_text(object), type.scalar);
   return type;
@@ -118,7 +124,7 @@ ValueMeaning value_meaning(hid_t object, const StoredType& type, std::span<const
   if (!meaning.unpacks) meaning.obstacle = packed_unclearly;
   for (const char* name : {"units", "Units"}) {
     const std::vector<std::string> texts = text_attribute(object, name);
-    if (meaning.units.empty() && !texts.empty()) meaning.units = texts[0];
+    if (meaning.units.empty() && !texts.empty()) meaning.units = unit_text(texts[0]);
   }
   meaning.unit_si = openpmd_unit_si(object);
   meaning.note = unused_attribute(object);

@@ -33,4 +33,8 @@ StoredType type_as_meant(hid_t object, StoredType type);
 /// value as stored, empty where the user who wrote the file set none. The caller holds Hdf5Lock.
 ValueMeaning value_meaning(hid_t object, const StoredType& type, std::span<const std::byte> fill);
 
+/// Whether `fill`, of a dataset that was never written, may be NetCDF's own choice: its library sets one for each
+/// variable. The caller holds Hdf5Lock.
+bool may_be_netcdf_fill(hid_t object, const StoredType& type, std::span<const std::byte> fill);
+
 }  // namespace weir

@@ -49,6 +49,12 @@ void look_at_fill(hid_t creation, hid_t type, Storage& storage) {
   if (H5Pget_fill_value(creation, type, storage.fill.data()) < 0) storage.fill_is_set = false;
 }
 
+// Where it is never to be written, the library leaves what is in memory.
+bool gives_fill(hid_t creation) {
+  H5D_fill_time_t time = H5D_FILL_TIME_NEVER;
+  return H5Pget_fill_time(creation, &time) >= 0 && time != H5D_FILL_TIME_NEVER;
+}
+
 }  // namespace
 
 Storage storage_of(hid_t dataset) {
@@ -70,6 +76,7 @@ Storage storage_of(hid_t dataset) {
       (storage.kind == StorageKind::contiguous || storage.kind == StorageKind::chunked) &&
       H5Dget_storage_size(dataset) == 0) {
     storage.obstacle = "no value was ever written to it; convert it when its values are there";
+    storage.is_all_fill = storage.fill_is_set && gives_fill(creation.get());
   }
   return storage;
 }

@@ -26,6 +26,7 @@ struct Storage {
   std::vector<std::byte> fill;       ///< one stored value: what unwritten elements read as
   bool fill_is_set = false;          ///< whoever wrote the file chose it
   std::string obstacle;              ///< no value ever written, or a filter that is not there; else empty
+  bool is_all_fill = false;          ///< no value was ever written, that is the obstacle, and `fill` is set for that
 
   /// "contiguous", "chunked 64 x 64 x 64, shuffle, gzip".
   std::string text() const;

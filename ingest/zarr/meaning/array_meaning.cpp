@@ -6,6 +6,7 @@
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "ingest/axes/volume_time.h"
 #include "ingest/source/extent.h"
 
 namespace weir {
@@ -96,22 +97,11 @@ std::vector<std::int64_t> checked_index(const ArrayMeaning& meaning, const std::
 namespace {
 
 std::optional<TimePoint> time_of(const ArrayMeaning& meaning, const std::vector<std::int64_t>& index) {
-  std::size_t at = 0;
-  std::size_t extent = 0;
-  for (std::size_t i = 0; i < index.size(); ++i) {
-    const AxisPlace& axis = meaning.axes.places[i];
-    if (!axis.is_time) continue;
-    at = static_cast<std::size_t>(index[i]);
-    extent = static_cast<std::size_t>(axis.extent);
-    if (at < axis.coordinates.size()) return TimePoint{axis.coordinates[at], axis.units, axis.calendar};
-    if (axis.spacing) {
-      return TimePoint{static_cast<double>(at) * *axis.spacing + axis.origin.value_or(0.0), axis.units, axis.calendar};
-    }
-  }
-  if (!meaning.auxiliary_time) return std::nullopt;
-  const AuxiliaryTime& times = *meaning.auxiliary_time;
-  if (times.values.size() != 1 && times.values.size() != extent) return std::nullopt;
-  return TimePoint{times.values[times.values.size() == 1 ? 0 : at], times.units, times.calendar};
+  std::vector<const AxisPlace*> leading;
+  for (std::size_t i = 0; i < index.size(); ++i) leading.push_back(&meaning.axes.places[i]);
+  const TimePosition position = time_position(leading, index);
+  if (position.coordinate || !meaning.auxiliary_time) return position.coordinate;
+  return position.in(*meaning.auxiliary_time);
 }
 
 }  // namespace

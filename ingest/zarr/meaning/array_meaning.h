@@ -18,7 +18,7 @@ namespace weir {
 
 struct ArrayMeaning {
   ArrayAxes axes;
-  std::optional<AuxiliaryTime> auxiliary_time;
+  std::optional<TimeValues> auxiliary_time;
   ArrayValues values;
   std::string obstacle;    ///< why it is no volume; empty where it is one
   bool over_time = false;  ///< the obstacle is that a time is among its last three axes

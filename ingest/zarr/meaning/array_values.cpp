@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "format/base/text.h"
+#include "ingest/source/unit_text.h"
 #include "ingest/source/unsigned_meaning.h"
 #include "ingest/zarr/codecs/library_codecs.h"
 #include "ingest/zarr/meaning/zarr_nodes.h"
@@ -85,7 +86,7 @@ void read_attributes(const ZarrArray& array, ArrayValues& read) {
     for (const StoredValue& stored : values) add_missing(stored);
   }
   if (array.missing_fill) add_missing(*array.missing_fill);
-  read.units = json_string(attributes, "units");
+  read.units = unit_text(json_string(attributes, "units"));
   read.long_name = json_string(attributes, "long_name");
 }
 

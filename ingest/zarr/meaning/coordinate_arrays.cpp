@@ -9,6 +9,7 @@
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "ingest/axes/coordinates.h"
+#include "ingest/axes/space_axis.h"
 #include "ingest/axes/time_axis.h"
 #include "ingest/zarr/meaning/array_values.h"
 #include "ingest/zarr/metadata/zarr_json.h"
@@ -81,6 +82,7 @@ void place_by_array(ZarrStore& store, const ZarrNode& found, AxisPlace& axis) {
   axis.units = attribute("units");
   axis.calendar = attribute("calendar");
   axis.is_time = is_time_axis({axis.label, axis.units, attribute("axis"), attribute("standard_name"), false});
+  axis.points_down = is_down(attribute("positive"));
   if (std::cmp_greater(axis.extent, kMaxCoordinates)) {
     axis.note = cat("more than ", kMaxCoordinates, " coordinates, taken as indices");
     return;
@@ -103,12 +105,12 @@ void place_by_array(ZarrStore& store, const ZarrNode& found, AxisPlace& axis) {
 }
 
 // Empty where it is not one of small numbers, or cannot be read.
-AuxiliaryTime time_in(ZarrStore& store, const ZarrNode& found) {
+TimeValues time_in(ZarrStore& store, const ZarrNode& found) {
   const nlohmann::json& shape = json_member(found.metadata, "shape");
   const bool of_one_axis =
       shape.is_array() &&
       (shape.empty() || (shape.size() == 1 && shape[0].is_number_integer() && shape[0] > 0 && shape[0] <= kMostTimes));
-  AuxiliaryTime time;
+  TimeValues time;
   if (!of_one_axis) return time;
   try {
     ReadableArray times = readable(store, found);
@@ -145,8 +147,8 @@ void CoordinateArrays::place(const std::string& key, std::span<AxisPlace> axes) 
   }
 }
 
-std::optional<AuxiliaryTime> CoordinateArrays::auxiliary_time(const std::string& key, const nlohmann::json& attributes,
-                                                              std::span<const AxisPlace> axes) {
+std::optional<TimeValues> CoordinateArrays::auxiliary_time(const std::string& key, const nlohmann::json& attributes,
+                                                           std::span<const AxisPlace> axes) {
   for (const std::string& name : split(json_string(attributes, "coordinates"), ' ')) {
     const auto found = array_near(store_, key, name);
     if (!found || json_string(found->attributes, "units").find(" since ") == std::string::npos) continue;

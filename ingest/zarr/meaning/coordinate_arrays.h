@@ -11,17 +11,11 @@
 #include <vector>
 
 #include "ingest/axes/axis_place.h"
+#include "ingest/axes/volume_time.h"
 #include "ingest/zarr/meaning/zarr_nodes.h"
 #include "ingest/zarr/store/zarr_store.h"
 
 namespace weir {
-
-/// A time that is no axis's, or not called as it is: one value, or one for each element of an axis of time.
-struct AuxiliaryTime {
-  std::vector<double> values;
-  std::string units;     ///< "hours since 2000-01-01"
-  std::string calendar;  ///< of CF; else empty
-};
 
 /// Reads coordinates, and keeps what was made of them: the arrays of one group share them. One thread at a time.
 class CoordinateArrays {
@@ -36,8 +30,8 @@ class CoordinateArrays {
 
   /// The first that attribute `coordinates` (CF 5) of the array at `key` names, of units "... since ...", which can be
   /// read and is a single one, or one for each element of an axis of time among `axes`. nullopt where it names none.
-  std::optional<AuxiliaryTime> auxiliary_time(const std::string& key, const nlohmann::json& attributes,
-                                              std::span<const AxisPlace> axes);
+  std::optional<TimeValues> auxiliary_time(const std::string& key, const nlohmann::json& attributes,
+                                           std::span<const AxisPlace> axes);
 
  private:
   const AxisPlace& placed(const ZarrNode& found, const AxisPlace& axis);
@@ -45,7 +39,7 @@ class CoordinateArrays {
   ZarrStore& store_;
   std::map<std::string, AxisPlace> placed_;  ///< by the key of the array of coordinates
   std::size_t kept_ = 0;                     ///< coordinates in them
-  std::map<std::string, AuxiliaryTime> times_;
+  std::map<std::string, TimeValues> times_;
 };
 
 }  // namespace weir

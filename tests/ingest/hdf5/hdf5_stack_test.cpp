@@ -28,5 +28,26 @@ for number, first in enumerate([15, 7]):
   for (std::size_t i = 0; i < values.size(); ++i) ASSERT_EQ(values[i], static_cast<float>(i / 6)) << i;
 }
 
+// That an axis points down is no other place.
+TEST(Hdf5Stack, OfPlanesOfADepth_LiesWhereTheySay) {
+  if (!python_has("h5py, numpy, netCDF4")) GTEST_SKIP() << "python3 with h5py and netCDF4 is missing";
+  const Scratch scratch;
+  write_by_h5py(scratch, R"(
+import netCDF4
+for number in range(3):
+    n = netCDF4.Dataset("s_%d.nc" % number, "w")
+    for name, size in [("depth", 1), ("y", 2), ("x", 3)]: n.createDimension(name, size)
+    depth = n.createVariable("depth", "f8", ("depth",)); depth[:] = 10 + 5 * number; depth.positive = "down"
+    n.createVariable("t", "f4", ("depth", "y", "x"))[:] = np.full((1, 2, 3), number)
+    n.close()
+)");
+  SourceOptions options;
+  options.stack = true;
+  const SourceInfo info = open_source(scratch.path("s_%d.nc"), options)->info();
+  EXPECT_EQ(info.origin[2], 10);
+  EXPECT_EQ(info.spacing[2], 5);
+  EXPECT_TRUE(info.details.orientation.starts_with("axis z (depth) points down")) << info.details.orientation;
+}
+
 }  // namespace
 }  // namespace weir::hdf5_stack_test

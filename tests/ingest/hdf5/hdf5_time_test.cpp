@@ -107,6 +107,24 @@ with h5py.File("pmd.h5", "w") as f:
   EXPECT_EQ(pmd->units, "s");
 }
 
+TEST_F(Hdf5Time, AuxiliaryCoordinateOfSeveralAxes_IsNoTime) {
+  write_by_h5py(scratch_, R"(
+with h5py.File("a.h5", "w") as f:
+    f["v"] = values("f4"); f["v"].attrs["coordinates"] = "when"
+    f["when"] = np.zeros((2, 2)); f["when"].attrs["units"] = "days since 2000-01-01"
+)");
+  EXPECT_FALSE(details_of("a.h5", "v").time.has_value());
+}
+
+TEST_F(Hdf5Time, SpacingOfVoxels_IsNoTime) {
+  write_by_h5py(scratch_, R"(
+with h5py.File("a.h5", "w") as f:
+    f["v"] = values("f4", (5, 3, 7, 9)); f["v"].attrs["spacing"] = [0.5, 0.5, 0.5]
+    for axis, name in enumerate(["z", "time", "y", "x"]): f["v"].dims[axis].label = name
+)");
+  EXPECT_FALSE(details_of("a.h5", "v", {2}).time.has_value());
+}
+
 TEST_F(Hdf5Time, TimeBetweenTheAxesOfSpaceIsChosenByIndex) {
   write_by_h5py(scratch_, R"(
 v = values("f4", (3,) + SHAPE)

@@ -162,6 +162,9 @@ TEST(NiftiSource, ReadsPairsAndExtensions) {
   EXPECT_EQ(read_volume(*open_source(scratch.write("b.nii.gz", deflated(bytes, Wrapper::gzip)), {})),
             as_floats(ramp()));
 
+  write_headed(scratch, "B.IMG", std::string(16, 'e'), stored(ramp()));
+  EXPECT_EQ(open_source(write_headed(scratch, "B.HDR", pair.bytes()), {})->info().extent,
+            open_source(scratch.path("a.hdr"), {})->info().extent);
   path = scratch.write("c.nii.gz", deflated(whole_file(pair, {}), Wrapper::gzip));
   EXPECT_EQ(refusal(path), path + ": is the packed header of a .hdr and .img pair; unpack both with gunzip");
 }

@@ -71,11 +71,21 @@ TEST(RawName, ImpossibleExtentsAreReadAsWritten) {
             (Index3{kMax, 1, kMin}));
 }
 
+// As scanners write them under Windows.
+TEST(RawName, ExtensionInCapitals_IsTaken) {
+  const auto name = parse_raw_name("Scan_4x5x6_uint16be.RAW");
+  ASSERT_TRUE(name);
+  EXPECT_EQ(name->name, "Scan");
+  EXPECT_EQ(name->extent, (Index3{4, 5, 6}));
+  EXPECT_EQ(name->type, ScalarType::uint16);
+  EXPECT_TRUE(name->big_endian);
+}
+
 TEST(RawName, UnrecognisedNamesGiveNothing) {
   for (const char* path :
        {"", "raw", ".raw", "a.raw", "a_uint8.raw", "4x4x4_uint8.raw", "_4x4x4_uint8.raw", "a_4x4_uint8.raw",
         "a_4x4x4x4_uint8.raw", "a_4x4x_uint8.raw", "a_4x 4x4_uint8.raw", "a_+4x4x4_uint8.raw", "a_4X4X4_uint8.raw",
-        "a_4x4x4_uint8.RAW", "a_4x4x4_uint8.raw.xz", "a_4x4x4_uint8", "a_4x4x4.raw", "a_4x4x4_uint8.raw/"}) {
+        "a_4x4x4_uint8.raw.xz", "a_4x4x4_uint8", "a_4x4x4.raw", "a_4x4x4_uint8.raw/"}) {
     EXPECT_FALSE(parse_raw_name(path)) << path;
   }
 }

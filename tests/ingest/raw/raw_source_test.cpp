@@ -238,6 +238,19 @@ TEST(RawSource, FileThatIsPackedByGzip_IsToBeUnpacked) {
   EXPECT_EQ(refusal(ErrorKind::input, path), path + ": is packed by gzip; unpack it first, with gunzip -k");
 }
 
+TEST(RawSource, FileThatIsPackedByXzBzip2OrZstd_IsToBeUnpacked) {
+  const Scratch scratch;
+  const auto refused = [&](const std::string& suffix, const std::vector<int>& head) {
+    std::vector<std::byte> bytes;
+    for (const int byte : head) bytes.push_back(static_cast<std::byte>(byte));
+    const std::string path = scratch.write("v_7x5x9_uint8.raw" + suffix, bytes);
+    return refusal(ErrorKind::input, path).substr(path.size());
+  };
+  EXPECT_EQ(refused(".xz", {0xFD, '7', 'z', 'X', 'Z', 0}), ": is packed by xz; unpack it first, with xz -dk");
+  EXPECT_EQ(refused(".bz2", {'B', 'Z', 'h', '9'}), ": is packed by bzip2; unpack it first, with bunzip2 -k");
+  EXPECT_EQ(refused(".ZST", {0x28, 0xB5, 0x2F, 0xFD, 4}), ": is packed by zstd; unpack it first, with zstd -d");
+}
+
 TEST(RawSource, UnknownExtentOrTypeIsAskedFor) {
   const Scratch scratch;
   const std::string path = scratch.write_values("v.raw", ramp<std::uint8_t>());

@@ -211,5 +211,26 @@ TEST_F(ZarrCoordinates, OfATimeAmongTheLastThree_MakeNoVolume) {
   EXPECT_EQ(open_source(files_.path(), options)->info().dataset, "run/T");
 }
 
+TEST_F(ZarrCoordinates, ThatPointDown_AreKeptAndSaid) {
+  write_axis("z", {5, 15}, R"({"positive":"Down","axis":"Z"})");
+  const auto source = open(0);
+  const std::string said =
+      "axis z (z) points down (positive = \"down\"): voxels lie where the file says, upside down where z is up; to "
+      "turn them round, negate these coordinates in the file";
+  EXPECT_EQ(source->info().details.orientation, said);
+  EXPECT_EQ(source->info().spacing[2], 10);
+  EXPECT_EQ(source->info().origin[2], 5);
+  EXPECT_EQ(ZarrFiles::read_all(*source).front(), 0.0F);
+  const auto listed = list_zarr(files_.path(), {}).front().attributes;
+  EXPECT_NE(std::find(listed.begin(), listed.end(), std::pair<std::string, std::string>{"orientation", said}),
+            listed.end());
+  // As the line says.
+  write_axis("z", {-5, -15}, R"({"positive":"up","axis":"Z"})");
+  const auto turned = open(0);
+  EXPECT_EQ(turned->info().details.orientation, "");
+  EXPECT_EQ(turned->info().origin[2], -15);
+  EXPECT_EQ(ZarrFiles::read_all(*turned).front(), 12.0F);
+}
+
 }  // namespace
 }  // namespace weir::zarr_coordinates_test

@@ -1,8 +1,11 @@
 // Attributes that the library cannot read: an error, and never values or places as if they were not there.
 #include "ingest/hdf5/file/hdf5_attribute.h"
 
+#include "format/base/process_memory.h"
+#include "format/base/text.h"
 #include "ingest/hdf5/hdf5_source.h"
 #include "tests/ingest/hdf5/support/h5py_file.h"
+#include "tests/support/child_answer.h"
 
 namespace weir::hdf5_attribute_test {
 namespace {
@@ -119,6 +122,67 @@ with h5py.File("a.h5", "w", libver="latest") as f:
   const SourceInfo info = open_source(scratch_.path("a.h5"), {})->info();
   EXPECT_EQ(info.spacing, (std::array<double, 3>{1, 1, 1}));
   EXPECT_EQ(info.details.long_name, "");
+}
+
+TEST_F(Hdf5Attribute, TextsOfMoreThanAMebibyte_AreReadAsNone) {
+  write_by_h5py(scratch_, R"(
+with h5py.File("a.h5", "w") as f:
+    for name, text in [("most", "x" * (1 << 20)), ("more", "x" * ((1 << 20) + 1)), ("several", ["x" * (1 << 19), "y" * (1 << 19), "z"])]:
+        f[name] = values("f4"); f[name].attrs["long_name"] = text
+    f["missing"] = values("f4"); f["missing"].attrs["missing_value"] = "1" * (2 << 20)
+)");
+  const auto long_name = [&](const char* dataset) {
+    return open_source(scratch_.path("a.h5"), dataset_options(dataset))->info().details.long_name;
+  };
+  EXPECT_EQ(long_name("most"), std::string(std::size_t{1} << 20U, 'x'));
+  EXPECT_EQ(long_name("more"), "");
+  EXPECT_EQ(long_name("several"), "");
+  EXPECT_EQ(
+      message_of_error(ErrorKind::input, [&] { open_source(scratch_.path("a.h5"), dataset_options("missing")); }),
+      scratch_.path("a.h5") +
+          ": /missing: its attribute missing_value is of type text of any length and not a number, so which voxels "
+          "hold no data is unknown; correct or remove it");
+}
+
+// The library takes five times their bytes to read them.
+TEST_F(Hdf5Attribute, MemoryOfLongTexts_IsNotTaken) {
+  write_by_h5py(scratch_, R"(
+with h5py.File("a.h5", "w") as f:
+    f["q"] = values("f4")
+    f["q"].attrs["description"] = "x" * (100 << 20)
+)");
+  EXPECT_EQ(answer_of_child([&] {
+              const std::string name = open_source(scratch_.path("a.h5"), {})->info().details.long_name;
+              const std::uint64_t peak = peak_resident_bytes();
+              return peak < (std::uint64_t{100} << 20U) ? name : cat(peak, " bytes");
+            }),
+            "");
+}
+
+TEST_F(Hdf5Attribute, MoreBytesInAllThanAreRead_AreAnError) {
+  write_by_h5py(scratch_, R"(
+with h5py.File("a.h5", "w", libver="latest") as f:
+    f["q"] = values("f4"); f["other"] = values("f4")
+    f["q"].attrs["description"] = np.bytes_(b"x" * (20 << 20))
+    f["q"].attrs["units"] = "K"
+with h5py.File("scale.h5", "w", libver="latest") as f:
+    f["q"] = values("f4"); f["x"] = np.arange(9.0); f["x"].make_scale("x"); f["q"].dims[2].attach_scale(f["x"])
+    f["x"].attrs["history"] = np.bytes_(b"x" * (20 << 20))
+)");
+  const auto expect_refusal = [&](const std::string& file, const std::string& dataset, const std::string& object) {
+    const std::string message =
+        message_of_error(ErrorKind::input, [&] { open_source(scratch_.path(file), dataset_options(dataset)); });
+    EXPECT_TRUE(message.starts_with(scratch_.path(file) + ": " + object + ": its attributes take 2097")) << message;
+    EXPECT_TRUE(
+        message.ends_with(" bytes, and at most 16777216 are read; shorten the longest, or make a dataset of it"))
+        << message;
+  };
+  expect_refusal("a.h5", "q", "/q");
+  expect_refusal("scale.h5", "q", "/x");
+  EXPECT_EQ(open_source(scratch_.path("a.h5"), dataset_options("other"))->info().extent, (Index3{9, 7, 5}));
+  SourceOptions listing;
+  listing.lists_damaged = true;
+  EXPECT_TRUE(list_hdf5(scratch_.path("a.h5"), listing)[1].obstacle.starts_with("its attributes take 2097"));
 }
 
 }  // namespace

@@ -156,5 +156,34 @@ n.close()
   EXPECT_EQ(magnitude({"u", "w"})->info().details.axes[1].coordinates.size(), 7U);
 }
 
+TEST_F(Hdf5Coordinates, ThatPointDownAreKeptAndSaid) {
+  write_by_h5py(scratch_, R"(
+import netCDF4
+n = netCDF4.Dataset("a.nc", "w")
+for name, size, stored in [("depth", 5, np.arange(5) * 10.0), ("lev", 5, np.arange(5)[::-1] * 100.0), ("uneven", 5, [0, 1, 3, 7, 15]),
+                           ("up", 5, np.arange(5) * 1.0), ("y", 7, np.arange(7)), ("x", 9, np.arange(9))]:
+    n.createDimension(name, size); c = n.createVariable(name, "f8", (name,)); c[:] = stored
+    if size == 5: c.positive = "up" if name == "up" else "down"
+for name in ["depth", "lev", "uneven", "up"]: n.createVariable("in_" + name, "f4", (name, "y", "x"))[:] = np.broadcast_to(np.arange(5.0)[:, None, None], SHAPE)
+n.close()
+)");
+  const auto first_value = [&](const char* name) {
+    return all_values(*open_source(scratch_.path("a.nc"), dataset_options(name))).front();
+  };
+  const std::string said =
+      " points down (positive = \"down\"): voxels lie where the file says, upside down where z is up; to turn them "
+      "round, ";
+  EXPECT_EQ(info_of("in_depth").details.orientation, "axis z (depth)" + said + "negate these coordinates in the file");
+  EXPECT_EQ(info_of("in_depth").origin[2], 0);
+  EXPECT_EQ(first_value("in_depth"), 0.0F);
+  const SourceInfo falling = info_of("in_lev");
+  EXPECT_EQ(falling.details.orientation, "axis z (lev)" + said + "negate these coordinates in the file");
+  EXPECT_EQ(falling.details.axes[2].note,
+            "falls from 400 to 0: planes are read in reverse order, so that positions rise");
+  EXPECT_EQ(first_value("in_lev"), 4.0F);
+  EXPECT_EQ(info_of("in_uneven").details.orientation, "axis z (uneven)" + said + "reverse the axis in the file");
+  EXPECT_EQ(info_of("in_up").details.orientation, "");
+}
+
 }  // namespace
 }  // namespace weir::hdf5_coordinates_test

@@ -76,6 +76,16 @@ with h5py.File("a.h5", "w") as f:
   EXPECT_EQ(loss.max_abs_error, static_cast<double>(0.1F) - 0.1);
 }
 
+TEST_F(Hdf5Placement, TextThatIsTooLongForAUnit_IsNone) {
+  write_by_h5py(scratch_, R"(
+with h5py.File("a.h5", "w") as f:
+    f.create_dataset("short", data=values("f4")).attrs["units"] = "m" * 128
+    f.create_dataset("long", data=values("f4")).attrs["units"] = "m" * 129
+)");
+  EXPECT_EQ(info_of("a.h5", "short").units, std::string(128, 'm'));
+  EXPECT_EQ(info_of("a.h5", "long").units, "");
+}
+
 TEST_F(Hdf5Placement, NetcdfCoordinatesGiveSpacingAndNames) {
   write_by_h5py(scratch_, R"(
 import netCDF4
