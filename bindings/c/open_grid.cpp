@@ -5,13 +5,14 @@
 #include "bindings/c/status.h"
 #include "format/base/error.h"
 #include "format/io/file_mapping.h"
+#include "format/sidecar/find_sidecar.h"
 #include "format/sidecar/is_of.h"
 
 using namespace weir;
 
 weir_grid::weir_grid(const std::string& path) : file_(path) {
   try {
-    const FileMapping sidecar(sidecar_path(path), ".json");
+    const FileMapping sidecar(find_sidecar(path), ".json");
     const std::span<const std::byte> bytes = sidecar.bytes();
     take_sidecar({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
   } catch (const Error&) {

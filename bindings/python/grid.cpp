@@ -14,6 +14,7 @@
 #include "format/base/text.h"
 #include "format/nanovdb/macrocells.h"
 #include "format/nanovdb/nvdb_header.h"
+#include "format/sidecar/find_sidecar.h"
 #include "format/sidecar/is_of.h"
 #include "format/sidecar/sidecar.h"
 #include "gpu/volume/macrocell_grid.h"
@@ -130,7 +131,7 @@ int Grid::levels() const { return level_count(opened().source->info().extent); }
 
 std::optional<std::string> Grid::sidecar() const {
   const auto file = with_file("its sidecar");
-  const std::string path = sidecar_path(path_);
+  const std::string path = find_sidecar(path_);
   if (!std::filesystem::exists(path)) return std::nullopt;
   return text_of(read_sidecar(path), path);
 }

@@ -1,5 +1,8 @@
 #include "compressor/resume/work_directory.h"
 
+#include <filesystem>
+#include <system_error>
+
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "format/output/output_files.h"
@@ -23,6 +26,8 @@ WorkDirectory::WorkDirectory(FileSystem& files, const std::string& output, const
   if (!chosen.empty()) {
     if (!files_.exists(chosen))
       throw Error(ErrorKind::usage, compose(option("work-dir", chosen), ": does not exist; make it or choose another"));
+    if (std::error_code ignored; std::filesystem::is_regular_file(chosen, ignored))
+      throw Error(ErrorKind::usage, compose(option("work-dir", chosen), ": is a file; choose a directory"));
     if (files_.is_memory(chosen)) {
       throw Error(ErrorKind::usage,
                   compose(option("work-dir", chosen), ": is a memory file system; choose a directory on a disk"));

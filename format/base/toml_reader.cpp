@@ -1,6 +1,9 @@
 #include "format/base/toml_reader.h"
 
 #include <cmath>
+#include <vector>
+
+#include "format/base/nearest_name.h"
 
 namespace weir {
 
@@ -86,7 +89,10 @@ void TomlReader::finish() const {
     if (known_.contains(key.str())) continue;
     std::string keys;
     for (const std::string& k : known_) keys += cat(keys.empty() ? "" : ", ", k);
-    fail_toml(path_, key.source(), cat("unknown key \"", key.str(), "\" in ", name_, "; there are ", keys));
+    const std::string meant = nearest_name(key.str(), std::vector<std::string>(known_.begin(), known_.end()));
+    fail_toml(path_, key.source(),
+              cat("unknown key \"", key.str(), "\" in ", name_, "; there are ", keys,
+                  meant.empty() ? "" : "; did you mean ", meant, meant.empty() ? "" : "?"));
   }
 }
 

@@ -25,6 +25,7 @@
 #include "format/base/text.h"
 #include "format/io/file_system.h"
 #include "format/nanovdb/nvdb_file.h"
+#include "format/sidecar/find_sidecar.h"
 #include "format/sidecar/sidecar.h"
 #include "format/sidecar/valid_voxels.h"
 #include "ingest/plan/staging.h"
@@ -86,11 +87,14 @@ struct ComparedPair {
 };
 
 ComparedPair open_pair(const std::string& input, const std::string& volume, const GivenOptions& given) {
+  if (!volume.ends_with(".nvdb") && std::filesystem::is_regular_file(volume) && !is_nanovdb(volume)) {
+    throw input_error(volume, "is no NanoVDB file; give the source first, then the .nvdb file made of it");
+  }
   NvdbFile file(volume);
   file.mapping().release_pages();  // what its validation looked at
   SourceOptions options = read_conversion_request(given).source;
   if (const std::string taken = take_recorded_input(input, file, given, options); !taken.empty()) {
-    spdlog::info("{}: read with {}, as {} records", input, taken, sidecar_path(volume));
+    spdlog::info("{}: read with {}, as {} records", input, taken, find_sidecar(volume));
   }
   std::unique_ptr<VolumeSource> source = open_source(input, options);
   if (const std::string other = other_input_note(file, source->info()); !other.empty()) {
@@ -209,7 +213,8 @@ void compare(const CompareArguments& arguments) {
     for (const ComparedPair& pair : pairs) pair.file.mapping().release_pages();
   };
   const std::unique_ptr<Trace> trace =
-      open_trace(arguments.trace, std::array{arguments.input, arguments.volume, sidecar_path(arguments.volume)});
+      open_trace(arguments.trace,
+                 std::array{arguments.input, arguments.volume, find_sidecar(arguments.volume), arguments.spectrum});
   options.trace = trace.get();
   Progress progress(arguments.progress);
   const std::uint64_t bytes = static_cast<std::uint64_t>(source->info().domain().voxels()) * sizeof(float);
@@ -274,7 +279,7 @@ void add_compare(CLI::App& app) {
       ->add_option(
           "--spectrum", arguments->spectrum,
           "also the power of source, file and error by wave number: a chart, FILE.png or FILE.svg, or a table, "
-          "FILE.csv; reads both once more")
+          "FILE.csv, which replaces one that is there; reads both once more")
       ->type_name("FILE");
   command
       ->add_option("--vector", arguments->vector,

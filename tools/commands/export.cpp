@@ -21,6 +21,7 @@
 #include "format/layout/nanovdb_layout.h"
 #include "format/nanovdb/nvdb_file.h"
 #include "format/output/partial_file.h"
+#include "format/sidecar/find_sidecar.h"
 #include "format/sidecar/is_of.h"
 #include "format/sidecar/valid_voxels.h"
 #include "ingest/vdb/openvdb_library.h"
@@ -63,7 +64,7 @@ void require_memory(const NvdbGrid& grid, std::uint64_t memory) {
 
 // Of this very volume; none where there is no sidecar, or a damaged one, or that of another volume.
 std::optional<Sidecar> sidecar_of(const NvdbFile& file) {
-  const std::string path = sidecar_path(file.path());
+  const std::string path = find_sidecar(file.path());
   if (!is_there(path)) return std::nullopt;
   try {
     Sidecar sidecar = read_sidecar(path);

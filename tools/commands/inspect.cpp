@@ -22,6 +22,7 @@
 #include "format/nanovdb/nvdb_file.h"
 #include "format/nanovdb/nvdb_header.h"
 #include "format/output/partial_file.h"
+#include "format/sidecar/find_sidecar.h"
 #include "format/sidecar/is_of.h"
 #include "format/sidecar/valid_voxels.h"
 #include "gpu/image/image_output.h"
@@ -99,7 +100,7 @@ Sidecar::Histogram counted_histogram(const NvdbGrid& grid, const ProgressOptions
 Inspection look_at(const NvdbFile& file, const ProgressOptions& progress) {
   Inspection result{file.grid(), std::nullopt, false, {}, std::nullopt};
   if (const PackedData* packed = file.grid().packed()) result.packed = take_packed_census(*packed);
-  const std::string path = sidecar_path(file.path());
+  const std::string path = find_sidecar(file.path());
   if (is_there(path)) {
     result.sidecar = read_sidecar(path);
     result.sidecar_matches = is_of(*result.sidecar, file.grid());
@@ -279,10 +280,23 @@ Json inspect(const std::string& path, const InspectArguments& arguments) {
     if (!arguments.plot.empty()) {
       throw Error(ErrorKind::usage, cat("--plot is for .nvdb files, and ", path, " is none; convert it first"));
     }
-    const InputListing listing = list_input(path, read_conversion_request(arguments.source).source);
+    for (const char* key : {"index", "roi"}) {
+      if (arguments.source.contains(key)) {
+        throw Error(ErrorKind::usage,
+                    compose(option(key), " chooses a part for a conversion; leave it out: inspect lists ", "all that ",
+                            path, " holds"));
+      }
+    }
+    const SourceOptions options = read_conversion_request(arguments.source).source;
+    InputListing listing = list_input(path, options);
+    if (!options.dataset.empty()) keep_named(listing, options.dataset);
     if (arguments.json) return to_json(listing);
     print_text(listing);
     return {};
+  }
+  if (const std::string key = given_input_option(arguments.source); !key.empty()) {
+    throw Error(ErrorKind::usage,
+                compose(option(key), " says how to read a source, and ", path, " is a .nvdb file; leave it out"));
   }
   const auto files = make_posix_file_system();
   std::optional<PlotFormat> format;
@@ -334,7 +348,9 @@ void add_inspect(CLI::App& app) {
                    "'step_%04d.nvdb'")
       ->type_name("FILE")
       ->required();
-  command->add_option("--plot", arguments->plot, "also draws the histogram, as FILE.png or FILE.svg")
+  command
+      ->add_option("--plot", arguments->plot,
+                   "also draws the histogram, as FILE.png or FILE.svg, which replaces one that is there")
       ->type_name("FILE");
   command->add_flag("--json", arguments->json, "one JSON object on stdout");
   add_input_options(*command, arguments->source);

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -17,6 +18,7 @@
 #include "format/io/file_system.h"
 #include "format/nanovdb/nvdb_file.h"
 #include "gpu/image/image_output.h"
+#include "ingest/source/convert_command.h"
 #include "ingest/source_registry.h"
 #include "tools/command.h"
 #include "tools/export/dense_input.h"
@@ -54,6 +56,13 @@ TitledVolume load_file(Backend& backend, const RenderArguments& arguments) {
   if (const std::string key = given_input_option(arguments.source); !key.empty()) {
     throw Error(ErrorKind::usage,
                 compose(option(key), " says how to read a source; give ", option("volume", "dense"), " with it"));
+  }
+  // A damaged .nvdb is still one: what is wrong with it is said when it is opened.
+  if (!arguments.input.ends_with(".nvdb") && std::filesystem::is_regular_file(arguments.input) &&
+      !is_nanovdb(arguments.input)) {
+    throw input_error(arguments.input,
+                      compose("is no NanoVDB file; convert it first: weir convert ", shell_word(arguments.input),
+                              ", or draw its own values with ", option("volume", "dense")));
   }
   const auto file = std::make_shared<const NvdbFile>(arguments.input);
   return {backend.load(file, 0, nullptr), quantity_title(*file)};

@@ -11,6 +11,7 @@
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "format/sidecar/find_sidecar.h"
 #include "format/sidecar/sidecar.h"
 #include "tools/command.h"
 #include "tools/options/run_options.h"
@@ -39,7 +40,7 @@ std::vector<VolumeCheck> verify(const std::string& path, const VerifyArguments& 
   watch.pass_started = [&](const std::string& pass, std::uint64_t bytes) { progress.start(pass, bytes); };
   watch.pass_advanced = [&](std::uint64_t done) { progress.update(done); };
   watch.cancel = &interrupt_flag();
-  const std::unique_ptr<Trace> trace = open_trace(arguments.trace, std::array{path, sidecar_path(path)});
+  const std::unique_ptr<Trace> trace = open_trace(arguments.trace, std::array{path, find_sidecar(path)});
   watch.trace = trace.get();
   std::vector<VolumeCheck> checks = verify_volume(path, watch);
   if (trace) trace->close();

@@ -43,7 +43,11 @@ std::string options_page() {
       table("Use of the machine", "keyword of Python", run_options()),
       "\nOf `--size`, `--rate`, `--psnr`, `--max-error` and `--lossless` one can be given "
       "([budget.md](budget.md)). A `[[watch]]`\ntable takes the keys of the first two tables but `stack`, and "
-      "`backend`; memory, threads and the like are the\nservice's ([operations.md](operations.md)).\n");
+      "`backend`; memory, threads and the like are the\nservice's ([operations.md](operations.md)).\n"
+      "\n`--overwrite` is of results: without it an existing one is refused. What a command writes besides is "
+      "replaced: "
+      "the chart\nor table of `weir compare --spectrum`, the chart of `weir inspect --plot`, and a trace; `--trace` "
+      "refuses any other file.\n");
 }
 
 }  // namespace weir

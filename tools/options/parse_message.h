@@ -3,8 +3,6 @@
 #pragma once
 
 #include <string>
-#include <string_view>
-#include <vector>
 
 namespace CLI {
 class App;
@@ -12,10 +10,6 @@ class ParseError;
 }  // namespace CLI
 
 namespace weir {
-
-/// The one of `names` that takes the fewest slips to become `word`, where a slip is a letter more, less or another, or
-/// two neighbours swapped; empty where all take more than one slip in three letters.
-std::string nearest_name(std::string_view word, const std::vector<std::string>& names);
 
 /// One line of what `error` says of the command line that `app` parsed: "no command \"covnert\"; did you mean convert?
 /// see weir --help".

@@ -1,17 +1,38 @@
 #include "tools/options/trace_option.h"
 
 #include <CLI/CLI.hpp>
+#include <cstddef>
 #include <filesystem>
+#include <fstream>
+#include <string_view>
 
 #include "format/base/error.h"
 #include "format/base/text.h"
 
 namespace weir {
+namespace {
+
+// How each file of Trace begins. One that was killed before its first write is empty.
+constexpr std::string_view kTraceStart = "[\n{\"name\":\"thread_name\",\"ph\":\"M\"";
+
+// Nothing, a trace of weir, or a device or pipe, which loses nothing.
+bool may_be_replaced(const std::string& path) {
+  std::error_code failure;
+  if (!std::filesystem::is_regular_file(path, failure)) return true;
+  std::ifstream file(path, std::ios::binary);
+  std::string start(kTraceStart.size(), '\0');
+  file.read(start.data(), static_cast<std::streamsize>(start.size()));
+  start.resize(static_cast<std::size_t>(file.gcount()));
+  return start.empty() || start == kTraceStart;
+}
+
+}  // namespace
 
 void add_trace_option(CLI::App& command, std::string& path) {
   command
       .add_option("--trace", path,
-                  "write what each thread did when, as Chrome trace events, for chrome://tracing or ui.perfetto.dev")
+                  "write what each thread did when, as Chrome trace events, for chrome://tracing or ui.perfetto.dev; a "
+                  "trace that is there is replaced, another file is not")
       ->type_name("FILE")
       ->group("Run");
 }
@@ -24,6 +45,7 @@ std::unique_ptr<Trace> open_trace(const std::string& path, std::span<const std::
       throw Error(ErrorKind::usage, cat("--trace ", path, ": is an input or an output; choose another"));
     }
   }
+  if (!may_be_replaced(path)) throw usage_error(cat("--trace ", path, ": exists and is no trace; choose another"));
   return std::make_unique<Trace>(path);
 }
 

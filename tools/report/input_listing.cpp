@@ -1,8 +1,11 @@
 #include "tools/report/input_listing.h"
 
+#include <fnmatch.h>
+
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "format/base/error.h"
 #include "format/base/text.h"
 #include "ingest/source/convert_command.h"
 #include "tools/report/printable.h"
@@ -25,6 +28,18 @@ InputListing list_input(const std::string& path, const SourceOptions& options) {
   SourceOptions all = options;
   all.lists_damaged = true;
   return {path, std::string(format.name), format.container, format.list(path, all)};
+}
+
+void keep_named(InputListing& listing, const std::string& dataset) {
+  std::string names;
+  for (const DatasetInfo& info : listing.datasets) names += cat(names.empty() ? "" : ", ", info.name);
+  std::erase_if(listing.datasets, [&](const DatasetInfo& info) {
+    return ::fnmatch(dataset.c_str(), info.name.c_str(), 0) != 0 &&
+           ::fnmatch(('/' + dataset).c_str(), info.name.c_str(), 0) != 0 && info.name != dataset;
+  });
+  if (!listing.datasets.empty()) return;
+  throw Error(ErrorKind::usage, compose(listing.path, ": ", option("dataset", dataset), " is none of it; it holds ",
+                                        names.empty() ? "one volume without a name" : names));
 }
 
 void print_text(const InputListing& listing) {

@@ -20,6 +20,10 @@ struct InputListing {
 /// Lists `path`; reads no values. Throws what open_source throws of the file itself.
 InputListing list_input(const std::string& path, const SourceOptions& options);
 
+/// Leaves the datasets that `dataset` names, with or without the slash before it, or as a pattern. Throws Error(usage)
+/// where there is none.
+void keep_named(InputListing& listing, const std::string& dataset);
+
 /// On stdout, for people.
 void print_text(const InputListing& listing);
 nlohmann::ordered_json to_json(const InputListing& listing);

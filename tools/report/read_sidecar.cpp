@@ -9,6 +9,7 @@
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "format/io/real_path.h"
+#include "format/sidecar/find_sidecar.h"
 #include "format/sidecar/is_of.h"
 
 namespace weir {
@@ -38,7 +39,7 @@ Sidecar read_sidecar(const std::string& path) {
 }
 
 std::optional<Sidecar> own_sidecar(const NvdbFile& file) {
-  const std::string path = sidecar_path(file.path());
+  const std::string path = find_sidecar(file.path());
   if (!is_there(path)) return std::nullopt;
   Sidecar sidecar = read_sidecar(path);
   return is_of(sidecar, file.grid()) ? std::optional(std::move(sidecar)) : std::nullopt;

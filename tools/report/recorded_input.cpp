@@ -9,6 +9,7 @@
 #include "compressor/options/conversion_request.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "format/sidecar/find_sidecar.h"
 #include "format/sidecar/sidecar.h"
 #include "ingest/raw/raw_name.h"
 #include "ingest/source/extent.h"
@@ -132,7 +133,7 @@ std::string changed_source_note(const NvdbFile& file, const SourceInfo& source) 
   const std::string mtime = utc_text(source.mtime_ns);
   if (record->source.path != source.path || record->source.mtime == mtime) return {};
   return cat("is of ", mtime, ", and was of ", record->source.mtime, " when it was converted, as ",
-             sidecar_path(file.path()), " records");
+             find_sidecar(file.path()), " records");
 }
 
 std::string other_input_note(const NvdbFile& file, const SourceInfo& source) {
@@ -151,7 +152,7 @@ std::string other_input_note(const NvdbFile& file, const SourceInfo& source) {
   compare("--component", record->source.component, source.details.component);
   compare("--spacing", vector_text(record->grid.voxel_size), vector_text(source.spacing));
   if (was.empty()) return {};
-  return cat("was converted with ", was, ", as ", sidecar_path(file.path()), " records, and is compared with ", is);
+  return cat("was converted with ", was, ", as ", find_sidecar(file.path()), " records, and is compared with ", is);
 }
 
 }  // namespace weir

@@ -11,8 +11,8 @@
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "format/io/digest.h"
-#include "format/io/real_path.h"
 #include "format/nanovdb/nvdb_file.h"
+#include "format/sidecar/find_sidecar.h"
 #include "format/sidecar/sidecar.h"
 #include "tools/report/read_sidecar.h"
 #include "tools/verify/certificate_check.h"
@@ -73,13 +73,12 @@ auto checked(const std::string& name, std::vector<VolumeCheck>& checks, const Ru
 
 std::vector<VolumeCheck> verify_volume(const std::string& path, const VerificationWatch& watch) {
   std::vector<VolumeCheck> checks;
-  std::optional<Sidecar> sidecar;
-  if (is_there(path)) sidecar = checked("sidecar", checks, [&] { return read_sidecar(sidecar_path(path)); });
   const auto file = checked("structure", checks, [&] {
     const TraceSpan span(watch.trace, "open");
     return std::make_unique<NvdbFile>(path);
   });
-  if (!file) return checks;
+  if (!file) return checks;  // of what is no volume a sidecar says nothing
+  const auto sidecar = checked("sidecar", checks, [&] { return read_sidecar(find_sidecar(path)); });
   const NvdbGrid& grid = (*file)->grid();
   const auto census = checked("structure", checks, [&] { return watched_census(grid, watch); });
   if (!census) return checks;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "format/base/error.h"
 #include "tests/compressor/support/crash_file_system.h"
 #include "tests/support/message_of_error.h"
+#include "tests/support/temporary_directory.h"
 
 namespace weir::work_directory_test {
 namespace {
@@ -93,6 +95,15 @@ TEST(WorkDirectory, AMissingOneIsAnError) {
   files.existing = {"/data"};
   EXPECT_EQ(message_of(files, "/data/out.nvdb", "/nowhere"),
             "--work-dir /nowhere: does not exist; make it or choose another");
+}
+
+TEST(WorkDirectory, AFileInItsPlaceIsAnError) {
+  const TemporaryDirectory scratch;
+  const std::string file = scratch / "volume.raw";
+  std::ofstream(file) << "values";
+  Directories files;
+  files.existing = {"/data", file};
+  EXPECT_EQ(message_of(files, "/data/out.nvdb", file), "--work-dir " + file + ": is a file; choose a directory");
 }
 
 }  // namespace

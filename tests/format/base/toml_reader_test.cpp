@@ -66,5 +66,17 @@ TEST(TomlReader, UnknownKeyIsRefusedByName) {
   }
 }
 
+TEST(TomlReader, UnknownKeyThatIsNearlyAKnownOne_IsSaidToBeMeantAsThat) {
+  const toml::table table = parse_toml("siez = 1\n", kPath);
+  TomlReader reader(table, "[t]", kPath);
+  for (const char* known : {"rate", "size"}) reader.find(known);
+  try {
+    reader.finish();
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(), "f.toml:1:1: unknown key \"siez\" in [t]; there are rate, size; did you mean size?");
+  }
+}
+
 }  // namespace
 }  // namespace weir::toml_reader_test

@@ -108,6 +108,23 @@ TEST(Compare, SpectrumIsAskedForByTheEndingOfItsFile) {
   EXPECT_EQ(read_file(table).substr(0, 39), "wave_number,modes,source,decoded,error\n");
 }
 
+TEST(Compare, SpectrumReplacesTheOneBefore_AsTheHelpSays) {
+  const std::string help = run_weir({"compare", "--help"}).out;
+  EXPECT_NE(help.find("or a table, FILE.csv, which replaces one that is there; reads both once more\n"),
+            std::string::npos)
+      << help;
+  if (!has_fftw()) return;
+  const Converted volume("turbulence", "40x30x20_float32", {"--psnr", "40"});
+  const std::string table = volume.directory / "a.csv";
+  write_file(table, "another");
+  const CommandResult refused = run_weir({"compare", volume.raw, volume.nvdb, "--spectrum", table, "--trace", table});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_EQ(refused.err, "weir: --trace " + table + ": is an input or an output; choose another\n");
+  EXPECT_EQ(read_file(table), "another");
+  EXPECT_EQ(run_weir({"compare", volume.raw, volume.nvdb, "--spectrum", table}).exit_code, 0);
+  EXPECT_EQ(read_file(table).substr(0, 39), "wave_number,modes,source,decoded,error\n");
+}
+
 TEST(Compare, ErrorsOfVorticityAndDivergenceOfThreeComponents) {
   const Converted first("turbulence", "20x18x17_float32", {"--psnr", "30"});
   const Converted lossless("noise", "20x18x17_float32", {"--lossless"});
@@ -304,7 +321,8 @@ TEST(Compare, Refusals) {
             0U);
   EXPECT_EQ(refusal({"compare", volume.raw, volume.directory / "none.nvdb"}, 3),
             "weir: " + (volume.directory / "none.nvdb") + ": cannot open: No such file or directory\n");
-  EXPECT_EQ(refusal({"compare", volume.raw, volume.raw}, 3).find("weir: " + volume.raw + ": "), 0U);
+  EXPECT_EQ(refusal({"compare", volume.nvdb, volume.raw}, 3),
+            "weir: " + volume.raw + ": is no NanoVDB file; give the source first, then the .nvdb file made of it\n");
   EXPECT_EQ(refusal({"compare", volume.raw, volume.nvdb, "--dims", "20,10,8"}, 2),
             "weir: " + volume.raw +
                 ": --dims 20,10,8 contradicts the file's name, which says 20x10x9; drop it or rename the file\n");

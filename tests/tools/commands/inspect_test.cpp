@@ -87,5 +87,29 @@ TEST_F(Inspect, SeveralFilesAndPatterns_AreListedOneAfterTheOther) {
   EXPECT_EQ(plotted.err, "weir: --plot draws one histogram, and 3 files are given; give one of them\n");
 }
 
+TEST_F(Inspect, OptionsThatItCannotHonour_AreRefused) {
+  const auto refusal = [](const std::vector<std::string>& words) {
+    const CommandResult result = run_weir(words);
+    EXPECT_EQ(result.exit_code, 2);
+    return result.err;
+  };
+  const std::string raw = directory_ / "v_40x30x20_float32.raw";
+  EXPECT_EQ(refusal({"inspect", volume_, "--dims", "3,3,3"}),
+            "weir: --dims says how to read a source, and " + volume_ + " is a .nvdb file; leave it out\n");
+  EXPECT_EQ(refusal({"inspect", raw, "--roi", "0:8,0:8,0:900"}),
+            "weir: --roi chooses a part for a conversion; leave it out: inspect lists all that " + raw + " holds\n");
+  EXPECT_EQ(refusal({"inspect", raw, "--dataset", "rho"}),
+            "weir: " + raw + ": --dataset rho is none of it; it holds one volume without a name\n");
+}
+
+TEST_F(Inspect, AResultThatALinkLeadsTo_HasItsSidecar) {
+  const std::string link = directory_ / "link.nvdb";
+  fs::create_symlink(volume_, link);
+  const auto report = nlohmann::json::parse(run_weir({"inspect", link, "--json"}).out);
+  EXPECT_EQ(report["sidecar_matches"], true);
+  const CommandResult verified = run_weir({"verify", link});
+  EXPECT_EQ(verified.exit_code, 0) << verified.out << verified.err;
+}
+
 }  // namespace
 }  // namespace weir::inspect_test

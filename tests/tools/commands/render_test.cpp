@@ -241,7 +241,11 @@ TEST_F(Render, ExistingPicture_IsReplacedWithOverwriteOnly) {
 
 TEST_F(Render, MissingOrForeignInput) {
   EXPECT_EQ(run_weir({"render", directory_ / "no.nvdb", "-o", out_ + "/a.png"}).exit_code, 3);
-  EXPECT_EQ(run_weir({"render", directory_ / "c_70x60x50_float32.raw", "-o", out_ + "/a.png"}).exit_code, 3);
+  const std::string raw = directory_ / "c_70x60x50_float32.raw";
+  const CommandResult foreign = run_weir({"render", raw, "-o", out_ + "/a.png"});
+  EXPECT_EQ(foreign.exit_code, 3);
+  EXPECT_EQ(foreign.err, "weir: " + raw + ": is no NanoVDB file; convert it first: weir convert " + raw +
+                             ", or draw its own values with --volume dense\n");
   EXPECT_TRUE(list_directory(out_).empty());
 }
 

@@ -187,5 +187,28 @@ TEST_F(TraceOption, TraceOverAnInputOrOutput_IsRefused) {
   EXPECT_EQ(std::filesystem::file_size(input_), static_cast<std::uintmax_t>(4 * kVoxels));
 }
 
+TEST_F(TraceOption, FileThatIsNoTrace_IsRefusedAndATraceIsReplaced) {
+  const std::string output = directory_ / "o.nvdb";
+  ASSERT_EQ(run_weir({"convert", input_, "-o", output, "--rate", "2"}).exit_code, 0);
+  const std::string picture = directory_ / "cloud.png";
+  const std::string refused = "weir: --trace " + picture + ": exists and is no trace; choose another\n";
+  write_file(picture, "a picture");
+  const std::vector<std::vector<std::string>> commands{
+      {"verify", output}, {"compare", input_, output}, {"convert", input_, "-o", output, "--rate", "2", "--overwrite"}};
+  for (std::vector<std::string> arguments : commands) {
+    arguments.insert(arguments.end(), {"--trace", picture});
+    const CommandResult result = run_weir(arguments);
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_EQ(result.err, refused);
+  }
+  EXPECT_EQ(read_file(picture), "a picture");
+  write_file(trace_, "");
+  EXPECT_EQ(run_weir({"compare", input_, output, "--trace", trace_}).exit_code, 0) << "one that never began";
+  EXPECT_EQ(names_of(read_trace(trace_).at(0)), Names{"compare"});
+  EXPECT_EQ(run_weir({"verify", output, "--trace", trace_}).exit_code, 0);
+  EXPECT_TRUE(names_of(read_trace(trace_).at(0)).contains("digest"));
+  EXPECT_EQ(run_weir({"verify", output, "--trace", "/dev/null"}).exit_code, 0);
+}
+
 }  // namespace
 }  // namespace weir::trace_option_test

@@ -1,8 +1,8 @@
-#include "tools/options/parse_message.h"
+#include "format/base/nearest_name.h"
 
 #include <gtest/gtest.h>
 
-namespace weir::parse_message_test {
+namespace weir::nearest_name_test {
 namespace {
 
 const std::vector<std::string> kNames{"convert", "compare", "render", "verify", "--rate", "--roi"};
@@ -22,4 +22,4 @@ TEST(NearestName, OneSlipInThreeLetters_IsTheMost) {
 TEST(NearestName, OfSeveral_TakesTheFewestSlips) { EXPECT_EQ(nearest_name("--rote", kNames), "--rate"); }
 
 }  // namespace
-}  // namespace weir::parse_message_test
+}  // namespace weir::nearest_name_test
