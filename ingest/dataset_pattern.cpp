@@ -44,11 +44,12 @@ Message left_out(const DatasetInfo& dataset, const SourceOptions& options) {
                  positions_text(dataset.index_axes.size()));
 }
 
-bool matches(const std::string& pattern, const std::string& name) {
-  return ::fnmatch(pattern.c_str(), name.c_str(), 0) == 0 || ::fnmatch(('/' + pattern).c_str(), name.c_str(), 0) == 0;
-}
-
 }  // namespace
+
+bool names_dataset(const std::string& pattern, const std::string& name) {
+  return name == pattern || name == '/' + pattern || ::fnmatch(pattern.c_str(), name.c_str(), 0) == 0 ||
+         ::fnmatch(('/' + pattern).c_str(), name.c_str(), 0) == 0;
+}
 
 std::vector<std::string> matching_datasets(const std::string& path, std::span<const DatasetInfo> datasets,
                                            const std::string& pattern, const SourceOptions& options,
@@ -58,7 +59,7 @@ std::vector<std::string> matching_datasets(const std::string& path, std::span<co
   std::vector<Message> by_name_only;  // said only where there is nothing else
   for (const DatasetInfo& dataset : datasets) {
     if (dataset.name == pattern || dataset.name == '/' + pattern) return {dataset.name};
-    if (!dataset.obstacle.empty() || !matches(pattern, dataset.name)) continue;
+    if (!dataset.obstacle.empty() || !names_dataset(pattern, dataset.name)) continue;
     if (dataset.by_name_only) {
       by_name_only.push_back(compose(dataset.name, ": it is read only where ", option("dataset"), " names it"));
       continue;

@@ -11,6 +11,9 @@
 
 namespace weir {
 
+/// Whether `pattern`, a name with or without its first slash or one with *, ? and [...], is for the dataset `name`.
+bool names_dataset(const std::string& pattern, const std::string& name);
+
 /// The names of those of `datasets`, of the file `path`, that *, ? and [...] in `pattern`, which match slashes, too,
 /// match and that are volumes where --index and --component are as in `options`; or the one that is called like the
 /// pattern itself. Those that are read by name only are left out of patterns without a word. `notice` gets a line for

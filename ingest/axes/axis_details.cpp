@@ -77,8 +77,8 @@ std::string down_note(const VolumeAxes& axes) {
     if (!axis.points_down) continue;
     return cat("axis ", "xyz"[i], axis.label.empty() ? "" : " (", axis.label, axis.label.empty() ? "" : ")",
                " points down (positive = \"down\"): voxels lie where the file says, upside down where ", "xyz"[i],
-               " is up; to turn them round, ",
-               axis.spacing ? "negate these coordinates in the file" : "reverse the axis in the file");
+               " is up; to turn them round, negate these coordinates in the file, or reverse the axis where they are "
+               "irregular");
   }
   return "";
 }

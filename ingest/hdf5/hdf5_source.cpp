@@ -204,7 +204,11 @@ void note_filled(Opening& opening, const std::string& what, bool one, const std:
   }
   std::array<float, 1> fill{};
   const StoredType& type = *opening.facts.type;
-  decode_values(opening.facts.storage->fill, type.scalar, type.big_endian, {}, fill);
+  const auto decode = [&](const ValueMapping& mapping) {
+    decode_values(opening.facts.storage->fill, type.scalar, type.big_endian, mapping, fill);
+  };
+  decode(opening.facts.meaning.mapping);
+  if (!std::isfinite(fill[0])) decode({});  // it stands for no data: as it is stored
   opening.info.details.chunks_note =
       cat(what, was, " never written and ", one ? "reads" : "read", " as its fill value, ", fill[0]);
 }

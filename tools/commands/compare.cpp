@@ -36,6 +36,7 @@
 #include "tools/options/trace_option.h"
 #include "tools/report/derived_report.h"
 #include "tools/report/error_text.h"
+#include "tools/report/foreign_file.h"
 #include "tools/report/recorded_input.h"
 #include "tools/report/vector_report.h"
 #include "tools/spectrum/power_spectrum.h"
@@ -87,7 +88,7 @@ struct ComparedPair {
 };
 
 ComparedPair open_pair(const std::string& input, const std::string& volume, const GivenOptions& given) {
-  if (!volume.ends_with(".nvdb") && std::filesystem::is_regular_file(volume) && !is_nanovdb(volume)) {
+  if (is_foreign_file(volume)) {
     throw input_error(volume, "is no NanoVDB file; give the source first, then the .nvdb file made of it");
   }
   NvdbFile file(volume);

@@ -4,7 +4,6 @@
 
 #include <chrono>
 #include <cstdint>
-#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -27,6 +26,7 @@
 #include "tools/options/run_options.h"
 #include "tools/options/table_options.h"
 #include "tools/plot/color_bar.h"
+#include "tools/report/foreign_file.h"
 #include "tools/report/progress.h"
 #include "tools/report/quantity_title.h"
 #include "tools/report/surface_warning.h"
@@ -57,9 +57,7 @@ TitledVolume load_file(Backend& backend, const RenderArguments& arguments) {
     throw Error(ErrorKind::usage,
                 compose(option(key), " says how to read a source; give ", option("volume", "dense"), " with it"));
   }
-  // A damaged .nvdb is still one: what is wrong with it is said when it is opened.
-  if (!arguments.input.ends_with(".nvdb") && std::filesystem::is_regular_file(arguments.input) &&
-      !is_nanovdb(arguments.input)) {
+  if (is_foreign_file(arguments.input)) {
     throw input_error(arguments.input,
                       compose("is no NanoVDB file; convert it first: weir convert ", shell_word(arguments.input),
                               ", or draw its own values with ", option("volume", "dense")));

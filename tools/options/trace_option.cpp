@@ -19,11 +19,12 @@ constexpr std::string_view kTraceStart = "[\n{\"name\":\"thread_name\",\"ph\":\"
 bool may_be_replaced(const std::string& path) {
   std::error_code failure;
   if (!std::filesystem::is_regular_file(path, failure)) return true;
-  std::ifstream file(path, std::ios::binary);
+  if (std::filesystem::file_size(path, failure) == 0) return true;
+  std::ifstream file(path, std::ios::binary);  // where it cannot be read, nobody knows that it is a trace
   std::string start(kTraceStart.size(), '\0');
   file.read(start.data(), static_cast<std::streamsize>(start.size()));
   start.resize(static_cast<std::size_t>(file.gcount()));
-  return start.empty() || start == kTraceStart;
+  return start == kTraceStart;
 }
 
 }  // namespace

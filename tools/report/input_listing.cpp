@@ -1,12 +1,12 @@
 #include "tools/report/input_listing.h"
 
-#include <fnmatch.h>
-
+#include <algorithm>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "ingest/dataset_pattern.h"
 #include "ingest/source/convert_command.h"
 #include "tools/report/printable.h"
 
@@ -31,15 +31,20 @@ InputListing list_input(const std::string& path, const SourceOptions& options) {
 }
 
 void keep_named(InputListing& listing, const std::string& dataset) {
+  constexpr std::size_t kMostNames = 8;
   std::string names;
-  for (const DatasetInfo& info : listing.datasets) names += cat(names.empty() ? "" : ", ", info.name);
-  std::erase_if(listing.datasets, [&](const DatasetInfo& info) {
-    return ::fnmatch(dataset.c_str(), info.name.c_str(), 0) != 0 &&
-           ::fnmatch(('/' + dataset).c_str(), info.name.c_str(), 0) != 0 && info.name != dataset;
-  });
+  for (std::size_t i = 0; i < std::min(listing.datasets.size(), kMostNames); ++i) {
+    names += cat(i == 0 ? "" : ", ", listing.datasets[i].name);
+  }
+  if (listing.datasets.size() > kMostNames) names += cat(" and ", listing.datasets.size() - kMostNames, " more");
+  const bool nameless = listing.datasets.size() == 1 && names.empty();
+  std::erase_if(listing.datasets, [&](const DatasetInfo& info) { return !names_dataset(dataset, info.name); });
   if (!listing.datasets.empty()) return;
-  throw Error(ErrorKind::usage, compose(listing.path, ": ", option("dataset", dataset), " is none of it; it holds ",
-                                        names.empty() ? "one volume without a name" : names));
+  throw Error(ErrorKind::usage,
+              compose(listing.path, ": lists no dataset for ", option("dataset", dataset), "; it has ",
+                      nameless        ? "one volume without a name"
+                      : names.empty() ? "none"
+                                      : names));
 }
 
 void print_text(const InputListing& listing) {

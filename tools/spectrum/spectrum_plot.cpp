@@ -14,17 +14,17 @@
 namespace weir {
 namespace {
 
-constexpr std::int32_t kWidth = 900;  // pixels
-constexpr std::int32_t kHeight = 600;
-constexpr std::int32_t kLeft = 112;
-constexpr std::int32_t kRight = kWidth - 28;
-constexpr std::int32_t kTop = 88;
-constexpr std::int32_t kBottom = kHeight - 68;
+constexpr std::int32_t kSpectrumWidth = 900;  // pixels
+constexpr std::int32_t kSpectrumHeight = 600;
+constexpr std::int32_t kSpectrumLeft = 112;
+constexpr std::int32_t kSpectrumRight = kSpectrumWidth - 28;
+constexpr std::int32_t kSpectrumTop = 88;
+constexpr std::int32_t kSpectrumBottom = kSpectrumHeight - 68;
 constexpr double kLabels = 15;
 constexpr double kLine = 2.4;
-constexpr Float3 kPaper{1, 1, 1};
-constexpr Float3 kInk{0.13F, 0.13F, 0.13F};
-constexpr Float3 kGridLine{0.88F, 0.88F, 0.88F};
+constexpr Float3 kSpectrumPaper{1, 1, 1};
+constexpr Float3 kSpectrumInk{0.13F, 0.13F, 0.13F};
+constexpr Float3 kSpectrumGridLine{0.88F, 0.88F, 0.88F};
 // Colours that the colour-blind tell apart (M. Okabe, K. Ito, 2008).
 constexpr Float3 kKept{0.000F, 0.447F, 0.698F};
 constexpr Float3 kLost{0.835F, 0.369F, 0.000F};
@@ -70,26 +70,28 @@ std::vector<double> share_ticks(const std::vector<PowerShare>& kept, const std::
 
 void draw_axes(PlotCanvas& canvas, const PlotScale& x, const PlotScale& y) {
   const auto write = [&](double at_x, double at_y, const std::string& text, TextAnchor anchor) {
-    canvas.text({at_x, at_y}, text, kLabels, kInk, anchor);
+    canvas.text({at_x, at_y}, text, kLabels, kSpectrumInk, anchor);
   };
   for (const double tick : y.ticks()) {
-    canvas.fill(kLeft, y.pixel(tick), kRight, y.pixel(tick) + 1, kGridLine);
-    write(kLeft - 10, y.pixel(tick), share_text(tick), TextAnchor::right);
+    canvas.fill(kSpectrumLeft, y.pixel(tick), kSpectrumRight, y.pixel(tick) + 1, kSpectrumGridLine);
+    write(kSpectrumLeft - 10, y.pixel(tick), share_text(tick), TextAnchor::right);
   }
   for (const double tick : x.ticks()) {
     const std::int32_t at = x.pixel(tick);
-    canvas.fill(at, kTop, at + 1, kBottom, kGridLine);
+    canvas.fill(at, kSpectrumTop, at + 1, kSpectrumBottom, kSpectrumGridLine);
     const std::string label = cat(tick);
     const double half = canvas.text_width(label, kLabels) / 2;
-    write(std::clamp<double>(at, half, kWidth - half), kBottom + 20, label, TextAnchor::middle);
+    write(std::clamp<double>(at, half, kSpectrumWidth - half), kSpectrumBottom + 20, label, TextAnchor::middle);
   }
   for (const double tick : minor_decade_ticks(x.ticks().front(), x.ticks().back())) {
-    canvas.fill(x.pixel(tick), kBottom, x.pixel(tick) + 1, kBottom + 4, kInk);
+    canvas.fill(x.pixel(tick), kSpectrumBottom, x.pixel(tick) + 1, kSpectrumBottom + 4, kSpectrumInk);
   }
-  canvas.fill(kLeft - 1, kTop, kLeft + 1, kBottom, kInk);
-  canvas.fill(kLeft - 1, kBottom, kRight, kBottom + 2, kInk);
-  canvas.text({22, (kTop + kBottom) / 2.0}, "share of the source's power", kLabels, kInk, TextAnchor::middle, true);
-  write((kLeft + kRight) / 2.0, kHeight - 18, "wave number (cycles per world unit)", TextAnchor::middle);
+  canvas.fill(kSpectrumLeft - 1, kSpectrumTop, kSpectrumLeft + 1, kSpectrumBottom, kSpectrumInk);
+  canvas.fill(kSpectrumLeft - 1, kSpectrumBottom, kSpectrumRight, kSpectrumBottom + 2, kSpectrumInk);
+  canvas.text({22, (kSpectrumTop + kSpectrumBottom) / 2.0}, "share of the source's power", kLabels, kSpectrumInk,
+              TextAnchor::middle, true);
+  write((kSpectrumLeft + kSpectrumRight) / 2.0, kSpectrumHeight - 18, "wave number (cycles per world unit)",
+        TextAnchor::middle);
 }
 
 void draw_curve(PlotCanvas& canvas, const PlotScale& x, const PlotScale& y, const std::vector<PowerShare>& all,
@@ -99,11 +101,11 @@ void draw_curve(PlotCanvas& canvas, const PlotScale& x, const PlotScale& y, cons
 }
 
 void draw_legend(PlotCanvas& canvas) {
-  double x = kLeft;
+  double x = kSpectrumLeft;
   constexpr double kMiddle = 56;
   for (const auto& [name, ink] : {std::pair{"the file", kKept}, std::pair{"its error", kLost}}) {
     canvas.line({x, kMiddle}, {x + 40, kMiddle}, kLine, ink);
-    canvas.text({x + 48, kMiddle}, name, kLabels, kInk, TextAnchor::left);
+    canvas.text({x + 48, kMiddle}, name, kLabels, kSpectrumInk, TextAnchor::left);
     x += 48 + canvas.text_width(name, kLabels) + 28;
   }
 }
@@ -111,17 +113,19 @@ void draw_legend(PlotCanvas& canvas) {
 }  // namespace
 
 std::string spectrum_chart(const PowerSpectrum& spectrum, const std::string& title, PlotFormat format) {
-  const std::unique_ptr<PlotCanvas> sheet = make_plot_canvas(kWidth, kHeight, format, kPaper);
+  const std::unique_ptr<PlotCanvas> sheet = make_plot_canvas(kSpectrumWidth, kSpectrumHeight, format, kSpectrumPaper);
   PlotCanvas& canvas = *sheet;
-  canvas.text({kLeft, 26}, title, 18, kInk, TextAnchor::left);
+  canvas.text({kSpectrumLeft, 26}, title, 18, kSpectrumInk, TextAnchor::left);
   const std::vector<PowerShare> kept = shares(spectrum, &PowerSpectrum::Shell::decoded);
   const std::vector<PowerShare> lost = shares(spectrum, &PowerSpectrum::Shell::error);
   if (kept.empty()) {
-    canvas.text({kLeft, kHeight / 2.0}, "no block in which the source varies", kLabels, kInk, TextAnchor::left);
+    canvas.text({kSpectrumLeft, kSpectrumHeight / 2.0}, "no block in which the source varies", kLabels, kSpectrumInk,
+                TextAnchor::left);
     return canvas.finish();
   }
-  const PlotScale x(decade_ticks(kept.front().wave_number, kept.back().wave_number), true, kLeft, kRight);
-  const PlotScale y(share_ticks(kept, lost), true, kBottom, kTop);
+  const PlotScale x(decade_ticks(kept.front().wave_number, kept.back().wave_number), true, kSpectrumLeft,
+                    kSpectrumRight);
+  const PlotScale y(share_ticks(kept, lost), true, kSpectrumBottom, kSpectrumTop);
   draw_legend(canvas);
   draw_axes(canvas, x, y);
   draw_curve(canvas, x, y, kept, kKept);

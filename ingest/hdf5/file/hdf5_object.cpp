@@ -14,7 +14,9 @@ std::vector<Hdf5Handle> enclosing_groups(hid_t file, const std::string& name) {
     const std::size_t slash = rest.rfind('/');
     rest.resize(slash == std::string::npos ? 0 : slash);
     Hdf5Handle group(H5Gopen2(file, rest.empty() ? "/" : rest.c_str(), H5P_DEFAULT));
-    if (group) groups.push_back(std::move(group));
+    if (!group) continue;
+    check_attribute_bytes(group.get());
+    groups.push_back(std::move(group));
   }
   return groups;
 }

@@ -23,6 +23,7 @@ std::string text_of(hid_t object, const char* name) {
 
 // Those of an auxiliary coordinate; none where it is no time.
 TimeValues times_of(hid_t coordinate) {
+  check_attribute_bytes(coordinate);
   const std::string units = text_of(coordinate, "units");
   if (H5Iget_type(coordinate) != H5I_DATASET || units.find(" since ") == std::string::npos) return {};
   return {coordinate_values(coordinate), units, text_of(coordinate, "calendar")};

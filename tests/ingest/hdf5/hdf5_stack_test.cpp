@@ -49,5 +49,24 @@ for number in range(3):
   EXPECT_TRUE(info.details.orientation.starts_with("axis z (depth) points down")) << info.details.orientation;
 }
 
+TEST(Hdf5Stack, OfOneAndOfTwoPlanesOfADepth_IsOne) {
+  if (!python_has("h5py, numpy, netCDF4")) GTEST_SKIP() << "python3 with h5py and netCDF4 is missing";
+  const Scratch scratch;
+  write_by_h5py(scratch, R"(
+import netCDF4
+for number, depths in enumerate([[0], [10, 20]]):
+    n = netCDF4.Dataset("s_%d.nc" % number, "w")
+    for name, size in [("depth", len(depths)), ("y", 2), ("x", 3)]: n.createDimension(name, size)
+    depth = n.createVariable("depth", "f8", ("depth",)); depth[:] = depths; depth.positive = "down"
+    n.createVariable("t", "f4", ("depth", "y", "x"))[:] = np.full((len(depths), 2, 3), number)
+    n.close()
+)");
+  SourceOptions options;
+  options.stack = true;
+  const SourceInfo info = open_source(scratch.path("s_%d.nc"), options)->info();
+  EXPECT_EQ(info.extent.z, 3);
+  EXPECT_EQ(info.spacing[2], 10);
+}
+
 }  // namespace
 }  // namespace weir::hdf5_stack_test

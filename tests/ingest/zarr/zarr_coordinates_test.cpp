@@ -216,7 +216,7 @@ TEST_F(ZarrCoordinates, ThatPointDown_AreKeptAndSaid) {
   const auto source = open(0);
   const std::string said =
       "axis z (z) points down (positive = \"down\"): voxels lie where the file says, upside down where z is up; to "
-      "turn them round, negate these coordinates in the file";
+      "turn them round, negate these coordinates in the file, or reverse the axis where they are irregular";
   EXPECT_EQ(source->info().details.orientation, said);
   EXPECT_EQ(source->info().spacing[2], 10);
   EXPECT_EQ(source->info().origin[2], 5);

@@ -326,6 +326,10 @@ TEST(Compare, Refusals) {
   EXPECT_EQ(refusal({"compare", volume.raw, volume.nvdb, "--dims", "20,10,8"}, 2),
             "weir: " + volume.raw +
                 ": --dims 20,10,8 contradicts the file's name, which says 20x10x9; drop it or rename the file\n");
+  std::filesystem::create_symlink("loop", volume.directory / "loop");
+  EXPECT_EQ(refusal({"compare", volume.raw, volume.directory / "loop"}, 3)
+                .find("weir: " + (volume.directory / "loop") + ": cannot open: Too many levels"),
+            0U);
   EXPECT_EQ(refusal({"compare", volume.raw}, 2), "weir: volume is required; see weir compare --help\n");
 }
 

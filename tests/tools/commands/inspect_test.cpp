@@ -99,7 +99,7 @@ TEST_F(Inspect, OptionsThatItCannotHonour_AreRefused) {
   EXPECT_EQ(refusal({"inspect", raw, "--roi", "0:8,0:8,0:900"}),
             "weir: --roi chooses a part for a conversion; leave it out: inspect lists all that " + raw + " holds\n");
   EXPECT_EQ(refusal({"inspect", raw, "--dataset", "rho"}),
-            "weir: " + raw + ": --dataset rho is none of it; it holds one volume without a name\n");
+            "weir: " + raw + ": lists no dataset for --dataset rho; it has one volume without a name\n");
 }
 
 TEST_F(Inspect, AResultThatALinkLeadsTo_HasItsSidecar) {

@@ -172,16 +172,16 @@ n.close()
   };
   const std::string said =
       " points down (positive = \"down\"): voxels lie where the file says, upside down where z is up; to turn them "
-      "round, ";
-  EXPECT_EQ(info_of("in_depth").details.orientation, "axis z (depth)" + said + "negate these coordinates in the file");
+      "round, negate these coordinates in the file, or reverse the axis where they are irregular";
+  EXPECT_EQ(info_of("in_depth").details.orientation, "axis z (depth)" + said);
   EXPECT_EQ(info_of("in_depth").origin[2], 0);
   EXPECT_EQ(first_value("in_depth"), 0.0F);
   const SourceInfo falling = info_of("in_lev");
-  EXPECT_EQ(falling.details.orientation, "axis z (lev)" + said + "negate these coordinates in the file");
+  EXPECT_EQ(falling.details.orientation, "axis z (lev)" + said);
   EXPECT_EQ(falling.details.axes[2].note,
             "falls from 400 to 0: planes are read in reverse order, so that positions rise");
   EXPECT_EQ(first_value("in_lev"), 4.0F);
-  EXPECT_EQ(info_of("in_uneven").details.orientation, "axis z (uneven)" + said + "reverse the axis in the file");
+  EXPECT_EQ(info_of("in_uneven").details.orientation, "axis z (uneven)" + said);
   EXPECT_EQ(info_of("in_up").details.orientation, "");
 }
 

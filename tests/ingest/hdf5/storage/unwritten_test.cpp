@@ -38,7 +38,7 @@ with h5py.File("a.h5", "w") as f:
   SourceOptions vectors = dataset_options("vectors");
   vectors.component = ComponentChoice{false, 2};
   expect_all(vectors, 2, never + "2");
-  expect_all(dataset_options("chunked"), 15, "2 of its 2 chunks were never written and read as its fill value, 7.5");
+  expect_all(dataset_options("chunked"), 15, "2 of its 2 chunks were never written and read as its fill value, 15");
   for (const DatasetInfo& listed : list_hdf5(scratch_.path("a.h5"), {})) EXPECT_EQ(listed.obstacle, "") << listed.name;
 }
 
