@@ -283,7 +283,7 @@ Json inspect(const std::string& path, const InspectArguments& arguments) {
     for (const char* key : {"index", "roi"}) {
       if (arguments.source.contains(key)) {
         throw Error(ErrorKind::usage,
-                    compose(option(key), " chooses a part for a conversion; leave it out: inspect lists ", "all that ",
+                    compose(option(key), " chooses a part for a conversion; leave it out: inspect lists all that ",
                             path, " holds"));
       }
     }
