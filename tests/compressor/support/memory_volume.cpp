@@ -46,9 +46,11 @@ MemoryVolume::MemoryVolume(MemoryVolume&& other) noexcept
       bytes_read_(other.bytes_read_.load()) {}
 
 ConversionLoss MemoryVolume::read(const Box& box, std::span<float> values) {
-  const auto found = in(box);
-  if (found.size() != values.size()) throw std::invalid_argument("a read outside the volume, or into another size");
-  std::copy(found.begin(), found.end(), values.begin());
+  if (!info_.domain().contains(box) || static_cast<std::size_t>(box.voxels()) != values.size()) {
+    throw std::invalid_argument("a read outside the volume, or into another size");
+  }
+  float* to = values.data();
+  for_each_row(box, [&to](std::span<const float> row) { to = std::copy(row.begin(), row.end(), to); });
   bytes_read_ += values.size_bytes();
   return {};
 }
@@ -61,14 +63,18 @@ std::vector<float> MemoryVolume::in(const Box& box) const {
   const Box inside = intersect(box, info_.domain());
   std::vector<float> values;
   values.reserve(static_cast<std::size_t>(inside.voxels()));
+  for_each_row(inside, [&values](std::span<const float> row) { values.insert(values.end(), row.begin(), row.end()); });
+  return values;
+}
+
+void MemoryVolume::for_each_row(const Box& inside, const std::function<void(std::span<const float>)>& use) const {
   for (std::int64_t z = inside.lo.z; z < inside.hi.z; ++z) {
     for (std::int64_t y = inside.lo.y; y < inside.hi.y; ++y) {
-      const float* row = &values_[static_cast<std::size_t>(
-          linear_index(Index3{inside.lo.x, y, z} - info_.index_origin, info_.extent))];
-      values.insert(values.end(), row, row + inside.extent().x);
+      const Index3 first = Index3{inside.lo.x, y, z} - info_.index_origin;
+      use({&values_[static_cast<std::size_t>(linear_index(first, info_.extent))],
+           static_cast<std::size_t>(inside.extent().x)});
     }
   }
-  return values;
 }
 
 }  // namespace weir::test

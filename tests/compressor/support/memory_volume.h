@@ -35,6 +35,9 @@ class MemoryVolume final : public VolumeSource {
   std::vector<float> in(const Box& box) const;
 
  private:
+  /// Rows of `inside`, a part of the domain, in their order.
+  void for_each_row(const Box& inside, const std::function<void(std::span<const float>)>& use) const;
+
   SourceInfo info_;
   AccessShape access_;
   std::vector<float> values_;
