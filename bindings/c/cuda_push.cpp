@@ -184,10 +184,11 @@ DeviceInFlight& in_flight(weir_push& push) {
   if (!push.in_flight) {
     const SourceInfo& info = push.volume->info();
     const auto bytes = static_cast<std::uint64_t>(volume(info.extent)) * sizeof(float);
-    if (may_be_resident(push) && push.device_memory >= bytes) {
-      push.in_flight = try_resident(push, [&] { return std::make_unique<ResidentInFlight>(push); });
-    }
-    if (!push.in_flight) push.in_flight = std::make_unique<SlabsInFlight>(*push.volume, push.device_memory);
+    const bool resident = may_be_resident(push) && push.device_memory >= bytes;
+    if (resident) push.in_flight = try_resident(push, [&] { return std::make_unique<ResidentInFlight>(push); });
+    // A device without room for the volume has none for slabs that wait either: that would be the volume again.
+    const std::uint64_t granted = resident ? 0 : push.device_memory;
+    if (!push.in_flight) push.in_flight = std::make_unique<SlabsInFlight>(*push.volume, granted);
   }
   return static_cast<DeviceInFlight&>(*push.in_flight);
 }

@@ -120,7 +120,8 @@ enum {
 };
 /* What surveys and encodes packed blocks; the bytes are the same. weir-mpi has the CPU alone. */
 enum {
-  WEIR_BACKEND_AUTO = 0, /* a CUDA device where one answers, the library is built for it and memory is 1 GiB or more */
+  WEIR_BACKEND_AUTO = 0, /* the calling thread's current CUDA device where one answers, the library is built for it and
+                            memory is 1 GiB or more */
   WEIR_BACKEND_CPU = 1,
   WEIR_BACKEND_CUDA = 2
 };

@@ -40,7 +40,8 @@ WEIR_API void weir_cuda_free(weir_cuda_grid* loaded);
  * queued in `stream` (a cudaStream_t, NULL: the default one), and the call returns once it is queued: work that is
  * queued there afterwards may change the values. Slabs cross the bus through page-locked host memory: four pieces of
  * 8 MiB, or two planes where a plane is larger, besides options->memory; a call waits while these are full. Planes are
- * checked as by weir_push_slab. A failure of a copy ends the push, and is the status of a later call. All slabs come
+ * checked as by weir_push_slab. A failure of a copy ends the push, and is the status of a later call; where there is
+ * no room for these pieces (WEIR_ERROR_IO at the first slab) nothing was taken, and the push can go on. All slabs come
  * from one device; slabs of weir_push_slab may come between. Where `data` is host memory, or there is no device, it is
  * taken as weir_push_slab takes it, once the work in `stream` is done. */
 WEIR_API weir_status weir_push_slab_device(weir_push* push, int64_t z0, int64_t nz, const void* data,

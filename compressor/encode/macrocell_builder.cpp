@@ -13,6 +13,11 @@ constexpr std::int64_t kRegionCells = kLowerDim / kMacrocell;  // along a region
 
 }  // namespace
 
+std::int64_t held_macrocell_layers(const NodeLattice& cells) {
+  const auto of = [&cells](std::int64_t layers) { return std::min(layers, cells.count.z); };
+  return 2 * of(kRegionCells + 2) + of(kRegionCells);  // the window, its successor while it moves, and what is finished
+}
+
 RegionCells::RegionCells(const Index3& region_node)
     : first_(region_node * kRegionCells - Index3{1, 1, 1}), cells_(kSide * kSide * kSide, kNoBounds) {
   static_assert(kSide == kRegionCells + 2);
@@ -54,11 +59,14 @@ MacrocellBuilder::MacrocellBuilder(const Box& domain, float background)
     : lattice_(make_lattice(domain, kMacrocell)), background_(background) {}
 
 void MacrocellBuilder::begin_layers(std::int64_t region_z, std::int64_t layers) {
-  constexpr std::int64_t kTouched = RegionCells::kSide - kRegionCells;  // layers that the next regions touch, too
-  window_first_ = region_z * kRegionCells - 1 - lattice_.first.z;
-  window_layers_ = layers * kRegionCells + kTouched;
-  std::vector<MinMax> next(static_cast<std::size_t>(plane() * window_layers_), kNoBounds);
-  if (!window_.empty()) std::copy(window_.end() - kTouched * plane(), window_.end(), next.begin());
+  const std::int64_t own_first = region_z * kRegionCells - lattice_.first.z;
+  const std::int64_t first = std::max<std::int64_t>(0, own_first - 1);
+  settled_ = own_first + layers * kRegionCells - 1;
+  const std::int64_t end = std::min(lattice_.count.z, settled_ + 2);
+  std::vector<MinMax> next(static_cast<std::size_t>(plane() * (end - first)), kNoBounds);
+  // What the regions before have touched of these layers: the last ones of the window.
+  if (!window_.empty()) std::copy(window_.begin() + plane() * (first - window_first_), window_.end(), next.begin());
+  window_first_ = first;
   window_.swap(next);
 }
 
@@ -78,9 +86,8 @@ void MacrocellBuilder::merge(const RegionCells& cells) {
 }
 
 std::vector<MinMax> MacrocellBuilder::take_finished(bool last, std::int64_t& first_layer) {
-  const std::int64_t keep = last ? 0 : 2;
-  first_layer = std::max<std::int64_t>(0, window_first_);
-  const std::int64_t end = std::min(lattice_.count.z, window_first_ + window_layers_ - keep);
+  first_layer = window_first_;
+  const std::int64_t end = last ? lattice_.count.z : std::min(lattice_.count.z, settled_);
   std::vector<MinMax> cells(static_cast<std::size_t>(plane() * std::max<std::int64_t>(0, end - first_layer)));
   tbb::parallel_for(first_layer, end,
                     [&](std::int64_t layer) { finish(layer, cells.data() + plane() * (layer - first_layer)); });

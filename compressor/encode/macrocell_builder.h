@@ -1,5 +1,5 @@
 // Builds the macrocells of a file from some layers of 128^3 regions after the other: a window of eight cell layers for
-// each, and two more, is held, however deep the volume.
+// each, and two more, is held, however deep the volume, and no more than the volume has.
 #pragma once
 
 #include <cstdint>
@@ -11,6 +11,10 @@
 #include "format/nanovdb/nvdb_grid.h"
 
 namespace weir {
+
+/// Layers of cells, each of the lattice's width and height, that a MacrocellBuilder and what takes its finished cells
+/// hold at once for one layer of regions at a time.
+std::int64_t held_macrocell_layers(const NodeLattice& cells);
 
 /// Bounds of the cells that one region can touch: its own 8^3 and one more on every side.
 class RegionCells {
@@ -54,8 +58,8 @@ class MacrocellBuilder {
   NodeLattice lattice_;
   float background_;
   std::mutex mutex_;
-  std::int64_t window_first_ = 0;   // lattice z of the window's lowest layer
-  std::int64_t window_layers_ = 0;  // of cells
+  std::int64_t window_first_ = 0;  // lattice z of the window's lowest layer
+  std::int64_t settled_ = 0;       // the lowest layer that later regions can touch
   std::vector<MinMax> window_;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <thread>
 
+#include "compressor/encode/macrocell_builder.h"
 #include "compressor/select/region_rows.h"
 #include "compressor/select/tree_regions.h"
 #include "format/base/error.h"
@@ -21,7 +22,8 @@ constexpr std::uint64_t kWorkerBytes = 4ULL << 20U;
 // Code pages touched later, libraries' heaps, the head, one upper node's image, small layers of macrocells: 1 MiB of
 // these, twice.
 constexpr std::uint64_t kSlackBytes = 8ULL << 20U;
-constexpr std::uint64_t kLeastBlockBytes = 1ULL << 20U;
+constexpr std::uint64_t kMiB = 1ULL << 20U;
+constexpr std::uint64_t kLeastBlockBytes = kMiB;
 // A block comes with its rows, one 43rd of its size, and there are two; a quarter of what is left stays free for
 // both passes' small buffers and the allocator's waste.
 constexpr std::uint64_t kBlockEighths = 3;
@@ -30,10 +32,10 @@ constexpr std::uint64_t kBlockEighths = 3;
 std::uint64_t shared_bytes(std::uint64_t resident, const Box& domain) {
   const auto regions = static_cast<std::uint64_t>(make_lattice(domain, kLowerDim).size());
   const NodeLattice cells = make_lattice(domain, kMacrocell);
-  // Macrocell layers: the window, its successor while it moves, and those being written.
+  const auto cell_layers = static_cast<std::uint64_t>(held_macrocell_layers(cells));
   const auto cell_layer = static_cast<std::uint64_t>(cells.count.x * cells.count.y) * sizeof(MinMax);
   // Two plans of the inner nodes while encodings are compared, later one with statistics and errors.
-  const std::uint64_t tree = regions * (2 * sizeof(Region) + sizeof(NodeStatistics) + 32) + 28 * cell_layer;
+  const std::uint64_t tree = regions * (2 * sizeof(Region) + sizeof(NodeStatistics) + 32) + cell_layers * cell_layer;
   return resident + kSlackBytes + kStagingBytes + tree;
 }
 
@@ -73,9 +75,10 @@ MemoryPlan plan_memory(std::uint64_t ceiling, std::uint64_t resident, std::size_
   const std::uint64_t fixed = fixed_bytes(resident, threads, domain);
   const std::uint64_t least = least_ceiling(resident, threads, domain, region_bytes);
   if (ceiling < least) {
+    // Rounded up, and one MiB for the next process, which has other addresses.
     throw Error(ErrorKind::usage,
                 compose(option("memory", format_bytes(ceiling)), " is too small for this volume with ", threads,
-                        " threads; give at least ", least / (std::uint64_t{1} << 20U) + 1, "MiB"));
+                        " threads; give at least ", least / kMiB + 2, "MiB"));
   }
   MemoryPlan plan;
   if (records <= (ceiling - least) / 4) plan.record_bytes = records;

@@ -11,7 +11,7 @@
 
 namespace weir {
 
-/// Grows, never shrinks: the files of a series have one size, so two buffers play it without an allocation. Beside
+/// Grows where it has to: where the files of a series have one size, two buffers play it without an allocation. Beside
 /// the memory it keeps what a slower way of loading had to set up. Move only; one load at a time.
 class DeviceBuffer {
  public:
@@ -26,6 +26,11 @@ class DeviceBuffer {
     if (bytes <= capacity()) return;
     memory_ = DeviceArray<std::byte>();  // first: there may be no room for both
     memory_ = DeviceArray<std::byte>((bytes + 15) / 16 * 16);
+  }
+
+  /// Gives the memory back where it is more than an eighth larger than `bytes`.
+  void shrink_to(std::uint64_t bytes) {
+    if (capacity() > bytes + bytes / 8) memory_ = DeviceArray<std::byte>();
   }
 
   std::optional<PinnedRing>& ring() { return ring_; }

@@ -52,6 +52,8 @@ class DeviceGrid {
   /// NvdbGrid::data_bytes(): without the padding at the tail.
   std::uint64_t bytes() const { return report_.bytes; }
   const LoadReport& report() const { return report_; }
+  /// Of device memory that it holds: of a buffer that is larger, all.
+  std::uint64_t device_bytes() const { return buffer_.capacity(); }
   /// Gives the memory to another load, which ends this grid.
   DeviceBuffer take_buffer() && {
     data_ = nullptr;

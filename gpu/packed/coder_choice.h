@@ -12,6 +12,7 @@
 #ifdef WEIR_HAVE_CUDA
 #include "gpu/cuda/encode/device_coder.h"
 #include "gpu/cuda/runtime/check.h"
+#include "gpu/cuda/runtime/current_device.h"
 #endif
 
 namespace weir {
@@ -27,20 +28,20 @@ inline std::function<void(const Error&)> say_device_failure(const Notice& notice
   };
 }
 
-/// Of a conversion whose blocks are `packed`, or may be no such ones, under a ceiling of `memory` bytes; null: the CPU.
-/// What fails later, and with CoderChoice::automatic before, is said to `notice`, once: the CPU goes on. Throws
-/// Error(usage) for CoderChoice::cuda where this build or this machine has no device, and
-/// Error(io) where that has no room.
+/// On the calling thread's current device, of a conversion whose blocks are `packed`, or may be no such ones, under a
+/// ceiling of `memory` bytes; null: the CPU. What fails later, and with CoderChoice::automatic before, is said to
+/// `notice`, once: the CPU goes on. Throws Error(usage) for CoderChoice::cuda where this build or this machine has no
+/// device, and Error(io) where that has no room.
 inline std::unique_ptr<BlockCoder> choose_coder(CoderChoice choice, bool packed, std::uint64_t memory,
                                                 const Notice& notice) {
   if (choice == CoderChoice::cpu) return nullptr;
   if (choice == CoderChoice::automatic && (!packed || memory < kLeastMemoryOfDevice)) return nullptr;
 #ifdef WEIR_HAVE_CUDA
   const auto failed = say_device_failure(notice);
-  if (choice == CoderChoice::cuda) return make_device_coder(0, failed);
+  if (choice == CoderChoice::cuda) return make_device_coder(current_device(), failed);
   if (device_count() == 0) return nullptr;
   try {
-    return make_device_coder(0, failed);
+    return make_device_coder(current_device(), failed);
   } catch (const Error& error) {
     failed(error);
     return nullptr;

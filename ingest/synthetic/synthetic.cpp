@@ -90,18 +90,13 @@ class SyntheticSource final : public VolumeSource {
   std::atomic<std::uint64_t> bytes_made_{0};
 };
 
-void check_extent(const Index3& e) {
-  const auto fits = [](std::int64_t n) { return n >= 1 && n < std::int64_t{1} << 31; };
-  if (fits(e.x) && fits(e.y) && fits(e.z)) {
-    constexpr std::int64_t kMostVoxels = std::int64_t{1} << 60;
-    if (e.x * e.y <= kMostVoxels / e.z) return;
-  }
-  throw Error(ErrorKind::usage,
-              cat("extent ", e.x, ',', e.y, ',', e.z,
-                  " is out of range; every axis must be 1 to 2147483647 and the volume below 2^60 voxels"));
-}
-
 }  // namespace
+
+bool is_synthetic_extent(const Index3& e) {
+  const auto fits = [](std::int64_t n) { return n >= 1 && n < std::int64_t{1} << 31; };
+  constexpr std::int64_t kMostVoxels = std::int64_t{1} << 60;
+  return fits(e.x) && fits(e.y) && fits(e.z) && e.x * e.y <= kMostVoxels / e.z;
+}
 
 std::span<const SyntheticKind> synthetic_kinds() { return kKinds; }
 
@@ -115,7 +110,9 @@ const SyntheticKind& find_synthetic_kind(std::string_view name) {
 }
 
 std::unique_ptr<VolumeSource> open_synthetic(std::string_view kind, const SyntheticOptions& options) {
-  check_extent(options.extent);
+  if (const Index3& e = options.extent; !is_synthetic_extent(e)) {
+    throw usage_error(cat("extent ", e.x, ',', e.y, ',', e.z, " is out of range; ", kSyntheticExtents));
+  }
   return std::make_unique<SyntheticSource>(find_synthetic_kind(kind), options);
 }
 

@@ -34,8 +34,12 @@ std::span<const SyntheticKind> synthetic_kinds();
 /// Throws Error(usage) listing the known names.
 const SyntheticKind& find_synthetic_kind(std::string_view name);
 
+inline constexpr std::string_view kSyntheticExtents =
+    "every axis must be 1 to 2147483647 and the volume below 2^60 voxels";
+bool is_synthetic_extent(const Index3& extent);
+
 /// info(): path "synthetic:KIND", format "synthetic", type float32. bytes_read() counts the bytes made. Throws
-/// Error(usage) for an unknown kind and for an extent with an axis outside [1, 2^31) or 2^60 voxels and more.
+/// Error(usage) for an unknown kind and where !is_synthetic_extent().
 std::unique_ptr<VolumeSource> open_synthetic(std::string_view kind, const SyntheticOptions& options);
 
 }  // namespace weir

@@ -57,6 +57,14 @@ class BrickVolumeTest : public testing::Test {
   TemporaryDirectory directory_;
 };
 
+std::uint64_t bytes_of_the_pool() {
+  cudaMemPool_t pool = nullptr;
+  std::uint64_t bytes = 0;
+  EXPECT_EQ(cudaDeviceGetDefaultMemPool(&pool, 0), cudaSuccess);
+  EXPECT_EQ(cudaMemPoolGetAttribute(pool, cudaMemPoolAttrUsedMemCurrent, &bytes), cudaSuccess);
+  return bytes;
+}
+
 int differing(const Image& a, const Image& b) {
   int count = 0;
   for (std::size_t i = 0; i < a.pixels.size(); ++i) count += a.pixels[i] == b.pixels[i] ? 0 : 1;
@@ -72,6 +80,18 @@ float difference(const Image& a, const Image& b) {
   }
   std::sort(differences.begin(), differences.end());
   return differences[differences.size() * 98 / 100];
+}
+
+TEST_F(BrickVolumeTest, StepAfterALargerOne_TakesWhatItTakesAlone) {
+  const auto large = test::written(directory_ / "large.nvdb", test::packed_ball(200, 0.5F).file);
+  const auto small = test::written(directory_ / "small.nvdb", test::packed_ball(60, 0.5F).file);
+  const auto backend = cuda();
+  std::unique_ptr<LoadedVolume> volume = backend->load(small, 0, nullptr);
+  const std::uint64_t alone = bytes_of_the_pool();
+  volume = backend->load(large, 0, std::move(volume));
+  EXPECT_GT(bytes_of_the_pool(), alone);
+  volume = backend->load(small, 0, std::move(volume));
+  EXPECT_EQ(bytes_of_the_pool(), alone);
 }
 
 TEST_F(BrickVolumeTest, MarchedPicturesOfAPackedGridAreTheCpus) {

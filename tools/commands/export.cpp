@@ -29,6 +29,7 @@
 #include "tools/command.h"
 #include "tools/export/vdb_writer.h"
 #include "tools/options/run_options.h"
+#include "tools/report/printable.h"
 #include "tools/report/read_sidecar.h"
 
 namespace weir {
@@ -166,9 +167,9 @@ void export_volume(const ExportArguments& arguments) {
     std::cout << report.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
     return;
   }
-  std::cout << cat(arguments.output, ": ", format_bytes(written.bytes), ", ", written.topology.nodes[0], " leaves, ",
-                   written.active_voxels, " active voxels; a program that loads it takes ", format_bytes(tree_bytes),
-                   '\n');
+  std::cout << cat(one_line(arguments.output), ": ", format_bytes(written.bytes), ", ", written.topology.nodes[0],
+                   " leaves, ", written.active_voxels, " active voxels; a program that loads it takes ",
+                   format_bytes(tree_bytes), '\n');
   if (arguments.half) std::cout << cat("largest error of 16 bits: ", written.half_max_abs_error, '\n');
 }
 

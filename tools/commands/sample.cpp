@@ -63,6 +63,10 @@ Error contradiction(const std::string& path, const Message& given, const std::st
 // A name of the pattern NAME_XxYxZ_TYPE.raw is believed by whoever reads the file.
 Shape resolve_shape(const SampleArguments& arguments, const SourceOptions& options) {
   const std::string& path = arguments.output;
+  if (path == "-") {
+    throw usage_error(
+        "-: cannot write to standard output: slabs are written in place; name a file, and stream that when it is done");
+  }
   const auto given = [&](const char* key) { return option(key, arguments.options.at(key)); };
   const auto name = parse_raw_name(path);
   if (!name && !options.extent) {
@@ -74,6 +78,10 @@ Shape resolve_shape(const SampleArguments& arguments, const SourceOptions& optio
   Shape shape{options.extent ? *options.extent : name->extent, options.type.value_or(ScalarType::float32),
               options.big_endian.value_or(false)};
   if (!name) return shape;
+  if (!options.extent && !is_synthetic_extent(name->extent)) {
+    throw usage_error(
+        cat(path, ": the name says ", extent_text(name->extent), "; ", kSyntheticExtents, "; choose another name"));
+  }
   if (!name->type) {
     throw Error(ErrorKind::usage,
                 cat(path, ": unknown type '", name->type_text, "' in the file's name; it must be one of ",

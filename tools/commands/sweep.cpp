@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <iostream>
@@ -120,8 +121,10 @@ class Sweep {
  private:
   void run_conversion(const SweepMethod& method, ConversionControl& control, SweepRow& row) {
     ConversionOptions options = conversion_of(method, arguments_.options);
-    options.output = directory_ / volume_name(method, row.rate);
-    options.overwrite = arguments_.overwrite;
+    // What is not kept has a name of its own: it takes the place of nothing that an earlier sweep kept.
+    const std::string name = volume_name(method, row.rate);
+    options.output = directory_ / (arguments_.keep ? name : cat(".unkept_", name));
+    options.overwrite = arguments_.overwrite || !arguments_.keep;
     options.budget = {Budget::Kind::rate, row.rate, 0};
     options.memory = run_.memory;
     options.resume = Resume::off;  // what is interrupted is not kept, but for the rows of the report
@@ -155,6 +158,8 @@ class Sweep {
       if (error.kind() != ErrorKind::budget) throw;
       const std::string line = error.what();
       row.note = is_own(line) ? line.substr(own.size()) : line;
+      // The remedy is an option of weir convert.
+      row.note.resize(std::min(row.note.find("; ask for --size"), row.note.size()));
       return;
     }
     if (!arguments_.keep) {

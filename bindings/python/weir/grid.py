@@ -19,6 +19,9 @@ from .options import LONGEST_BOX, described, given_options, is_url, path_bytes
 if TYPE_CHECKING:
     import xarray
 
+#: Positions beyond are outside any grid.
+_FARTHEST = 2.0**31
+
 
 class Macrocells(NamedTuple):
     """Bounds of the values that a filtered look-up in a cell of the grid can have."""
@@ -249,7 +252,8 @@ class Grid:
         """Values at positions in voxels: float32, one for each (x, y, z) along the last axis of `points`.
 
         Voxel i covers [i, i + 1), its centre is at i + 0.5; positions outside are clamped to the grid. "trilinear"
-        blends the 8 voxels around a position, "nearest" takes the one that covers it. Positions are rounded to float32.
+        blends the 8 voxels around a position, which it rounds to float32; "nearest" takes the one that covers it.
+        Beyond 2^23 voxels along an axis float32 has no position of each voxel: to_numpy(roi) reads it.
         """
         if filter not in ("trilinear", "nearest"):
             raise UsageError(f"filter is {filter!r}, it must be 'trilinear' or 'nearest'")
@@ -257,7 +261,10 @@ class Grid:
             given = numpy.asarray(points)
             if given.dtype.kind not in "iuf":
                 raise TypeError
-            positions = numpy.asarray(given, dtype=numpy.float32, order="C")
+            exact = given.astype(numpy.float64).clip(-_FARTHEST, _FARTHEST)
+            # The centre of the voxel that covers a position: rounded first, it could be the next voxel's.
+            wanted = exact if filter == "trilinear" else numpy.floor(exact) + 0.5
+            positions = numpy.asarray(wanted, dtype=numpy.float32, order="C")
         except (TypeError, ValueError):
             raise UsageError(f"points is {described(points)}, it must be numbers, (x, y, z) along the last axis") from None
         if positions.ndim == 0 or positions.shape[-1] != 3:

@@ -25,12 +25,6 @@ ContextId find_context_id() {
   return nullptr;
 }
 
-int current_device() {
-  int device = 0;
-  if (cudaGetDevice(&device) != cudaSuccess) cudaGetLastError();
-  return device;
-}
-
 // Whether what was locked in a context of a device is not any more.
 bool is_gone(int device, std::uint64_t context) {
   const KeptDevice kept;

@@ -127,6 +127,8 @@ class CudaBackend : public Backend {
                                  : std::move(last->grid(0)).take_bytes().take_buffer();
     }
     reuse.reset();
+    // What a larger step has left would be memory that the cache of this one is not given.
+    buffer.shrink_to(grid.data_bytes());
     // The file's macrocells are merged while the grid is on its way.
     std::future<MacrocellGrid> merged;
     if (has_macrocells(grid)) {

@@ -23,8 +23,8 @@ class GridBytes {
 
   const std::byte* data() const { return loaded_ ? loaded_->data() : copy_.data(); }
   std::uint64_t bytes() const { return loaded_ ? loaded_->bytes() : bytes_; }
-  /// Of device memory: none where they stay in the host's.
-  std::uint64_t device_bytes() const { return loaded_ && loaded_->report().zero_copy ? 0 : bytes(); }
+  /// Of device memory, a buffer's that is larger than the grid counted whole: none where they stay in the host's.
+  std::uint64_t device_bytes() const { return loaded_ ? loaded_->device_bytes() : copy_.bytes(); }
   /// For the next load; empty where this is a copy.
   DeviceBuffer take_buffer() && {
     return loaded_ ? std::move(*std::exchange(loaded_, std::nullopt)).take_buffer() : DeviceBuffer{};

@@ -86,7 +86,6 @@ bool first_axis_grows(hid_t dataset, std::size_t rank) {
 }
 
 void place_by_scale(hid_t scale, bool grows, AxisPlace& axis) {
-  check_attribute_bytes(scale);
   const std::string name = last_part(scale);
   if (axis.label.empty()) axis.label = name;
   if (is_bare_dimension(scale)) {
@@ -152,6 +151,7 @@ std::vector<double> coordinate_values(hid_t dataset) {
 }
 
 bool is_bare_dimension(hid_t dataset) {
+  check_attribute_bytes(dataset);
   const std::vector<std::string> name = text_attribute(dataset, "NAME");
   return has_attribute(dataset, "CLASS") && !name.empty() &&
          name[0].starts_with("This is a netCDF dimension but not a netCDF variable");

@@ -17,7 +17,8 @@ namespace weir {
 /// the lowest coordinate as origin, as elements in reverse order have them, and a note. The caller holds Hdf5Lock.
 void place_by_scales(hid_t dataset, std::span<AxisPlace> axes);
 
-/// Whether a dataset only stands for a dimension of NetCDF that has no coordinates: it holds no values.
+/// Whether a dataset only stands for a dimension of NetCDF that has no coordinates: it holds no values. Calls
+/// check_attribute_bytes() first.
 bool is_bare_dimension(hid_t dataset);
 
 /// The numbers of a dataset of up to kMaxCoordinates of them, in one axis or none, as its attributes mean them

@@ -118,6 +118,55 @@ static void pushes(int device) {
   free(transposed);
 }
 
+static int stays_off;
+static void count_stays_off(void* user, const char* line) {
+  (void)user;
+  if (strstr(line, "the volume does not stay on the device (") != NULL) ++stays_off;
+}
+
+/* More device memory is granted than is left: the volume comes to the host, to the same bytes. */
+static void push_to_a_full_device(void) {
+  enum { EDGE = 256, DEPTH = 512, SLAB = 64 };
+  const size_t plane = (size_t)EDGE * EDGE;
+  float* const values = malloc(plane * DEPTH * sizeof(float));
+  for (size_t i = 0; i < plane * DEPTH; ++i) values[i] = (float)((i * i / 1000) % 1009);
+  weir_volume volume = pattern_volume(WEIR_FLOAT32);
+  volume.extent[0] = EDGE;
+  volume.extent[1] = EDGE;
+  volume.extent[2] = DEPTH;
+  weir_convert_options options = default_options();
+  options.encoding = WEIR_ENCODING_PACKED;
+  options.memory = (uint64_t)2 << 30;
+  options.backend = WEIR_BACKEND_CPU;
+  CHECK_OK(weir_convert(&volume, values, NULL, &options, path_of("host.nvdb"), &error));
+  float* const slab = device_copy(values, plane * SLAB * sizeof(float), 1);
+  options.backend = WEIR_BACKEND_AUTO;
+  options.notice = count_stays_off;
+  weir_push* push = NULL;
+  CHECK_OK(weir_push_begin(&volume, &options, path_of("device.nvdb"), &push, &error));
+  CHECK_OK(weir_push_device_memory(push, plane * DEPTH * sizeof(float), &error));
+  enum { MOST = 4096 };
+  static void* taken[MOST];
+  int count = 0;
+  for (size_t bytes = (size_t)1 << 34; bytes >= (size_t)1 << 22; bytes /= 2) {
+    while (count < MOST && cudaMalloc(&taken[count], bytes) == cudaSuccess) ++count;
+    (void)cudaGetLastError();
+  }
+  for (int z = 0; z < DEPTH; z += SLAB) {
+    CHECK(cudaMemcpy(slab, values + plane * (size_t)z, plane * SLAB * sizeof(float), cudaMemcpyHostToDevice) ==
+          cudaSuccess);
+    CHECK_OK(weir_push_slab_device(push, z, SLAB, slab, NULL, NULL, &error));
+    CHECK(cudaDeviceSynchronize() == cudaSuccess);
+  }
+  CHECK(stays_off == 1);
+  while (count > 0) CHECK(cudaFree(taken[--count]) == cudaSuccess);
+  CHECK_OK(weir_push_end(push, &error));
+  weir_push_free(push);
+  CHECK(same_files(path_of("host.nvdb"), path_of("device.nvdb")));
+  free_copy(slab, 1);
+  free(values);
+}
+
 int main(void) {
   make_directory();
   float* const values = pattern_floats();
@@ -152,6 +201,7 @@ int main(void) {
     weir_cuda_free(loaded);
   }
   pushes(devices > 0);
+  if (devices > 0) push_to_a_full_device();
   weir_close(a);
   weir_close(b);
   return finish();

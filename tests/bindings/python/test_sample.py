@@ -2,6 +2,7 @@
 
 import itertools
 import unittest
+import warnings
 
 import numpy
 
@@ -57,6 +58,14 @@ class Sample(FolderTest):
         grid = self.lossless(values)
         points = [(0, 0, 0), (0.99, 1, 1.01), (-5, 30, 40), (20, -1, 999)]
         numpy.testing.assert_array_equal(grid.sample(points, "nearest"), [0, 10100, 392900, 390019])
+
+    def test_the_nearest_is_of_the_position_before_it_is_rounded(self):
+        grid = self.lossless(numpy.broadcast_to(numpy.arange(60, dtype=numpy.float32), (3, 3, 60)).copy())
+        points = [(49.999999, 0.5, 0.5), (0.99999999, 0.5, 0.5), (50, 0.5, 0.5), (-1e300, 0, 0), (1e300, 0, numpy.inf)]
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            numpy.testing.assert_array_equal(grid.sample(points, "nearest"), [49, 0, 50, 0, 59])
+            self.assertEqual(grid.sample([(1e300, -1e300, 0)])[0], 59)
 
     def test_the_shape_is_that_of_the_points(self):
         grid = self.lossless(ramp(9, 9, 9))

@@ -1,6 +1,7 @@
 // weir export from outside: volumes that weir made, read by OpenVDB and by its stock tool.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -179,6 +180,14 @@ TEST_F(ExportCommand, HalfReportsItsLargestError) {
   const CommandResult text = run_weir({"export", nvdb_, "-o", vdb_, "--overwrite", "--half"});
   EXPECT_NE(text.out.find(cat("\nlargest error of 16 bits: ", worst, '\n')), std::string::npos) << text.out;
   EXPECT_TRUE(exported()["half_max_abs_error"].is_null());
+}
+
+TEST_F(ExportCommand, ReportOfANameWithANewlineIsOneLine) {
+  sample("sphere", "20,20,20", {"--lossless"});
+  const TemporaryDirectory directory;
+  const CommandResult result = run_weir({"export", nvdb_, "-o", directory / "two\nlines.vdb"});
+  EXPECT_TRUE(result.out.starts_with(directory / "two\\nlines.vdb: ")) << result.out;
+  EXPECT_EQ(std::count(result.out.begin(), result.out.end(), '\n'), 1);
 }
 
 TEST_F(ExportCommand, SameBytesWhateverTheThreads) {

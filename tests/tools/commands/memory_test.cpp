@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -79,6 +80,24 @@ TEST(Memory, TheGradientIsCertifiedInTheLeastCeiling) {
   ASSERT_EQ(run_weir({"sample", "turbulence", "-o", input}).exit_code, 0);
   const CommandResult result = run_weir({"convert", input, "-o", directory / "out.nvdb", "--rate", "2", "--memory",
                                          "64MiB", "--threads", "2", "--encoding", "float", "--certify", "gradient"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_LT(result.peak_rss_bytes, 64 * kMiB);
+}
+
+// A volume of one layer has one layer of macrocells, here of 7.6 MiB: no more of them are held, and counted.
+TEST(Memory, AFlatVolumeConvertsInTheLeastCeiling) {
+  if (kSanitized) GTEST_SKIP() << kSanitizedSkip;
+  const TemporaryDirectory directory;
+  const std::string input = directory / "flat_16000x16000x1_uint8.raw";
+  {
+    std::ofstream file(input, std::ios::binary);
+    for (const std::streamoff row : {0, 7001, 15999}) {
+      file.seekp(row * 16000);
+      file << std::string(16000, static_cast<char>(row % 100 + 1));
+    }
+  }
+  const CommandResult result = run_weir({"convert", input, "-o", directory / "flat.nvdb", "--rate", "20", "--at-most",
+                                         "--memory", "64MiB", "--threads", "2"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_LT(result.peak_rss_bytes, 64 * kMiB);
 }

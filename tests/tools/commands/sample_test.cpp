@@ -169,6 +169,14 @@ TEST(Sample, BadArguments) {
                  "--dims is \"8,8\", it must be X,Y,Z, three whole numbers of voxels");
   expect_refusal(run_weir({"sample", "nan", "--dims", "8,8,8", "--type", "uint8", "-o", path}), 2,
                  "kind 'nan' has values that are not finite, which uint8 cannot hold; use --type float32 or float64");
+  const std::string flat = directory / "a_8x0x8_float32.raw";
+  expect_refusal(run_weir({"sample", "zero", "-o", flat}), 2,
+                 flat +
+                     ": the name says 8x0x8; every axis must be 1 to 2147483647 and the volume below 2^60 voxels; "
+                     "choose another name");
+  expect_refusal(run_weir({"sample", "zero", "--dims", "8,8,8", "-o", "-"}), 2,
+                 "-: cannot write to standard output: slabs are written in place; name a file, and stream that when it "
+                 "is done");
   const CommandResult unknown = run_weir({"sample", "fog", "--dims", "8,8,8", "-o", path});
   EXPECT_EQ(unknown.exit_code, 2);
   EXPECT_EQ(unknown.err.substr(0, 59), "weir: unknown kind of volume 'fog'; known: cloud, turbulenc");

@@ -237,6 +237,23 @@ TEST_F(SweepCommand, ReplacesFilesOnlyWithOverwrite) {
   EXPECT_EQ(list_directory(out_), kResults);
 }
 
+TEST_F(SweepCommand, OverwriteOption_LeavesVolumesThatAnEarlierSweepKept) {
+  const std::string input = sample("turbulence", "64x64x64_float32");
+  ASSERT_EQ(run(input, {"--rates", "2.5", "--methods", "auto", "--keep"}).exit_code, 0);
+  const std::string kept = (fs::path(out_) / "auto_rate2.5.nvdb").string();
+  const std::string bytes = read_file(kept);
+  const Names before = list_directory(out_);
+  ASSERT_EQ(run(input, {"--rates", "2.5", "--methods", "auto", "--overwrite"}).exit_code, 0);
+  EXPECT_EQ(list_directory(out_), before);
+  EXPECT_EQ(read_file(kept), bytes);
+}
+
+TEST_F(SweepCommand, RateBelowTheSmallestTree_IsANoteWithoutOptionsOfConvert) {
+  const std::string input = sample("turbulence", "20x17x13_float32");
+  EXPECT_EQ(rows(input, {"--rates", "20", "--methods", "auto"})[0]["note"],
+            "884 bytes asked, the smallest tree for this volume takes 309824");
+}
+
 TEST_F(SweepCommand, Refusals) {
   const std::string input = sample("sphere", "32x32x32_uint8");
   const auto refusal = [&](const std::vector<std::string>& options, int exit_code) {

@@ -159,6 +159,23 @@ with h5py.File("a.h5", "w") as f:
             "");
 }
 
+// NAME tells whether a dataset is the bare dimension of a netCDF file: it is looked for before all else.
+TEST_F(Hdf5Attribute, MemoryOfALongName_IsNotTaken) {
+  write_by_h5py(scratch_, R"(
+with h5py.File("a.h5", "w", libver="latest") as f:
+    f["q"] = values("f4")
+    f["q"].attrs["NAME"] = np.bytes_(b"x" * (200 << 20))
+)");
+  EXPECT_EQ(answer_of_child([&] {
+              SourceOptions listing;
+              listing.lists_damaged = true;
+              const std::string obstacle = list_hdf5(scratch_.path("a.h5"), listing)[0].obstacle;
+              const std::uint64_t peak = peak_resident_bytes();
+              return peak < (std::uint64_t{100} << 20U) ? obstacle.substr(0, 20) : cat(peak, " bytes");
+            }),
+            "its attributes take ");
+}
+
 TEST_F(Hdf5Attribute, MoreBytesInAllThanAreRead_AreAnError) {
   write_by_h5py(scratch_, R"(
 with h5py.File("a.h5", "w", libver="latest") as f:
