@@ -261,10 +261,11 @@ class Grid:
             given = numpy.asarray(points)
             if given.dtype.kind not in "iuf":
                 raise TypeError
-            exact = given.astype(numpy.float64).clip(-_FARTHEST, _FARTHEST)
-            # The centre of the voxel that covers a position: rounded first, it could be the next voxel's.
-            wanted = exact if filter == "trilinear" else numpy.floor(exact) + 0.5
-            positions = numpy.asarray(wanted, dtype=numpy.float32, order="C")
+            if given.dtype != numpy.float32:
+                given = given.astype(numpy.float64).clip(-_FARTHEST, _FARTHEST)
+                # The centre of the voxel that covers a position: rounded first, it could be the next voxel's.
+                given = given if filter == "trilinear" else numpy.floor(given) + 0.5
+            positions = numpy.asarray(given, dtype=numpy.float32, order="C")
         except (TypeError, ValueError):
             raise UsageError(f"points is {described(points)}, it must be numbers, (x, y, z) along the last axis") from None
         if positions.ndim == 0 or positions.shape[-1] != 3:
