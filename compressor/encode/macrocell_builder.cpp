@@ -13,9 +13,12 @@ constexpr std::int64_t kRegionCells = kLowerDim / kMacrocell;  // along a region
 
 }  // namespace
 
-std::int64_t held_macrocell_layers(const NodeLattice& cells) {
-  const auto of = [&cells](std::int64_t layers) { return std::min(layers, cells.count.z); };
-  return 2 * of(kRegionCells + 2) + of(kRegionCells);  // the window, its successor while it moves, and what is finished
+std::uint64_t macrocell_window_bytes(const Box& domain) {
+  const Index3 cells = make_lattice(domain, kMacrocell).count;
+  const std::int64_t window = std::min(kRegionCells + 2, cells.z);
+  const std::int64_t finished = std::min(kRegionCells, cells.z);
+  // The window comes twice while it moves.
+  return static_cast<std::uint64_t>((2 * window + finished) * cells.x * cells.y) * sizeof(MinMax);
 }
 
 RegionCells::RegionCells(const Index3& region_node)
@@ -88,7 +91,7 @@ void MacrocellBuilder::merge(const RegionCells& cells) {
 std::vector<MinMax> MacrocellBuilder::take_finished(bool last, std::int64_t& first_layer) {
   first_layer = window_first_;
   const std::int64_t end = last ? lattice_.count.z : std::min(lattice_.count.z, settled_);
-  std::vector<MinMax> cells(static_cast<std::size_t>(plane() * std::max<std::int64_t>(0, end - first_layer)));
+  std::vector<MinMax> cells(static_cast<std::size_t>(plane() * (end - first_layer)));
   tbb::parallel_for(first_layer, end,
                     [&](std::int64_t layer) { finish(layer, cells.data() + plane() * (layer - first_layer)); });
   return cells;

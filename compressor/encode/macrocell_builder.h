@@ -12,9 +12,9 @@
 
 namespace weir {
 
-/// Layers of cells, each of the lattice's width and height, that a MacrocellBuilder and what takes its finished cells
-/// hold at once for one layer of regions at a time.
-std::int64_t held_macrocell_layers(const NodeLattice& cells);
+/// Bytes of cells that a MacrocellBuilder over `domain` and what takes its finished cells hold at once, for one layer
+/// of regions at a time.
+std::uint64_t macrocell_window_bytes(const Box& domain);
 
 /// Bounds of the cells that one region can touch: its own 8^3 and one more on every side.
 class RegionCells {

@@ -9,8 +9,6 @@
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "format/layout/node_statistics.h"
-#include "format/leaf/bounds.h"
-#include "format/nanovdb/macrocells.h"
 #include "ingest/plan/staging.h"
 
 namespace weir {
@@ -31,11 +29,9 @@ constexpr std::uint64_t kBlockEighths = 3;
 // All but the workers.
 std::uint64_t shared_bytes(std::uint64_t resident, const Box& domain) {
   const auto regions = static_cast<std::uint64_t>(make_lattice(domain, kLowerDim).size());
-  const NodeLattice cells = make_lattice(domain, kMacrocell);
-  const auto cell_layers = static_cast<std::uint64_t>(held_macrocell_layers(cells));
-  const auto cell_layer = static_cast<std::uint64_t>(cells.count.x * cells.count.y) * sizeof(MinMax);
   // Two plans of the inner nodes while encodings are compared, later one with statistics and errors.
-  const std::uint64_t tree = regions * (2 * sizeof(Region) + sizeof(NodeStatistics) + 32) + cell_layers * cell_layer;
+  const std::uint64_t tree =
+      regions * (2 * sizeof(Region) + sizeof(NodeStatistics) + 32) + macrocell_window_bytes(domain);
   return resident + kSlackBytes + kStagingBytes + tree;
 }
 

@@ -13,6 +13,7 @@
 #include "gpu/cuda/render/cuda_backend.h"
 #include "tests/cuda/support/device_reads.h"
 #include "tests/cuda/support/packed_ball.h"
+#include "tests/cuda/support/process_resources.h"
 #include "tests/stock/test_grid.h"
 #include "tests/support/temporary_directory.h"
 
@@ -57,14 +58,6 @@ class BrickVolumeTest : public testing::Test {
   TemporaryDirectory directory_;
 };
 
-std::uint64_t bytes_of_the_pool() {
-  cudaMemPool_t pool = nullptr;
-  std::uint64_t bytes = 0;
-  EXPECT_EQ(cudaDeviceGetDefaultMemPool(&pool, 0), cudaSuccess);
-  EXPECT_EQ(cudaMemPoolGetAttribute(pool, cudaMemPoolAttrUsedMemCurrent, &bytes), cudaSuccess);
-  return bytes;
-}
-
 int differing(const Image& a, const Image& b) {
   int count = 0;
   for (std::size_t i = 0; i < a.pixels.size(); ++i) count += a.pixels[i] == b.pixels[i] ? 0 : 1;
@@ -87,11 +80,11 @@ TEST_F(BrickVolumeTest, StepAfterALargerOne_TakesWhatItTakesAlone) {
   const auto small = test::written(directory_ / "small.nvdb", test::packed_ball(60, 0.5F).file);
   const auto backend = cuda();
   std::unique_ptr<LoadedVolume> volume = backend->load(small, 0, nullptr);
-  const std::uint64_t alone = bytes_of_the_pool();
+  const std::uint64_t alone = test::pool_bytes();
   volume = backend->load(large, 0, std::move(volume));
-  EXPECT_GT(bytes_of_the_pool(), alone);
+  EXPECT_GT(test::pool_bytes(), alone);
   volume = backend->load(small, 0, std::move(volume));
-  EXPECT_EQ(bytes_of_the_pool(), alone);
+  EXPECT_EQ(test::pool_bytes(), alone);
 }
 
 TEST_F(BrickVolumeTest, MarchedPicturesOfAPackedGridAreTheCpus) {
