@@ -262,6 +262,7 @@ function(weir_loader_tests)
   file(GLOB sources CONFIGURE_DEPENDS ${root}/gpu/cuda/load/*.cpp ${root}/tests/cuda/load/*.cpp
                                       ${root}/tests/fake_cuda/*.cpp)
   add_executable(weir_tests_loader ${sources} ${root}/gpu/cuda/runtime/check.cpp ${root}/gpu/cuda/grid_loader.cpp
+                                   ${root}/gpu/cuda/runtime/driver_context.cpp
                                    ${root}/gpu/cuda/push/device_slabs.cpp
                                    ${root}/tests/cuda/grid_loader_test.cpp)
   target_include_directories(weir_tests_loader SYSTEM PRIVATE ${CUDAToolkit_INCLUDE_DIRS})
@@ -293,7 +294,8 @@ function(weir_coder_tests)
   file(GLOB sources CONFIGURE_DEPENDS ${root}/tests/fake_coder/*.cpp ${root}/gpu/cuda/encode/*.cpp ${root}/bindings/cuda/*.cpp)
   add_executable(weir_tests_coder ${sources} ${root}/tests/fake_cuda/fake_runtime.cpp ${root}/tests/fake_cuda/fake_calls.cpp
                                   ${root}/tests/fake_cuda/fake_gather.cpp
-                                  ${root}/gpu/cuda/runtime/check.cpp ${root}/gpu/cuda/load/pinned_memory.cpp
+                                  ${root}/gpu/cuda/runtime/check.cpp ${root}/gpu/cuda/runtime/driver_context.cpp
+                                  ${root}/gpu/cuda/load/pinned_memory.cpp
                                   ${root}/gpu/cuda/push/device_slabs.cpp
                                   ${root}/tests/compressor/support/memory_volume.cpp
                                   ${root}/tests/compressor/support/crash_file_system.cpp

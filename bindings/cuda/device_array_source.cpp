@@ -38,6 +38,12 @@ class DeviceArraySource final : public VolumeSource {
     for (std::size_t i = 0; i < kDeviceArrayPieces; ++i) free_.push_back(i);
   }
 
+  ~DeviceArraySource() override {
+    free_on(device_, [&] { pinned_.reset(); });
+  }
+  DeviceArraySource(const DeviceArraySource&) = delete;
+  DeviceArraySource& operator=(const DeviceArraySource&) = delete;
+
   const SourceInfo& info() const override { return info_; }
   AccessShape access() const override { return {static_cast<std::size_t>(value_bytes_), {}, {}}; }
   std::uint64_t working_bytes() const override { return kDeviceArrayPieces * piece_bytes_; }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
+#include <map>
+#include <string>
 
 #include "tests/fake_cuda/fake_array.h"
 #include "tests/fake_cuda/fake_runtime.h"
@@ -30,38 +32,64 @@ cudaError_t release(void* memory) {
   return cudaSuccess;
 }
 
-// The driver's cuCtxGetId.
-int context_id(void*, unsigned long long* id) {
+// The driver's. A context is the address that is one more than its device's number.
+int cuCtxGetId(void*, unsigned long long* id) {
   *id = runtime().context();
+  return *id != 0 ? 0 : 1;
+}
+int cuCtxGetCurrent(void** context) {
+  *context =
+      runtime().context() == 0 ? nullptr : reinterpret_cast<void*>(std::uintptr_t{1} + runtime().current_device());
+  return 0;
+}
+int cuCtxSetCurrent(void* context) {
+  if (context == nullptr) {
+    runtime().choose_none();
+  } else {
+    runtime().choose(static_cast<int>(number(context)) - 1);
+  }
+  return 0;
+}
+int cuDevicePrimaryCtxGetState(int device, unsigned* flags, int* active) {
+  *flags = 0;
+  *active = runtime().devices_in_use().contains(device) ? 1 : 0;
   return 0;
 }
 
-cudaError_t entry_point(const char* symbol, void** function, cudaDriverEntryPointQueryResult* result) {
-  const bool known = std::strcmp(symbol, "cuCtxGetId") == 0;
-  *function = known ? reinterpret_cast<void*>(&context_id) : nullptr;
-  *result = known ? cudaDriverEntryPointSuccess : cudaDriverEntryPointSymbolNotFound;
+cudaError_t entry_point(const std::string& symbol, void** function, cudaDriverEntryPointQueryResult* result) {
+  const std::map<std::string, void*> known{
+      {"cuCtxGetId", reinterpret_cast<void*>(&cuCtxGetId)},
+      {"cuCtxGetCurrent", reinterpret_cast<void*>(&cuCtxGetCurrent)},
+      {"cuCtxSetCurrent", reinterpret_cast<void*>(&cuCtxSetCurrent)},
+      {"cuDevicePrimaryCtxGetState", reinterpret_cast<void*>(&cuDevicePrimaryCtxGetState)},
+  };
+  const auto found = known.find(symbol);
+  *function = found == known.end() ? nullptr : found->second;
+  *result = found == known.end() ? cudaDriverEntryPointSymbolNotFound : cudaDriverEntryPointSuccess;
   return cudaSuccess;
 }
 
 }  // namespace
 
-#define WEIR_ENTER(function) \
+// Of a call that works in a context.
+#define WEIR_ENTER(function)  \
+  runtime().choose_if_none(); \
   if (const cudaError_t code = runtime().enter(function); code != cudaSuccess) return code
 
 extern "C" {
 
 cudaError_t cudaGetDeviceCount(int* count) {
-  *count = 1;
+  *count = runtime().devices();
   return cudaSuccess;
 }
 cudaError_t cudaGetDevice(int* device) {
-  WEIR_ENTER("cudaGetDevice");
-  *device = 0;
-  return cudaSuccess;
+  *device = runtime().current_device();
+  return runtime().enter("cudaGetDevice");
 }
-cudaError_t cudaSetDevice(int) {
-  WEIR_ENTER("cudaSetDevice");
-  return cudaSuccess;
+cudaError_t cudaSetDevice(int device) {
+  if (device < 0 || device >= runtime().devices()) return cudaErrorInvalidDevice;
+  runtime().choose(device);
+  return runtime().enter("cudaSetDevice");
 }
 cudaError_t cudaDeviceGetAttribute(int* value, cudaDeviceAttr attribute, int) {
   WEIR_ENTER("cudaDeviceGetAttribute");
@@ -84,6 +112,7 @@ const char* cudaGetErrorName(cudaError_t code) {
 const char* cudaGetErrorString(cudaError_t) { return "pretended"; }
 
 cudaError_t cudaMallocAsync(void** memory, std::size_t bytes, cudaStream_t) {
+  runtime().choose_if_none();
   if (const cudaError_t code = runtime().enter_allocation("cudaMallocAsync", bytes); code != cudaSuccess) return code;
   return allocate(memory, bytes);
 }
@@ -105,6 +134,7 @@ cudaError_t cudaFreeHost(void* memory) {
   return release(memory);
 }
 cudaError_t cudaMemGetInfo(std::size_t* free, std::size_t* total) {
+  runtime().choose_if_none();
   *total = runtime().capacity();
   *free = *total - std::min<std::size_t>(*total, runtime().allocated_bytes());
   return cudaSuccess;
@@ -168,7 +198,10 @@ cudaError_t cudaEventCreateWithFlags(cudaEvent_t* event, unsigned) {
   *event = static_cast<cudaEvent_t>(memory);
   return cudaSuccess;
 }
-cudaError_t cudaEventDestroy(cudaEvent_t event) { return release(event); }
+cudaError_t cudaEventDestroy(cudaEvent_t event) {
+  runtime().choose_if_none();
+  return release(event);
+}
 cudaError_t cudaEventRecord(cudaEvent_t, cudaStream_t) {
   WEIR_ENTER("cudaEventRecord");
   return cudaSuccess;
@@ -178,6 +211,7 @@ cudaError_t cudaEventSynchronize(cudaEvent_t) {
   return cudaSuccess;
 }
 cudaError_t cudaStreamCreate(cudaStream_t* stream) {
+  runtime().choose_if_none();
   *stream = nullptr;
   return cudaSuccess;
 }
@@ -227,13 +261,19 @@ cudaError_t cudaStreamCreateWithFlags(cudaStream_t* stream, unsigned) {
   WEIR_ENTER("allocation");
   return cudaStreamCreate(stream);
 }
-cudaError_t cudaStreamWaitEvent(cudaStream_t, cudaEvent_t, unsigned) { return cudaSuccess; }
+cudaError_t cudaStreamWaitEvent(cudaStream_t, cudaEvent_t, unsigned) {
+  runtime().choose_if_none();
+  return cudaSuccess;
+}
 cudaError_t cudaMemcpyPeer(void* to, int, const void* from, int, std::size_t bytes) {
   WEIR_ENTER("cudaMemcpyPeer");
   std::memcpy(to, from, bytes);
   return cudaSuccess;
 }
-cudaError_t cudaStreamDestroy(cudaStream_t) { return cudaSuccess; }
+cudaError_t cudaStreamDestroy(cudaStream_t) {
+  runtime().choose_if_none();
+  return cudaSuccess;
+}
 cudaError_t cudaStreamSynchronize(cudaStream_t) {
   WEIR_ENTER("cudaStreamSynchronize");
   return cudaSuccess;

@@ -39,12 +39,60 @@ void FakeRuntime::reset() {
   most_registered_ = 0;
   capacity_ = std::uint64_t{1} << 32U;
   sticky_ = last_ = cudaSuccess;
-  ++context_;
+  devices_ = 1;
+  in_use_.clear();
+  ++generation_;
+}
+
+FakeRuntime::Thread& FakeRuntime::thread() {
+  thread_local Thread here;
+  if (here.generation != generation_) here = {generation_, 0, false};
+  return here;
+}
+
+void FakeRuntime::set_devices(int count) {
+  const std::lock_guard lock(mutex_);
+  devices_ = count;
+}
+
+int FakeRuntime::devices() {
+  const std::lock_guard lock(mutex_);
+  return devices_;
+}
+
+int FakeRuntime::current_device() {
+  const std::lock_guard lock(mutex_);
+  return thread().device;
+}
+
+void FakeRuntime::choose(int device) {
+  const std::lock_guard lock(mutex_);
+  thread().device = device;
+  thread().has_context = true;
+  in_use_.insert(device);
+}
+
+void FakeRuntime::choose_if_none() {
+  const std::lock_guard lock(mutex_);
+  if (thread().has_context) return;
+  thread().has_context = true;
+  in_use_.insert(thread().device);
+}
+
+void FakeRuntime::choose_none() {
+  const std::lock_guard lock(mutex_);
+  thread() = {generation_, 0, false};
 }
 
 std::uint64_t FakeRuntime::context() {
   const std::lock_guard lock(mutex_);
-  return context_;
+  constexpr std::uint64_t kMostDevices = 16;
+  return thread().has_context ? kMostDevices * generation_ + static_cast<std::uint64_t>(thread().device) : 0;
+}
+
+std::set<int> FakeRuntime::devices_in_use() {
+  const std::lock_guard lock(mutex_);
+  return in_use_;
 }
 
 void FakeRuntime::fail(const std::string& function, int nth, cudaError_t code, bool sticky) {

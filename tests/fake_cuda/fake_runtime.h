@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <map>
 #include <mutex>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -16,9 +17,22 @@ namespace weir::test {
 class FakeRuntime {
  public:
   static FakeRuntime& instance();
-  /// The device has another context afterwards.
+  /// There is one device then, without a context, and the next one is another.
   void reset();
+
+  void set_devices(int count);
+  int devices();
+  /// That the calling thread works on: 0 until it chooses one, and again once it has no context.
+  int current_device();
+  /// Makes the context of `device` current, as a call on a thread that has none does for current_device().
+  void choose(int device);
+  void choose_if_none();
+  /// The calling thread has no context afterwards.
+  void choose_none();
+  /// The number of the calling thread's context; 0: it has none.
   std::uint64_t context();
+  /// Those that have a context.
+  std::set<int> devices_in_use();
 
   /// The `nth` call (0: the next) of `function` fails with `code`; a sticky one makes all later calls fail too.
   void fail(const std::string& function, int nth, cudaError_t code, bool sticky = false);
@@ -62,7 +76,17 @@ class FakeRuntime {
     bool later = false;  ///< calls, too
   };
 
+  // What a thread works on.
+  struct Thread {
+    std::uint64_t generation = 0;  // a reset makes it forget the rest
+    int device = 0;
+    bool has_context = false;
+  };
+  Thread& thread();  // the calling one's
+
   std::mutex mutex_;
+  int devices_ = 1;
+  std::set<int> in_use_;
   std::vector<Fault> faults_;
   std::map<std::string, std::uint64_t> calls_;
   std::map<cudaDeviceAttr, int> attributes_;
@@ -70,7 +94,7 @@ class FakeRuntime {
   std::map<std::uintptr_t, std::uint64_t> allocated_;
   std::uint64_t most_registered_ = 0;
   std::uint64_t capacity_ = 0;
-  std::uint64_t context_ = 0;
+  std::uint64_t generation_ = 0;
   cudaError_t sticky_ = cudaSuccess;
   cudaError_t last_ = cudaSuccess;
 };

@@ -64,6 +64,18 @@ struct CoderState {
     digests.upload(std::vector<DigestTables>(1));
   }
 
+  ~CoderState() {
+    free_on(device, [&] {
+      boxes.clear();
+      streams.clear();
+      costs = {};
+      codes = {};
+      digests = {};
+    });
+  }
+  CoderState(const CoderState&) = delete;
+  CoderState& operator=(const CoderState&) = delete;
+
   void fail(const Error& error) {
     if (!broken.exchange(true) && failed) failed(error);
   }
@@ -90,13 +102,16 @@ struct CoderState {
   MemoryPool<StreamMemory> streams;
 };
 
-/// Memory that goes back to its pool, once its stream has no more work.
+/// Memory of `device` that goes back to its pool, once its stream has no more work.
 template <class Memory>
 class Lent {
  public:
-  Lent(MemoryPool<Memory>& pool, std::unique_ptr<Memory> memory) : pool_(pool), memory_(std::move(memory)) {}
+  Lent(int device, MemoryPool<Memory>& pool, std::unique_ptr<Memory> memory)
+      : device_(device), pool_(pool), memory_(std::move(memory)) {}
   ~Lent() {
-    if (cudaStreamSynchronize(memory_->stream.get()) != cudaSuccess) cudaGetLastError();
+    free_on(device_, [&] {
+      if (cudaStreamSynchronize(memory_->stream.get()) != cudaSuccess) cudaGetLastError();
+    });
     pool_.give_back(std::move(memory_));
   }
   Lent(const Lent&) = delete;
@@ -106,6 +121,7 @@ class Lent {
   Memory* operator->() const { return memory_.get(); }
 
  private:
+  int device_;
   MemoryPool<Memory>& pool_;
   std::unique_ptr<Memory> memory_;
 };

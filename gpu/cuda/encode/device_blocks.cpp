@@ -39,7 +39,7 @@ class DeviceStreams final : public PendingStreams {
   /// that is null in memory of its own.
   DeviceStreams(std::shared_ptr<CoderState> coder, const BlockBox& box, const std::optional<BlockPlace>& place,
                 std::span<const StreamAsk> asks, const BlockConstants& constants, GrowingPinned* pinned)
-      : coder_(std::move(coder)), memory_(coder_->streams, coder_->streams.take()) {
+      : coder_(std::move(coder)), memory_(coder_->device, coder_->streams, coder_->streams.take()) {
     const std::size_t count = asks.size();
     const std::size_t bytes = std::size_t{asks.back().offset} + asks.back().bytes;
     // Resident blocks come by regions, of which one has more streams than the next: room for most, so that it seldom
@@ -130,7 +130,7 @@ std::optional<BlockBox> block_box(const Box& voxels, const Box& blocks) {
 
 DeviceBlocks::DeviceBlocks(std::shared_ptr<CoderState> coder, std::unique_ptr<BoxMemory> memory,
                            std::span<const float> values, const BlockBox& box)
-    : coder_(std::move(coder)), memory_(coder_->boxes, std::move(memory)), box_(box) {
+    : coder_(std::move(coder)), memory_(coder_->device, coder_->boxes, std::move(memory)), box_(box) {
   float* const to = memory_->values.at_least(values.size());
   box_.values = to;
   const cudaStream_t stream = memory_->stream.get();
@@ -142,7 +142,7 @@ DeviceBlocks::DeviceBlocks(std::shared_ptr<CoderState> coder, std::unique_ptr<Bo
 
 DeviceBlocks::DeviceBlocks(std::shared_ptr<CoderState> coder, std::unique_ptr<BoxMemory> memory, const BlockBox& box,
                            const BlockPlace& place)
-    : coder_(std::move(coder)), memory_(coder_->boxes, std::move(memory)), box_(box), place_(place) {}
+    : coder_(std::move(coder)), memory_(coder_->device, coder_->boxes, std::move(memory)), box_(box), place_(place) {}
 
 void DeviceBlocks::begin_survey(const RungAsk& ask) {
   begun_ = coder_->attempt([&]() -> std::optional<SurveyedBlocks> {

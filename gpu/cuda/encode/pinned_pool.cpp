@@ -1,7 +1,5 @@
 #include "gpu/cuda/encode/pinned_pool.h"
 
-#include <cuda_runtime_api.h>
-
 #include <exception>
 #include <utility>
 
@@ -10,35 +8,17 @@
 namespace weir {
 namespace {
 
-using ContextId = int (*)(void* context, unsigned long long* id);  // cuCtxGetId; a null context is the current one
-
-ContextId find_context_id() {
-  void* found = nullptr;
-  cudaDriverEntryPointQueryResult result{};
-#if CUDART_VERSION >= 12050
-  const cudaError_t code = cudaGetDriverEntryPointByVersion("cuCtxGetId", &found, 12000, cudaEnableDefault, &result);
-#else
-  const cudaError_t code = cudaGetDriverEntryPoint("cuCtxGetId", &found, cudaEnableDefault, &result);
-#endif
-  if (code == cudaSuccess && result == cudaDriverEntryPointSuccess) return reinterpret_cast<ContextId>(found);
-  cudaGetLastError();
-  return nullptr;
-}
-
-// Whether what was locked in a context of a device is not any more.
-bool is_gone(int device, std::uint64_t context) {
+// What was locked in a context that is gone is not locked any more.
+void unlock(PinnedPool::Piece piece) {
+  if (!has_context(piece.device)) return piece.memory.forget();
   const KeptDevice kept;
-  cudaSetDevice(device);
-  return device_context() != context;
+  // Also where the thread has another context of that device.
+  if (cudaSetDevice(piece.device) != cudaSuccess) cudaGetLastError();
+  if (current_context_id() != piece.context) return piece.memory.forget();
+  const PinnedMemory unlocked = std::move(piece.memory);
 }
 
 }  // namespace
-
-std::uint64_t device_context() {
-  static const ContextId context_id = find_context_id();
-  unsigned long long id = 0;
-  return context_id != nullptr && context_id(nullptr, &id) == 0 ? id : 0;
-}
 
 PinnedPool& PinnedPool::of_process() {
   static auto* const pool = new PinnedPool;  // the runtime may be gone when static objects are
@@ -46,12 +26,12 @@ PinnedPool& PinnedPool::of_process() {
 }
 
 std::optional<PinnedPool::Piece> PinnedPool::take(std::size_t bytes, std::string& refusal) {
-  const std::uint64_t context = device_context();
+  const std::uint64_t context = current_context_id();
   if (std::optional<Piece> held = take_held(bytes, context)) return held;
   std::optional<PinnedMemory> memory = PinnedMemory::make(bytes, refusal);
   if (!memory) return std::nullopt;
   // The context is there at the latest now.
-  return Piece{std::move(*memory), bytes, current_device(), context == 0 ? device_context() : context};
+  return Piece{std::move(*memory), bytes, current_device(), context == 0 ? current_context_id() : context};
 }
 
 std::optional<PinnedPool::Piece> PinnedPool::take_held(std::size_t bytes, std::uint64_t context) {
@@ -73,7 +53,8 @@ std::optional<PinnedPool::Piece> PinnedPool::take_held(std::size_t bytes, std::u
 }
 
 void PinnedPool::give_back(Piece piece) noexcept {
-  if (piece.context == 0 || piece.bytes > kMostHeld) return;
+  if (piece.context == 0) return;
+  if (piece.bytes > kMostHeld) return unlock(std::move(piece));
   const std::lock_guard lock(mutex_);
   while (bytes_ + piece.bytes > kMostHeld) free_oldest();
   try {
@@ -86,10 +67,10 @@ void PinnedPool::give_back(Piece piece) noexcept {
 
 void PinnedPool::free_oldest() {
   if (pieces_.empty()) return;
-  Piece& oldest = pieces_.front();
-  bytes_ -= oldest.bytes;
-  if (is_gone(oldest.device, oldest.context)) oldest.memory.forget();
+  Piece oldest = std::move(pieces_.front());
   pieces_.pop_front();
+  bytes_ -= oldest.bytes;
+  unlock(std::move(oldest));
 }
 
 void PinnedPool::clear() {

@@ -20,7 +20,7 @@ class PinnedPool {
     PinnedMemory memory;
     std::size_t bytes;
     int device;
-    std::uint64_t context;  ///< device_context() when it was locked
+    std::uint64_t context;  ///< current_context_id() when it was locked
   };
   /// What it holds at most: what came back first is freed.
   static constexpr std::size_t kMostHeld = std::size_t{96} << 20U;
@@ -44,9 +44,5 @@ class PinnedPool {
   std::deque<Piece> pieces_;  // the oldest first
   std::size_t bytes_ = 0;     // of all
 };
-
-/// Which context of which device the calling thread works in: a device that is reset has another one afterwards, and
-/// what was locked before is not. 0 where the driver does not tell (before CUDA 12).
-std::uint64_t device_context();
 
 }  // namespace weir

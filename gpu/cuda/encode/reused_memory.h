@@ -92,6 +92,11 @@ class MemoryPool {
     free_.push_back(std::move(memory));
     --lent_;
   }
+  /// Frees what is not lent.
+  void clear() {
+    const std::lock_guard lock(mutex_);
+    free_.clear();
+  }
 
  private:
   const std::size_t most_;

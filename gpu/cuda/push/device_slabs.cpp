@@ -7,6 +7,7 @@
 
 #include "format/base/text.h"
 #include "gpu/cuda/runtime/check.h"
+#include "gpu/cuda/runtime/current_device.h"
 
 namespace weir {
 namespace {
@@ -52,6 +53,13 @@ DeviceSlabs::~DeviceSlabs() {
     if (!failure_) failure_ = Error(ErrorKind::interrupted, "the push was given up");
   }
   changed_.notify_all();
+  worker_.join();
+  free_on(device_, [&] {
+    slots_.clear();
+    stream_.reset();
+    staged_ = {};
+    pinned_.reset();
+  });
 }
 
 void DeviceSlabs::make_slots(std::uint64_t device_bytes) {

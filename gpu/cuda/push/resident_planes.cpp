@@ -19,17 +19,16 @@ ResidentPlanes::ResidentPlanes(const Index3& extent) : extent_(extent) {
 }
 
 ResidentPlanes::~ResidentPlanes() {
-  for (CopyEvent& copied : copied_) {
-    try {
-      copied.wait(kCopyingPlanes);
-    } catch (const Error&) {  // it was said where it could be
+  free_on(device_, [&] {
+    for (CopyEvent& copied : copied_) {
+      try {
+        copied.wait(kCopyingPlanes);
+      } catch (const Error&) {  // it was said where it could be
+      }
     }
-  }
-  try {
-    const KeptDevice kept(device_);
+    copied_.clear();
     values_ = {};
-  } catch (const Error&) {  // the device is gone, and the memory with it
-  }
+  });
 }
 
 void ResidentPlanes::add(std::int64_t z0, std::int64_t nz, const DeviceValues& values, cudaStream_t stream) {
@@ -62,6 +61,7 @@ void ResidentPlanes::add(const Index3& first, const float* values, std::size_t c
 }
 
 void ResidentPlanes::finish() {
+  const KeptDevice kept(device_);
   const std::lock_guard lock(mutex_);
   for (CopyEvent& copied : copied_) copied.wait(kCopyingPlanes);
 }
