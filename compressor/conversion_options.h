@@ -58,6 +58,7 @@ struct ConversionOptions {
   Resume resume = Resume::automatic;
   double save_interval_s = 5;  ///< between two points that it can be continued from; 0: after every block, for tests
   Sidecar::Weir provenance;    ///< recorded as it is
+  std::uint64_t source_values = 0;  ///< Sidecar::Source::values, recorded as it is
 };
 
 /// Names as on the command line and in the sidecar.

@@ -75,6 +75,7 @@ Sidecar describe_source(const SourceInfo& info, const Survey& survey, const Conv
   sidecar.source.offset = info.mapping.offset;
   describe_details(info.details, sidecar.source);
   sidecar.source.files_digest = info.files_digest;
+  sidecar.source.values = options.source_values;
   sidecar.missing.count = info.mapping.keeps_missing ? survey.loss.unmarked : survey.missing;
   sidecar.missing.policy = info.mapping.keeps_missing ? "keep" : missing_policy_name(options);
   for (const StoredValue& value : info.mapping.missing) sidecar.missing.values.push_back(stored_value_text(value));

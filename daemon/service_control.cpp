@@ -95,7 +95,10 @@ std::optional<JobView> ServiceControl::job(std::int64_t id) {
 }
 
 JobChange ServiceControl::retry(std::int64_t id, bool force) {
-  if (!store_.job(id)) return JobChange::no_such_job;
+  const std::optional<Job> before = store_.job(id);
+  if (!before) return JobChange::no_such_job;
+  // The job would be forgotten, and its results with it.
+  if (before->state == JobState::done && is_gone(before->source)) return JobChange::no_source;
   if (!store_.retry(id, force)) return JobChange::wrong_state;
   const std::optional<Job> job = store_.job(id);
   for (const auto& tree : trees_) {

@@ -170,6 +170,9 @@ HttpResponse change(const Call& call, const Make& make) {
   if (made == JobChange::wrong_state) {
     return error_response(409, cat("job ", *id, " is ", job_state_name(now->state), ": nothing to ", action));
   }
+  if (made == JobChange::no_source) {
+    return error_response(409, cat("job ", *id, " is done, and its source is gone: nothing to ", action));
+  }
   return ok(to_json(*now));
 }
 

@@ -186,7 +186,8 @@ struct Readiness {
 enum class JobChange {
   made,
   no_such_job,
-  wrong_state  ///< retry of one that is waiting or running; cancel of one that is over
+  wrong_state,  ///< retry of one that is waiting or running; cancel of one that is over
+  no_source     ///< retry of one that is done and whose source is gone
 };
 
 /// What became of a request for a viewer.

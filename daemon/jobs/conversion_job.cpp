@@ -138,6 +138,7 @@ void ConversionJob::convert() {
   std::vector<std::string> arguments{task_.source,    cat("--output=", task_.output), "--skip-done",
                                      "--brief-names", cat("--memory=", task_.memory), cat("--threads=", task_.threads)};
   if (task_.again) arguments.emplace_back("--again");
+  if (task_.count_values) arguments.emplace_back("--count-values");
   if (task_.bandwidth != 0) arguments.push_back(cat("--bandwidth=", task_.bandwidth));
   if (!task_.within.empty()) arguments.push_back(cat("--within=", task_.within));
   if (!task_.work_dir.empty()) arguments.push_back(cat("--work-dir=", task_.work_dir));

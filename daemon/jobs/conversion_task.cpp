@@ -48,6 +48,7 @@ ConversionTask make_task(const std::string& program, const ServiceConfig& servic
   task.work_dir = service.work_dir;
   task.thumbnails = watch.thumbnails;
   task.again = job.forced;
+  task.count_values = watch.source == AfterDone::delete_after_verify;
   return task;
 }
 

@@ -25,7 +25,8 @@ struct ConversionTask {
   IoClass io_class = IoClass::none;
   std::string work_dir;  ///< spill files; empty: beside the output
   bool thumbnails = true;
-  bool again = false;  ///< also what is done
+  bool again = false;         ///< also what is done
+  bool count_values = false;  ///< of the source, which is deleted where the outputs have all of them
   /// Not empty: these were made and verified before, and their thumbnails are all there is to do.
   std::vector<JobOutput> outputs;
 };

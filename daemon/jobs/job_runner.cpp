@@ -39,7 +39,7 @@ JobRunner::JobRunner(boost::asio::io_context& io, JobStore& store, const EventLo
       look_again_(std::move(look_again)),
       writes_(log),
       scheduler_(SchedulerLimits{}),
-      deletion_(io, store, log),
+      deletion_(io, store, log, [this] { return stopping_ || scheduler_.paused(); }),
       timer_(io),
       grace_timer_(io) {}
 

@@ -2,13 +2,15 @@
 // must hold before:
 //   1. the job is done, converted and every output verified, by the options that the watch has now, and the watch
 //      still takes its source;
-//   2. `delete_after` seconds have passed since, in this process, and the source is the file that was converted:
-//      by size, time and inode (FileIdentity), and no status of it is younger than its certificate;
+//   2. `delete_after` seconds have passed since, in this process and under this delay, and the source is the file that
+//      was converted: by size, time and inode (FileIdentity), and no status of it is younger than its certificate;
 //   3. every output is there with the size it had, and its certificate is of this source, and of this file alone:
 //      data that a header names may be another header's, too, so that such sources stay, and a source that stands for
-//      a directory (the Header of a plotfile, the metadata of a Zarr hierarchy) stays whatever its certificate says;
+//      a directory (the Header of a plotfile, the metadata of a Zarr hierarchy) stays whatever its certificate says.
+//      Together they have as many voxels as the source has values: its other volumes would go with it;
 //   4. no program has the source open for writing, or maps it so (file_writers.h): else it is tried again later.
-//      Where that cannot be known, the writer must say itself that it is done (says_when_done).
+//      Where that cannot be known, the writer must say itself that it is done (says_when_done);
+//   5. the outputs are on their disk, with the directories that were made for them.
 // Jobs of an earlier process are taken up a few at a time; a deletion that it was killed in is finished. One thread,
 // that of the io_context.
 #pragma once
@@ -18,6 +20,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <set>
@@ -33,10 +36,11 @@ namespace weir {
 
 class SourceDeletion {
  public:
-  /// `store` and `log` must outlive the object.
-  SourceDeletion(boost::asio::io_context& io, const JobStore& store, const EventLog& log);
+  using Held = std::function<bool()>;
+  /// `store` and `log` must outlive the object. Nothing is deleted while `held`, where there is one.
+  SourceDeletion(boost::asio::io_context& io, const JobStore& store, const EventLog& log, Held held = {});
 
-  /// From now on as `config` says; what is done already waits for the whole of its time again.
+  /// From now on as `config` says; what is done already waits for the whole of its time again where that has changed.
   void configure(const DaemonConfig& config);
   /// That job is done now.
   void done(std::int64_t id);
@@ -46,24 +50,31 @@ class SourceDeletion {
  private:
   using Clock = std::chrono::steady_clock;
   enum class Outcome { over, later };
+  struct Due {
+    Clock::time_point time;
+    std::string watch;  // WatchConfig::label
+  };
 
   void work();
   void take_up();
   void look();
   void arm();
   void wait_until(Clock::time_point time);
+  Outcome try_to_delete(const Job& job, const WatchConfig& watch);
   Outcome look_at(const Job& job, const WatchConfig& watch);
+  void flush_outputs(const Job& job, const WatchConfig& watch) const;
   Outcome remove(const Job& job, const WatchConfig& watch, bool writers_known);
   void removed(const Job& job, const WatchConfig& watch, bool writers_known) const;
-  void finish_interrupted(const Job& job, const WatchConfig& watch) const;
+  Outcome finish_interrupted(const Job& job, const WatchConfig& watch) const;
   void keep(const Job& job, const std::string& reason) const;
   const WatchConfig* deleting_watch(const std::string& label) const;
 
   const JobStore& store_;
   const EventLog& log_;
-  std::vector<WatchConfig> watches_;               ///< those that delete
-  std::map<std::int64_t, Clock::time_point> due_;  ///< by job
-  std::set<std::int64_t> in_use_;                  ///< of which it was said
+  Held held_;
+  std::vector<WatchConfig> watches_;  ///< those that delete
+  std::map<std::int64_t, Due> due_;   ///< by job
+  std::set<std::int64_t> in_use_;     ///< of which it was said
   bool taking_up_ = false;
   std::int64_t taken_up_ = 0;  ///< id of the last job that was looked through
   std::unique_ptr<FileSystem> files_ = make_posix_file_system();

@@ -30,6 +30,13 @@ bool sees_all_changes(int file) {
   return local;
 }
 
+// False in a container: its /proc has its own processes alone.
+bool sees_all_processes() {
+  constexpr ino_t kNamespaceOfTheSystem = 0xEFFFFFFC;  // PROC_PID_INIT_INO of Linux
+  struct stat own {};
+  return ::stat("/proc/self/ns/pid", &own) == 0 && own.st_ino == kNamespaceOfTheSystem;
+}
+
 bool is_process(const fs::path& directory) {
   return directory.filename().string().find_first_not_of("0123456789") == std::string::npos;
 }
@@ -47,8 +54,8 @@ bool may_write(const fs::path& information) {
   return false;
 }
 
-bool has_descriptor(const fs::path& process, const struct stat& file) {
-  std::error_code error;
+// `error` where its descriptors cannot be listed.
+bool has_descriptor(const fs::path& process, const struct stat& file, std::error_code& error) {
   for (fs::directory_iterator at(process / "fd", error), end; !error && at != end; at.increment(error)) {
     struct stat status {};
     if (::stat(at->path().c_str(), &status) != 0) continue;
@@ -101,10 +108,14 @@ FileWriters::FileWriters(const std::string& path) : file_(::open(path.c_str(), O
     some_ = true;
     return;
   }
-  known_ = local && ::geteuid() == 0;  // who may look at all processes
+  known_ = local && ::geteuid() == 0 && sees_all_processes();
   std::error_code error;
   for (fs::directory_iterator at("/proc", error), end; !error && at != end && !some_; at.increment(error)) {
-    if (is_process(at->path())) some_ = has_descriptor(at->path(), status) || has_mapping(at->path(), status);
+    if (!is_process(at->path())) continue;
+    std::error_code unlisted;
+    some_ = has_descriptor(at->path(), status, unlisted) || has_mapping(at->path(), status);
+    const bool ended = unlisted == std::errc::no_such_file_or_directory || unlisted == std::errc::no_such_process;
+    if (unlisted && !ended) known_ = false;
   }
 }
 

@@ -46,6 +46,7 @@ void describe(Archive& archive, S& s) {
     archive.field("scale", s.source.scale);
     archive.field("offset", s.source.offset);
     archive.optional_field("files_digest", s.source.files_digest);
+    archive.optional_field("values", s.source.values);
     archive.optional_field("long_name", s.source.long_name);
     archive.optional_field("component", s.source.component);
     archive.optional_object("level", s.source.level, [&](auto& level) {

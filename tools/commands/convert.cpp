@@ -25,6 +25,7 @@
 #include "format/io/limited_file_system.h"
 #include "format/output/output_files.h"
 #include "gpu/packed/coder_choice.h"
+#include "ingest/file_values.h"
 #include "ingest/plan/limited_source.h"
 #include "ingest/series_names.h"
 #include "ingest/source_registry.h"
@@ -55,6 +56,7 @@ struct ConvertArguments {
   bool skip_done = false;
   bool again = false;
   bool brief_names = false;
+  bool count_values = false;
   bool json = false;
   bool dry_run = false;
 };
@@ -195,6 +197,7 @@ Sidecar convert_step(const SeriesStep& step, const SourceOptions& source_options
       return *std::move(record);
     }
   }
+  if (a.count_values) options.source_values = file_values(step.path, source_options);
   Progress progress(a.progress);
   ConversionControl control = control_of(work, progress);
   control.planned = [&](std::uint64_t bytes) { announce(a.progress, nlohmann::json{{"planned", bytes}}.dump()); };
@@ -347,6 +350,11 @@ void add_convert(CLI::App& app) {
                     "source, the scene or an option has changed or the output is not whole");
   command->add_flag("--again", a->again, "with --skip-done: convert again what is done, too; others' files are left")
       ->needs("--skip-done");
+  command
+      ->add_flag(
+          "--count-values", a->count_values,
+          "for weir watch, which deletes sources of which it has all: the sidecar says how many values the input holds")
+      ->group("");
   command
       ->add_flag("--brief-names", a->brief_names, "for weir watch, whose names say what the volumes of one call need")
       ->group("");

@@ -1,25 +1,20 @@
+// When sources are deleted, and what an interrupted deletion leaves.
 #include "daemon/jobs/source_deletion.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
 
 #include <sys/mman.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <string>
 #include <thread>
+#include <utility>
 
-#include "daemon/jobs/conversion_task.h"
-#include "daemon/store/file_identity.h"
-#include "daemon/watch/file_writers.h"
 #include "format/io/descriptor.h"
-#include "format/sidecar/sidecar.h"
-#include "tests/support/run_command.h"
-#include "tests/support/temporary_directory.h"
+#include "tests/daemon/support/deleting_watch.h"
 
 namespace weir::source_deletion_test {
 namespace {
@@ -27,74 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using std::chrono::milliseconds;
 
-class SourceDeletionTest : public testing::Test {
- protected:
-  SourceDeletionTest() {
-    fs::create_directory(directory_ / "in");
-    fs::create_directory(directory_ / "out");
-    WatchConfig watch;
-    watch.label = "w";
-    watch.directory = directory_ / "in";
-    watch.source = AfterDone::delete_after_verify;
-    watch.delete_after_s = 0.05;
-    config_.watches = {watch};
-    write_file(source_, "values");
-    std::this_thread::sleep_for(milliseconds(20));  // longer than a tick of the clock of files
-    write_output("");
-  }
-
-  void write_output(const std::string& more) const {
-    write_file(output_, "volume");
-    write_file(sidecar_path(output_), "{\"source\": {\"path\": \"" + source_ + "\", \"bytes\": 6, \"mtime\": \"" +
-                                          utc_text(identify(source_)->mtime_ns) + "\"" + more + "}}");
-  }
-  /// The job of the source, done.
-  std::int64_t convert() {
-    const std::int64_t id = store_.observe("w", source_, *identify(source_), options_text(config_.watches[0])).job.id;
-    store_.enqueue(id);
-    store_.start(id);
-    JobResult result;
-    JobOutput output;
-    output.path = output_;
-    output.bytes = 6;
-    result.outputs = {output};
-    store_.finish(id, result);
-    return id;
-  }
-  void delete_done() {
-    deletion_.configure(config_);
-    deletion_.done(convert());
-  }
-  bool run_until(const std::function<bool()>& holds, milliseconds patience = std::chrono::seconds(20)) {
-    const auto end = std::chrono::steady_clock::now() + patience;
-    while (!holds()) {
-      if (std::chrono::steady_clock::now() > end) return false;
-      io_.restart();
-      io_.run_for(milliseconds(5));
-    }
-    return true;
-  }
-  bool stays() {
-    EXPECT_TRUE(run_until([&] { return deletion_.idle(); }));
-    return fs::exists(source_);
-  }
-  std::string hidden(std::int64_t id) const { return directory_ / "in/.weir-delete-" + std::to_string(id); }
-  bool logged(const std::string& text) const { return read_file(directory_ / "log").find(text) != std::string::npos; }
-
-  TemporaryDirectory directory_;
-  std::string source_ = directory_ / "in/a_1x2x3_uint8.raw";
-  std::string output_ = directory_ / "out/a.nvdb";
-  DaemonConfig config_;
-  boost::asio::io_context io_;
-  JobStore store_{directory_ / "weir.db"};
-  ServiceConfig service_ = [this] {
-    ServiceConfig service;
-    service.log_file = directory_ / "log";
-    return service;
-  }();
-  EventLog log_{service_};
-  SourceDeletion deletion_{io_, store_, log_};
-};
+using SourceDeletionTest = DeletingWatch;
 
 TEST_F(SourceDeletionTest, SourceIsDeletedAfterTheDelay) {
   config_.watches[0].delete_after_s = 0.3;
@@ -164,26 +92,6 @@ TEST_F(SourceDeletionTest, ReplacedByOneOfTheSameSizeTimeAndInode_Stays) {
   EXPECT_TRUE(logged(sidecar_path(output_) + " is of another file, or of this one as it was before"));
 }
 
-TEST_F(SourceDeletionTest, WithAnotherSourcesCertificate_Stays) {
-  write_file(sidecar_path(output_), R"({"source": {"path": "/other.raw", "bytes": 6}})");
-  delete_done();
-  EXPECT_TRUE(stays());
-}
-
-TEST_F(SourceDeletionTest, LosslessFileOfRoundedValues_Stays) {
-  write_output(R"(}, "error": {"lossless": true}, "conversion_loss": {"inexact": 2, "overflow": 0)");
-  delete_done();
-  EXPECT_TRUE(stays());
-  EXPECT_TRUE(logged("2 values were rounded to float32, so the output is not lossless"));
-}
-
-TEST_F(SourceDeletionTest, ValuesThatBecameInfinite_Stay) {
-  write_output(R"(}, "error": {"lossless": false}, "conversion_loss": {"inexact": 0, "overflow": 1)");
-  delete_done();
-  EXPECT_TRUE(stays());
-  EXPECT_TRUE(logged("1 value is infinite in float32"));
-}
-
 TEST_F(SourceDeletionTest, SourceThatTheWatchNoLongerTakes_Stays) {
   convert();
   WatchConfig& watch = config_.watches[0];
@@ -201,25 +109,55 @@ TEST_F(SourceDeletionTest, SourceThatTheWatchNoLongerTakes_Stays) {
   EXPECT_TRUE(stays()) << "another directory";
 }
 
-TEST_F(SourceDeletionTest, WithoutItsOutput_Stays) {
+TEST_F(SourceDeletionTest, WhileJobsAreHeld_NothingIsDeleted) {
+  held_ = true;
   delete_done();
-  fs::remove(output_);
-  EXPECT_TRUE(stays());
-  EXPECT_TRUE(logged(output_ + " is not there as it was"));
+  EXPECT_FALSE(run_until([&] { return !fs::exists(source_); }, milliseconds(300)));
+  EXPECT_FALSE(deletion_.idle());
 }
 
-TEST_F(SourceDeletionTest, WithoutACertificate_Stays) {
-  write_file(sidecar_path(output_), "{");
+// logrotate has the service reload: a delay of a week would never end.
+TEST_F(SourceDeletionTest, Reload_GoesOnWaitingUnderTheSameDelay) {
+  config_.watches[0].delete_after_s = 0.6;
   delete_done();
-  EXPECT_TRUE(stays());
-  EXPECT_TRUE(logged(sidecar_path(output_) + " cannot be read"));
+  const auto end = std::chrono::steady_clock::now() + milliseconds(2000);
+  while (fs::exists(source_) && std::chrono::steady_clock::now() < end) {
+    run_until([] { return false; }, milliseconds(50));
+    deletion_.configure(config_);
+  }
+  EXPECT_FALSE(fs::exists(source_));
 }
 
-TEST_F(SourceDeletionTest, ValuesInSeveralFiles_Stay) {
-  write_output(", \"files_digest\": \"0123456789abcdef\"");
+TEST_F(SourceDeletionTest, Reload_WaitsAgainUnderAnotherDelay) {
+  config_.watches[0].delete_after_s = 0.2;
   delete_done();
-  EXPECT_TRUE(stays());
-  EXPECT_TRUE(logged("its values lie in several files, which other headers may name"));
+  config_.watches[0].delete_after_s = 3600;
+  deletion_.configure(config_);
+  EXPECT_FALSE(run_until([&] { return !fs::exists(source_); }, milliseconds(500)));
+}
+
+// One whose hidden name is taken keeps none of those behind it waiting.
+TEST_F(SourceDeletionTest, WhatCannotBeDeleted_IsSaidAndTheNextOneGoes) {
+  const std::int64_t id = convert();
+  write_file(hidden(id), "left by another deletion");
+  const std::string first = std::exchange(source_, directory_ / "in/b_1x2x3_uint8.raw");
+  output_ = directory_ / "out/b.nvdb";
+  write_file(source_, "others");
+  std::this_thread::sleep_for(milliseconds(20));
+  write_output("");
+  convert();
+  deletion_.configure(config_);
+  EXPECT_FALSE(stays());
+  EXPECT_TRUE(fs::exists(first));
+  EXPECT_EQ(read_file(hidden(id)), "left by another deletion");
+}
+
+TEST_F(SourceDeletionTest, MarkerThatCannotBeRemoved_IsSaid) {
+  config_.watches[0].complete = Completion::marker;
+  fs::create_directories(source_ + ".done/not empty");
+  delete_done();
+  EXPECT_FALSE(stays());
+  EXPECT_TRUE(logged(" marker-stays job=1 reason="));
 }
 
 // Its certificate may be of one file: where the hierarchy has no chunk yet.
@@ -254,6 +192,27 @@ TEST_F(SourceDeletionTest, LeftUnderTheHiddenName_IsDeletedByTheNextProcess) {
   EXPECT_TRUE(logged(" deleted job=1 source=" + source_));
 }
 
+TEST_F(SourceDeletionTest, LeftUnderTheHiddenNameWithoutItsOutput_GetsItsNameBack) {
+  const std::int64_t id = convert();
+  fs::rename(source_, hidden(id));
+  fs::remove(output_);
+  deletion_.configure(config_);
+  EXPECT_TRUE(stays());
+  EXPECT_EQ(read_file(source_), "values");
+  EXPECT_TRUE(logged(output_ + " is not there as it was; let its job be done again (weir retry --force 1)"));
+}
+
+TEST_F(SourceDeletionTest, LeftUnderTheHiddenNameWhoseNameIsTaken_IsSaid) {
+  const std::int64_t id = convert();
+  fs::rename(source_, hidden(id));
+  fs::remove(output_);
+  write_file(source_, "newer");
+  deletion_.configure(config_);
+  EXPECT_TRUE(stays());
+  EXPECT_EQ(read_file(hidden(id)), "values");
+  EXPECT_TRUE(logged(hidden(id) + " is the source, which a deletion that was interrupted has left; give it a name"));
+}
+
 TEST_F(SourceDeletionTest, AnotherFileUnderTheHiddenName_GetsItsNameBack) {
   const std::int64_t id = convert();
   fs::remove(source_);
@@ -279,22 +238,6 @@ TEST_F(SourceDeletionTest, WatchThatKeepsSources_DeletesNothing) {
   config_.watches[0].source = AfterDone::keep;
   delete_done();
   EXPECT_TRUE(deletion_.idle());
-}
-
-// The other way to find them, where no lease is to be had.
-TEST(FileWritersTest, AnotherUsersFile_IsLookedUpAmongTheProcesses) {
-  const TemporaryDirectory directory;
-  const std::string path = directory / "a.raw";
-  write_file(path, "values");
-  if (::geteuid() != 0) GTEST_SKIP() << "only root has other users' files";
-  ASSERT_EQ(::chmod(directory.path().c_str(), 0755), 0);
-  ASSERT_EQ(::chmod(path.c_str(), 0666), 0);
-  ASSERT_EQ(::seteuid(65534), 0);
-  EXPECT_FALSE(FileWriters(path).some());
-  EXPECT_FALSE(FileWriters(path).known());
-  ASSERT_EQ(::seteuid(0), 0);
-  Descriptor writer(::open(path.c_str(), O_RDWR | O_CLOEXEC));
-  EXPECT_TRUE(FileWriters(path).some());
 }
 
 }  // namespace

@@ -163,6 +163,9 @@ TEST(WatchControl, Retry_DoneJob_ConvertsAgainOnlyWithForce) {
   ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" info done ") == 4; })) << service.log();
   EXPECT_EQ(service.logged("converted=yes"), 2U);
   EXPECT_EQ(service.logged("converted=\"no, done already\""), 2U) << service.log();
+  fs::remove(service.in(name + ".raw"));
+  EXPECT_EQ(service.post(retry)["error"], "job 1 is done, and its source is gone: nothing to retry");
+  EXPECT_EQ(service.count("done"), 1U);
 }
 
 TEST(WatchControl, ABadReloadChangesNothingAndAGoodOneTakesEffect) {

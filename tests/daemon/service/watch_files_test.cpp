@@ -220,6 +220,31 @@ TEST_P(WatchFiles, SourceIsConvertedOnlyAfterItsMarkerAppears) {
       << "the source and its marker are deleted";
 }
 
+// A text file of VTK with 4^3 values of each array.
+std::string vtk_file(const std::vector<std::string>& arrays) {
+  std::string text =
+      "# vtk DataFile Version 3.0\nfields\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 4 4 4\nORIGIN 0 0 0\n"
+      "SPACING 1 1 1\nPOINT_DATA 64\n";
+  for (const std::string& name : arrays) {
+    text += cat("SCALARS ", name, " float 1\nLOOKUP_TABLE default\n");
+    for (int i = 0; i < 64; ++i) text += cat(i, i % 16 == 15 ? "\n" : " ");
+  }
+  return text;
+}
+
+TEST(WatchDeletion, AFileWithAnotherFieldStays) {
+  ServiceHarness service(
+      "", "settle = 0.05\ndataset = \"density\"\nsource = \"delete-after-verify\"\ndelete_after = 0.2\n");
+  service.start();
+  write_file(service.in("one.vtk"), vtk_file({"density"}));
+  write_file(service.in("two.vtk"), vtk_file({"density", "pressure"}));
+  ASSERT_TRUE(service.eventually_done(2)) << service.log();
+  EXPECT_TRUE(ServiceHarness::eventually([&] { return service.logged(" not-deleted ") == 1; })) << service.log();
+  EXPECT_EQ(service.logged("its outputs have 64 of the 128 values in it, "), 1U) << service.log();
+  EXPECT_TRUE(ServiceHarness::eventually([&] { return !fs::exists(service.in("one.vtk")); })) << service.log();
+  EXPECT_TRUE(fs::exists(service.in("two.vtk")));
+}
+
 /// The kernel's limit on queued events, the whole machine's, made small while this lives: for a moment only, since a
 /// queue keeps the limit that it was made with, and a test that is killed meanwhile leaves it so.
 class SmallQueue {
