@@ -193,7 +193,10 @@ Sidecar convert_volume(VolumeSource& source, const ConversionOptions& options, c
   OutputFiles output(files, options.output, options.overwrite);
   WorkDirectory work(files, options.output, options.work_dir);
   std::unique_ptr<Journal> journal;
-  if (team.alone()) journal = open_journal(source.info(), options, control, output, files);
+  // Several processes have none: what one left to be continued is removed, as for any conversion without it.
+  if (team.alone() || options.resume == Resume::off) {
+    journal = open_journal(source.info(), options, control, output, files);
+  }
   std::vector<std::string> begun =
       journal ? journal->paths() : std::vector<std::string>{hidden_directory_of(options.output)};
   begun.push_back(options.output + ".partial");  // the lock last: who has it may begin

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <exception>
+#include <string>
 #include <utility>
 
 #include "bindings/mpi/mpi_file_system.h"
 #include "compressor/push/spool_source.h"
+#include "compressor/resume/journal.h"
 #include "format/base/box_set.h"
 #include "format/base/text.h"
 #include "ingest/plan/strided_copy.h"
@@ -81,7 +83,18 @@ PushedBoxes::PushedBoxes(SourceInfo info, const ConversionOptions& options, cons
       work_(*shared_, options.output, options.work_dir),
       values_(work_.spill()),
       states_(work_.spill()),
-      spool_(values_, states_, make_lattice(info_.domain(), kLeafDim), info_.type) {}
+      spool_(values_, states_, make_lattice(info_.domain(), kLeafDim), info_.type) {
+  bool removed = false;
+  team_.lead([&] {
+    removed = remove_leftovers(*local_, options_.output);
+    const std::string hidden = hidden_directory_of(options_.output);
+    if (work_.path() != hidden) remove_if_empty(*local_, hidden);
+  });
+  team_.follow(removed);
+  if (removed && control_.notice) {
+    control_.notice(cat(options_.output, ": what an interrupted conversion of it had left is removed"));
+  }
+}
 
 void PushedBoxes::box(const Box& box, const void* data, const std::array<std::int64_t, 3>& stride) {
   if (failure_) throw Error(*failure_);
@@ -111,26 +124,22 @@ void PushedBoxes::box(const Box& box, const void* data, const std::array<std::in
   }
 }
 
-// Each voxel once: boxes without a voxel in common, whose voxels are as many as the volume's.
+// Each voxel once.
 void PushedBoxes::check_complete() {
   std::vector<Box> all = given_;
   team_.concatenate(all);
-  BoxSet known;
-  for (const Box& box : all) {
-    std::int64_t unknown = 0;
-    for (const Box& part : known.missing_from(box)) unknown += part.voxels();
-    if (unknown != box.voxels()) {
-      throw Error(ErrorKind::usage, cat(info_.path, ": voxels of the box ", box_text(box, info_.index_origin),
-                                        " were given twice; give each voxel once"));
-    }
-    known.add(box);
+  const Coverage found = coverage_of(info_.domain(), all);
+  if (found.repeated) {
+    throw Error(ErrorKind::usage,
+                cat(info_.path, ": voxels of the box ", box_text(all[*found.repeated], info_.index_origin),
+                    " were given twice; give each voxel once"));
   }
-  const std::vector<Box> missing = known.missing_from(info_.domain());
-  if (missing.empty()) return;
+  if (found.missing.empty()) return;
   std::int64_t voxels = 0;
-  for (const Box& box : missing) voxels += box.voxels();
-  throw Error(ErrorKind::usage, cat(info_.path, ": ", voxels, voxels == 1 ? " voxel is" : " voxels are",
-                                    " missing, those of ", box_text(missing.front(), info_.index_origin), " first"));
+  for (const Box& box : found.missing) voxels += box.voxels();
+  throw Error(ErrorKind::usage,
+              cat(info_.path, ": ", voxels, voxels == 1 ? " voxel is" : " voxels are", " missing, those of ",
+                  box_text(found.missing.front(), info_.index_origin), " first"));
 }
 
 Sidecar PushedBoxes::end() {

@@ -27,7 +27,8 @@ namespace weir {
 class PushedBoxes {
  public:
   /// `info` as for PushedVolume; options.memory is what weir takes in each process besides what that holds. Takes the
-  /// output's lock. Throws Error as convert_volume does.
+  /// output's lock and removes what an interrupted conversion of it had left, with a notice. Throws Error as
+  /// convert_volume does.
   PushedBoxes(SourceInfo info, const ConversionOptions& options, const ConversionControl& control, MpiTeam& team);
   PushedBoxes(const PushedBoxes&) = delete;
   PushedBoxes& operator=(const PushedBoxes&) = delete;

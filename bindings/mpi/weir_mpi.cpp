@@ -50,6 +50,8 @@ void add_convert(CLI::App& app, Arguments& a) {
   weir::add_log_level(command);
 }
 
+void say(const weir::Message& line) { spdlog::warn("{}", line.text()); }
+
 void convert(const CLI::App& command, const Arguments& a, weir::MpiTeam& team) {
   const std::size_t processors = team.own_cores();
   weir::ConversionOptions options;
@@ -61,6 +63,8 @@ void convert(const CLI::App& command, const Arguments& a, weir::MpiTeam& team) {
     options.resume = weir::Resume::off;  // what is interrupted is lost, by one process as by many
     options.processors = processors;
     options.provenance = {WEIR_VERSION, weir::build_commit(), weir::given_options(command, a.options)};
+    request.source.cancel = &weir::interrupt_flag();
+    if (team.leads()) request.source.notice = say;
     request.source.spool_directory = options.work_dir.empty() ? weir::directory_of(a.output) : options.work_dir;
     source = weir::open_source(a.input, request.source);
   });
@@ -72,7 +76,7 @@ void convert(const CLI::App& command, const Arguments& a, weir::MpiTeam& team) {
       progress.start(pass, bytes / static_cast<std::uint64_t>(team.size()));  // of this process's share
     };
     control.pass_advanced = [&](std::uint64_t done) { progress.update(done); };
-    control.notice = [](const weir::Message& line) { spdlog::warn("{}", line.text()); };
+    control.notice = say;
   }
   const std::unique_ptr<weir::FileSystem> local = weir::make_posix_file_system();
   const std::unique_ptr<weir::FileSystem> shared = weir::make_mpi_file_system(team, *local);

@@ -232,6 +232,17 @@ struct Attempts {
     return true;
   }
 
+  // Whether more is asked than by the default, which nobody did.
+  bool raised() const {
+    return asked.budget.kind == Budget::Kind::automatic && request.budget.kind != asked.budget.kind;
+  }
+
+  // The default's own file, whatever it keeps, from the first attempt on again.
+  void keep_default() {
+    begin_again();
+    request.budget.target = 0;
+  }
+
  private:
   // Where only a bound of the float file's error is known, the file is planned if that does not decide.
   bool loses_more_than_float(const EncodedFile& encoded) const {
@@ -244,11 +255,17 @@ struct Attempts {
     return file.encoding == Encoding::float32 || error > file.float_error;
   }
 
-  // Of a volume that the default rate would destroy more is kept, from the first attempt on again.
-  void raise_quality() {
+  void begin_again() {
+    const auto window = request.packed.window;  // of the ladders that there are
     request = asked;
+    request.packed.window = window;
     number = -1;
     met.reset();
+  }
+
+  // Of a volume that the default rate would destroy more is kept, from the first attempt on again.
+  void raise_quality() {
+    begin_again();
     const auto dense = static_cast<std::uint64_t>(request.domain.voxels()) * sizeof(float);
     if (request.encoding == Encoding::automatic || request.encoding == Encoding::float32) {
       request.budget.kind = Budget::Kind::lossless;
@@ -298,8 +315,13 @@ EncodedFile encode_file(const EncodeJob& job, FileRequest request) {
       job.journal->state.attempt = {attempts.number, attempts.request.planned_error, attempts.request.encoding,
                                     job.seen, attempts.met};
     }
-    EncodedFile encoded = encode_once(job, attempts.request);
-    if (!attempts.adjust(encoded)) return encoded;
+    try {
+      EncodedFile encoded = encode_once(job, attempts.request);
+      if (!attempts.adjust(encoded)) return encoded;
+    } catch (const Error& error) {  // on all ranks
+      if (error.kind() != ErrorKind::budget || !attempts.raised()) throw;
+      attempts.keep_default();
+    }
   }
 }
 

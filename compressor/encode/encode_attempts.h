@@ -52,6 +52,7 @@ struct EncodeJob {
 };
 
 /// Plans, encodes and, where an error target is missed or left far behind, does so again with another expected error.
+/// Where the default rate gave way to more than the encoding can keep, it is that rate's file in the end.
 EncodedFile encode_file(const EncodeJob& job, FileRequest request);
 
 }  // namespace weir

@@ -1,10 +1,15 @@
 #include "format/base/box_set.h"
 
+#include <algorithm>
 #include <array>
-#include <optional>
+#include <numeric>
+#include <tuple>
+#include <utility>
 
 namespace weir {
 namespace {
+
+constexpr std::array<std::int64_t Index3::*, 3> kBoxAxes{&Index3::x, &Index3::y, &Index3::z};
 
 // The box of both where they share a whole side.
 std::optional<Box> joined(const Box& a, const Box& b) {
@@ -32,6 +37,72 @@ void cut(const Box& box, const Box& hole, std::vector<Box>& rest) {
     if (!side.empty()) rest.push_back(side);
   }
 }
+
+// Halves a box, and its halves, until each part lies in all of the boxes that reach into it: as a k-d tree is built, at
+// the middle one of their faces, so that the borders of a regular decomposition cut none of them.
+class CoverageSearch {
+ public:
+  explicit CoverageSearch(std::span<const Box> boxes) : boxes_(boxes), repeated_(boxes.size()) {}
+
+  Coverage run(const Box& whole) {
+    std::vector<std::size_t> all(boxes_.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    search(whole, those_in(whole, all));
+    if (repeated_ < boxes_.size()) return {repeated_, {}};
+    std::vector<Box> missing = missing_.boxes();
+    std::ranges::sort(missing, {}, [](const Box& box) { return std::tuple(box.lo.z, box.lo.y, box.lo.x); });
+    return {std::nullopt, std::move(missing)};
+  }
+
+ private:
+  // `reaching`: ascending indices of the boxes that reach into `part`.
+  void search(const Box& part, const std::vector<std::size_t>& reaching) {
+    if (repeated_ < boxes_.size() && reaching.size() < 2) return;
+    if (reaching.empty()) return missing_.add(part);
+    Box low = part;
+    Box high = part;
+    if (!halve(reaching, low, high)) {
+      if (reaching.size() > 1) repeated_ = reaching[1];
+      return;
+    }
+    search(low, those_in(low, reaching));
+    search(high, those_in(high, reaching));
+  }
+
+  // Without those that do not matter any more, since another box before them is known to be repeated.
+  std::vector<std::size_t> those_in(const Box& part, const std::vector<std::size_t>& among) const {
+    std::vector<std::size_t> reaching;
+    for (const std::size_t i : among) {
+      if (i < repeated_ && !intersect(boxes_[i], part).empty()) reaching.push_back(i);
+    }
+    return reaching;
+  }
+
+  // `low` and `high` are one box, and become halves of it; false where no face of a box lies inside.
+  bool halve(const std::vector<std::size_t>& reaching, Box& low, Box& high) {
+    for (std::vector<std::int64_t>& faces : faces_) faces.clear();
+    for (const std::size_t i : reaching) {
+      for (std::size_t a = 0; a < kBoxAxes.size(); ++a) {
+        const auto axis = kBoxAxes[a];
+        for (const std::int64_t face : {boxes_[i].lo.*axis, boxes_[i].hi.*axis}) {
+          if (face > low.lo.*axis && face < low.hi.*axis) faces_[a].push_back(face);
+        }
+      }
+    }
+    const auto most = std::ranges::max_element(faces_, {}, [](const auto& faces) { return faces.size(); });
+    if (most->empty()) return false;
+    const auto middle = most->begin() + std::ssize(*most) / 2;
+    std::ranges::nth_element(*most, middle);
+    const auto axis = kBoxAxes[static_cast<std::size_t>(most - faces_.begin())];
+    low.hi.*axis = high.lo.*axis = *middle;
+    return true;
+  }
+
+  std::span<const Box> boxes_;
+  std::size_t repeated_;  // the first one that is known; as many as there are boxes: none
+  BoxSet missing_;
+  std::array<std::vector<std::int64_t>, 3> faces_;  // room for halve()
+};
 
 }  // namespace
 
@@ -61,5 +132,7 @@ std::vector<Box> BoxSet::missing_from(const Box& box) const {
   }
   return rest;
 }
+
+Coverage coverage_of(const Box& whole, std::span<const Box> boxes) { return CoverageSearch(boxes).run(whole); }
 
 }  // namespace weir

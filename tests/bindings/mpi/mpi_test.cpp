@@ -278,6 +278,47 @@ TEST_F(Mpi, PushOfMissingOrRepeatedVoxels_IsRefused) {
           "end: 2 memory: 1000 voxels are missing, those of 10:20,20:30,30:40 first\n");
 }
 
+// As `weir convert --resume on` leaves it where it is killed.
+TEST_F(Mpi, WorkOfAnInterruptedConversion_IsRemoved) {
+  const std::string cloud = sample("cloud", "20x30x40", "float32");
+  const auto leave_work = [&](const std::string& output) {
+    const fs::path hidden = directory_ / cat('.', output, ".work");
+    fs::create_directory(hidden);
+    for (const char* name : {"journal", "rows", "volume"}) write_file(hidden / name, "left");
+  };
+  for (const int processes : {1, 3}) {
+    SCOPED_TRACE(processes);
+    leave_work("mpi.nvdb");
+    const CommandResult made =
+        run_mpi(processes, {WEIR_MPI_COMMAND, "convert", cloud, "-o", "mpi.nvdb", "--lossless"}, directory_.path());
+    EXPECT_EQ(made.exit_code, 0) << made.err;
+    EXPECT_NE(made.err.find("mpi.nvdb: what an interrupted conversion of it had left is removed\n"), std::string::npos)
+        << made.err;
+    leave_work("pushed.nvdb");
+    const CommandResult pushed =
+        push(processes, cloud, {"20", "30", "40", "10"}, {cat(WEIR_BUDGET_LOSSLESS), "0"}, "all");
+    EXPECT_EQ(pushed.out, "end: 0 \nafter: the push has ended; begin another\n") << pushed.err;
+    std::vector<std::string> left = leftovers();
+    std::sort(left.begin(), left.end());
+    EXPECT_EQ(left, (std::vector<std::string>{"mpi.nvdb", "mpi.nvdb.json", "pushed.nvdb", "pushed.nvdb.json"}));
+    for (const std::string& name : left) fs::remove_all(directory_ / name);
+  }
+}
+
+TEST_F(Mpi, NoticeOfTheSource_IsSaidOnce) {
+  std::string bytes = serial(sample("cloud", "20x30x40", "float32"), {"--lossless"});
+  const std::size_t name = bytes.rfind("density");  // the grid's own, behind that of the file's head
+  ASSERT_NE(name, std::string::npos);
+  bytes[name] = 'D';
+  write_file(directory_ / "changed.nvdb", bytes);
+  const CommandResult made =
+      run_mpi(3, {WEIR_MPI_COMMAND, "convert", "changed.nvdb", "-o", "mpi.nvdb", "--lossless"}, directory_.path());
+  EXPECT_EQ(made.exit_code, 0) << made.err;
+  const std::string notice = " has another head than its checksum is of: ";
+  EXPECT_NE(made.err.find(notice), std::string::npos) << made.err;
+  EXPECT_EQ(made.err.find(notice), made.err.rfind(notice)) << made.err;
+}
+
 TEST_F(Mpi, ExampleSavesTheSameBytesForAnyNumberOfProcesses) {
   for (const int processes : {1, 3}) {
     fs::create_directory(directory_ / cat(processes));

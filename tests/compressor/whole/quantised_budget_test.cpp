@@ -157,6 +157,27 @@ TEST(QuantisedBudget, TheSmallestTreeHoldsTheCornersAtOneBit) {
   }
 }
 
+// Levels of 8 bits and more are too near to each other for float.
+TEST(QuantisedBudget, DefaultOfAVolumeThatCannotReach40Decibels_IsTheRate) {
+  const Box domain{{0, 0, 0}, {32, 32, 32}};
+  MemoryVolume volume(
+      domain, [&](const Index3& i) { return 1e-35F * std::sin(static_cast<float>(linear_index(i, domain.hi))); });
+  for (const Encoding encoding : {Encoding::fpn, Encoding::fp8, Encoding::fp16}) {
+    SCOPED_TRACE(encoding_name(encoding));
+    ConversionOptions options;
+    options.encoding = encoding;
+    const Converted made = test::convert(volume, options);
+    EXPECT_EQ(made.sidecar.budget.kind, "minimum");
+    EXPECT_LT(made.sidecar.error.psnr_db, 40);
+    ASSERT_EQ(made.notices.size(), 2U);
+    EXPECT_TRUE(made.notices[1].starts_with("out.nvdb: no budget was given, and rate ")) << made.notices[1];
+    EXPECT_TRUE(made.file == test::convert_to(volume, options, test::minimum_size(volume, options)).file);
+    options.budget.kind = Budget::Kind::psnr;
+    options.budget.target = 40;
+    EXPECT_THROW(test::convert(volume, options), Error) << "asked for, it is refused";
+  }
+}
+
 TEST(QuantisedBudget, KeptNonFiniteVoxelsRefuseQuantisation) {
   MemoryVolume volume(kDomain, [](const Index3& i) { return i.x == 3 ? kInf : i.y == 5 ? kNaN : 1.5F; });
   ConversionOptions options;
