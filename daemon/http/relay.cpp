@@ -3,6 +3,7 @@
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/error.hpp>
 #include <boost/asio/write.hpp>
+#include <type_traits>
 #include <utility>
 
 #include "daemon/http/http_message.h"
@@ -23,15 +24,17 @@ std::string refusal() {
 
 }  // namespace
 
-Relay::Relay(Client client, std::string request, Ended ended)
+Relay::Relay(Client client, std::string request, Ended ended, std::chrono::milliseconds taking)
     : client_(std::move(client)),
       server_(client_.get_executor()),
       limit_(client_.get_executor()),
+      taken_(client_.get_executor()),
+      taking_(taking),
       request_(std::move(request)),
       ended_(std::move(ended)) {}
 
 void Relay::start(const asio::ip::tcp::endpoint& server, std::optional<std::chrono::milliseconds> limit) {
-  if (limit) end_within(*limit);
+  if (limit) end_within(limit_, *limit);
   server_.async_connect(server, [self = shared_from_this()](const error_code& error) {
     if (self->closed_) return;
     if (error) return self->refuse();
@@ -47,17 +50,21 @@ void Relay::start(const asio::ip::tcp::endpoint& server, std::optional<std::chro
 }
 
 // The next piece is read when the one before is written: who does not read slows the other side, and fills no memory.
+// While a client that takes nothing is written to, the end of the server is not seen: its time is limited.
 template <typename From, typename To>
 void Relay::pump(From& from, To& to, Piece& piece) {
+  constexpr bool kToClient = std::is_same_v<To, Client>;
   from.async_read_some(asio::buffer(piece),
                        [self = shared_from_this(), &from, &to, &piece](const error_code& error, std::size_t bytes) {
                          if (self->closed_) return;
                          if (error == asio::error::eof) return self->finish(to);
                          if (error) return self->end();
+                         if constexpr (kToClient) self->end_within(self->taken_, self->taking_);
                          asio::async_write(to, asio::buffer(piece, bytes),
                                            [self, &from, &to, &piece](const error_code& failure, std::size_t) {
                                              if (self->closed_) return;
                                              if (failure) return self->end();
+                                             if constexpr (kToClient) self->taken_.cancel();
                                              self->pump(from, to, piece);
                                            });
                        });
@@ -69,12 +76,12 @@ void Relay::finish(To& to) {
   if (++finished_ == 2) return end();
   error_code ignored;
   to.shutdown(asio::socket_base::shutdown_send, ignored);
-  if (limit_.expiry() <= std::chrono::steady_clock::now()) end_within(kHalfClosed);
+  if (limit_.expiry() <= std::chrono::steady_clock::now()) end_within(limit_, kHalfClosed);
 }
 
-void Relay::end_within(std::chrono::milliseconds limit) {
-  limit_.expires_after(limit);
-  limit_.async_wait([self = shared_from_this()](const error_code& error) {
+void Relay::end_within(asio::steady_timer& timer, std::chrono::milliseconds limit) {
+  timer.expires_after(limit);
+  timer.async_wait([self = shared_from_this()](const error_code& error) {
     if (!error && !self->closed_) self->end();
   });
 }
@@ -90,6 +97,7 @@ void Relay::close() {
   closed_ = true;
   error_code ignored;
   limit_.cancel(ignored);
+  taken_.cancel(ignored);
   client_.close(ignored);
   server_.close(ignored);
 }

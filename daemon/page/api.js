@@ -2,9 +2,10 @@
 
 let token = sessionStorage.getItem("weir-token") ?? "";
 
+/** Without the blanks that a paste may bring. */
 export function set_token(text) {
-  token = text;
-  sessionStorage.setItem("weir-token", text);
+  token = text.trim();
+  sessionStorage.setItem("weir-token", token);
 }
 
 /** What went wrong; status 0: no answer came. `answer`: what else the service said. */

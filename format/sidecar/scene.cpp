@@ -19,7 +19,8 @@ constexpr std::array kModes{RenderMode::path, RenderMode::dvr, RenderMode::iso, 
 constexpr Bounds kUnit{0, 1};
 constexpr Bounds kRadiance{0, 1e6};
 constexpr Bounds kFloats{-std::numeric_limits<float>::max(), std::numeric_limits<float>::max()};
-constexpr Bounds kCoordinate{-1e15, 1e15};
+constexpr Bounds kDirection{-1e15, 1e15};
+constexpr Bounds kPlace{-1e60, 1e60};  // in the world, however large its voxels are; make_camera counts in voxels
 
 const toml::table& as_table(const TomlReader& reader, const toml::node& node, std::string_view key) {
   if (!node.is_table()) reader.fail(node, cat(key, " must be a table"));
@@ -31,9 +32,9 @@ void check_not_zero(const TomlReader& reader, const toml::node& node, std::strin
 }
 
 void read_camera(TomlReader reader, SceneCamera& camera) {
-  reader.read("position", camera.position, kCoordinate);
-  reader.read("look_at", camera.look_at, kCoordinate);
-  if (reader.read("up", camera.up, kCoordinate)) check_not_zero(reader, *reader.find("up"), "up", camera.up);
+  reader.read("position", camera.position, kPlace);
+  reader.read("look_at", camera.look_at, kPlace);
+  if (reader.read("up", camera.up, kDirection)) check_not_zero(reader, *reader.find("up"), "up", camera.up);
   reader.read("azimuth", camera.azimuth, {-3600, 3600});
   reader.read("elevation", camera.elevation, {-90, 90});
   reader.read("zoom", camera.zoom, {0.01, 100});
@@ -154,7 +155,7 @@ void read_lighting(TomlReader reader, SceneLighting& lighting) {
 
 SceneLight read_light(TomlReader reader, const toml::node& node) {
   SceneLight light{};
-  if (!reader.read("direction", light.direction, kCoordinate)) reader.fail(node, "a light needs a direction");
+  if (!reader.read("direction", light.direction, kDirection)) reader.fail(node, "a light needs a direction");
   check_not_zero(reader, *reader.find("direction"), "direction", light.direction);
   reader.read("irradiance", light.irradiance, kRadiance);
   reader.finish();

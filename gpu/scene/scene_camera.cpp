@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string_view>
 
 #include "format/base/error.h"
 #include "format/base/text.h"
@@ -12,7 +13,8 @@ namespace weir {
 
 namespace {
 
-constexpr double kMargin = 0.94;  // share of the picture that the box may fill
+constexpr double kMargin = 0.94;    // share of the picture that the box may fill
+constexpr double kFarthest = 1e15;  // voxels: tracers count in floats, whose squares must stay finite
 
 Double3 operator+(const Double3& a, const Double3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
 Double3 operator-(const Double3& a, const Double3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
@@ -85,21 +87,26 @@ AzimuthFrame azimuth_frame(const Double3& up, double degrees) {
 }
 
 Camera make_camera(const SceneCamera& scene, const GridFrame& frame, std::span<const Box> content, double aspect) {
-  const auto from_world = [&](const Double3& world) {
+  const auto from_world = [&](const Double3& world, std::string_view key) {
     Double3 index{};
-    for (std::size_t a = 0; a < 3; ++a) index[a] = (world[a] - frame.origin[a]) / frame.voxel_size[a] + 0.5;
+    for (std::size_t a = 0; a < 3; ++a) {
+      index[a] = (world[a] - frame.origin[a]) / frame.voxel_size[a] + 0.5;
+      if (std::abs(index[a]) <= kFarthest) continue;
+      throw Error(ErrorKind::usage, cat("the camera's ", key, ", (", world[0], ", ", world[1], ", ", world[2],
+                                        "), is farther than ", kFarthest, " voxels from the volume; move it closer"));
+    }
     return frame.physical(index);
   };
   const double tan_y = std::tan(scene.fov * std::numbers::pi / 360);
   const double tan_x = tan_y * aspect;
   const Double3 up = unit(scene.up);
-  const Double3 target = scene.look_at ? from_world(*scene.look_at) : centre(frame, content);
+  const Double3 target = scene.look_at ? from_world(*scene.look_at, "look_at") : centre(frame, content);
 
   Double3 position;
   Double3 forward;
   Double3 right;
   if (scene.position) {
-    position = from_world(*scene.position);
+    position = from_world(*scene.position, "position");
     const Double3 view = target - position;
     if (!(length(view) > 0)) {
       throw Error(ErrorKind::usage, cat("the camera stands at the point it looks at, (", (*scene.position)[0], ", ",

@@ -39,7 +39,8 @@ struct AzimuthFrame {
 AzimuthFrame azimuth_frame(const Double3& up, double degrees);
 
 /// `aspect` is width / height. An orbiting camera stands where the boxes `content` (voxels, not
-/// empty) fill the picture but for a small margin. Throws Error(usage) where position and look_at coincide.
+/// empty) fill the picture but for a small margin. Throws Error(usage) where position and look_at coincide, or one of
+/// them is farther than 1e15 voxels away.
 Camera make_camera(const SceneCamera& scene, const GridFrame& frame, std::span<const Box> content, double aspect);
 
 }  // namespace weir

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/signal_set.hpp>
-#include <csignal>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -23,6 +21,7 @@
 #include "tools/options/table_options.h"
 #include "tools/report/progress.h"
 #include "tools/report/standard_output.h"
+#include "tools/view/base/stop_signals.h"
 #include "tools/view/memory_check.h"
 #include "tools/view/source_preview.h"
 #include "tools/view/view_server.h"
@@ -136,6 +135,7 @@ void view(const ViewArguments& arguments) {
   if (is_source(arguments.input)) {
     preview.emplace(arguments.input, arguments.source, arguments.work_dir, choice.memory.ceiling, arguments.progress);
     settings.preview_of = arguments.input;
+    settings.render_input = dense_words(arguments.input, arguments.source);
   }
   std::optional<SourcePreview> compared;
   if (!arguments.against.empty() && is_source(arguments.against)) {
@@ -162,13 +162,7 @@ void view(const ViewArguments& arguments) {
   }
 
   boost::asio::io_context io;
-  boost::asio::signal_set signals(io, SIGINT, SIGTERM);
-  struct sigaction hang_up {};
-  if (::sigaction(SIGHUP, nullptr, &hang_up) == 0 && hang_up.sa_handler != SIG_IGN)
-    signals.add(SIGHUP);  // but for nohup
-  signals.async_wait([&](boost::system::error_code error, int) {
-    if (!error) io.stop();
-  });
+  const StopSignals signals(io, [&] { io.stop(); });
   // What cannot be read at all ends the command, and not a person's patience.
   for (const std::string& fault : begin_with_readable(files)) {
     spdlog::warn("{}; the page begins with {}", fault, files.steps.front());

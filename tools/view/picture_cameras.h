@@ -23,6 +23,8 @@ class PictureCameras {
   /// for the next time; those of a file that has none are gathered, which decodes all of it. Any thread may ask. Throws
   /// as RenderSetup; where the scene's region shows nothing, the camera is of the whole volume.
   Camera camera(const std::shared_ptr<const NvdbFile>& file, const Scene& scene, const RenderOptions& options);
+  /// The macrocells of the file, kept likewise. Any thread may ask.
+  std::shared_ptr<const MacrocellGrid> cells_of(const std::shared_ptr<const NvdbFile>& file);
 
  private:
   struct Entry {
@@ -30,8 +32,6 @@ class PictureCameras {
     std::shared_ptr<const MacrocellGrid> cells;
   };
   static constexpr std::size_t kMost = 2;  // a file, and the one it is compared with
-
-  std::shared_ptr<const MacrocellGrid> cells_of(const std::shared_ptr<const NvdbFile>& file);
 
   const std::int64_t cell_;
   std::mutex mutex_;

@@ -9,8 +9,10 @@
 #include "compressor/conversion.h"
 #include "compressor/options/conversion_request.h"
 #include "format/base/error.h"
+#include "format/base/text.h"
 #include "format/io/file_system.h"
 #include "format/io/real_path.h"
+#include "ingest/source/convert_command.h"
 #include "ingest/source_registry.h"
 #include "tools/command.h"
 #include "tools/options/given_options.h"
@@ -31,6 +33,22 @@ bool is_source(const std::string& path) {
   } catch (const Error&) {  // a directory that is no input, as one of .nvdb files: find_viewed_files says what it is
     return false;
   }
+}
+
+std::string dense_words(const std::string& source, const GivenOptions& given) {
+  std::string text = cat(shell_word(source.starts_with('-') ? "./" + source : source), " --volume dense");
+  for (const ConversionOption& option : input_options()) {
+    const auto found = given.find(option.row.key);
+    if (found == given.end() || found->second.empty()) continue;
+    if (option.row.flag()) {
+      if (found->second == "true") text += cat(" --", option.row.key);
+      continue;
+    }
+    for (const std::string& value : split(found->second, '\n')) {  // of one that is given more than once
+      text += cat(" --", option.row.key, '=', shell_word(value));
+    }
+  }
+  return text;
 }
 
 SourcePreview::SourcePreview(const std::string& source, const GivenOptions& given, const std::string& work_dir,

@@ -16,6 +16,10 @@ namespace weir {
 /// Whether `path` is no NanoVDB file, but there, so that it has to be converted to be seen.
 bool is_source(const std::string& path);
 
+/// "run.h5 --volume dense --dataset=/a": what weir render draws the source itself by, as words of a shell. `given` says
+/// how it is read (input_options).
+std::string dense_words(const std::string& source, const GivenOptions& given);
+
 class SourcePreview {
  public:
   /// An eighth of its float32 size, to be looked at; or without loss, to compare with.

@@ -78,6 +78,7 @@ ViewServer::ViewServer(boost::asio::io_context& io, ViewSettings settings, Viewe
                       {"grows", files_.grow},
                       {"against", names_of(files_.against)},
                       {"preview_of", settings_.preview_of.empty() ? Json() : Json(settings_.preview_of)},
+                      {"render_input", settings_.render_input.empty() ? Json() : Json(settings_.render_input)},
                       {"allow_convert", settings_.allow_convert},
                       {"backend", backend.name()},
                       {"most_pixels", settings_.pixels},
@@ -247,39 +248,67 @@ void ViewServer::tell_facts(ViewerId id, Viewer& viewer) {
   viewer.told_of = file_identity(file_of(step, 0));
   viewer.telling = true;
   boost::asio::post(side_, [this, id, step, common = common_values(), alive = std::weak_ptr(alive_)] {
-    std::vector<std::string> texts;
+    Facts found;
     for (const int side : sides()) {
       const std::string path = file_of(step, side);
       try {
-        const SeenValues values = files_.series() ? common : seen_values(open_files_.get(file_of(step, 0))->grid());
+        const SeenValues values = values_of(file_of(step, 0), common);
         const std::string key = cat(step, ' ', side, ' ', values.range.min, ' ', values.range.max, ' ');
-        texts.push_back(facts_cache_.get(key + file_identity(path), [&] {
+        found.texts.push_back(facts_cache_.get(key + file_identity(path), [&] {
           Json facts{{"type", "facts"}, {"step", step}, {"side", side}};
           facts.update(volume_facts(*open_files_.get(path), values));
           return line(facts);
         }));
       } catch (const std::exception& error) {
-        texts.push_back(error_message(0, error.what()));
+        found.texts.push_back(error_message(0, error.what()));
+        if (side == 0) found.readable = false;
       }
     }
-    boost::asio::post(io_, [this, id, step, common, texts, alive] {
-      if (alive.lock()) tell_facts(id, step, common, texts);
+    boost::asio::post(io_, [this, id, step, common, found, alive] {
+      if (alive.lock()) tell_facts(id, step, common, found);
     });
   });
 }
 
 // The facts of a step, made with what was `common` then, are there; a histogram may take longer.
-void ViewServer::tell_facts(ViewerId id, std::size_t step, const SeenValues& common,
-                            const std::vector<std::string>& texts) {
-  for (const std::string& text : texts) send(id, text);
-  for (const int side : sides()) histograms_->ask(id, {step, side, file_of(step, side)});
+void ViewServer::tell_facts(ViewerId id, std::size_t step, const SeenValues& common, const Facts& facts) {
+  const auto asked = viewers_.find(id);
+  // A page asks for no picture before it has the facts of a step. Of a thousand that cannot be read it is told one.
+  const bool blank = !facts.readable && asked != viewers_.end() && !asked->second.view;
+  if (!blank || step == first_step()) {
+    for (const std::string& text : facts.texts) send(id, text);
+  }
+  if (facts.readable) {
+    for (const int side : sides()) histograms_->ask(id, {step, side, file_of(step, side)});
+  }
   const auto found = viewers_.find(id);
   if (found == viewers_.end()) return histograms_->forget(id);
   const MinMax now = common_values().range;
   const bool older = now.min != common.range.min || now.max != common.range.max;  // a wider one was told meanwhile
   if (older && !found->second.wanted) found->second.wanted = step;
   found->second.telling = false;
+  if (blank && !found->second.wanted) return tell_facts_of_another(id, found->second, step);
   tell_facts(id, found->second);
+}
+
+// Of the next step on the slider, from the last on of the first; when it is the turn of that which was tried first,
+// after a while.
+void ViewServer::tell_facts_of_another(ViewerId id, Viewer& viewer, std::size_t unreadable) {
+  viewer.wanted = steps_.after(unreadable).value_or(steps_.order().front());
+  if (viewer.wanted != first_step()) return tell_facts(id, viewer);
+  viewer.retry.emplace(io_, settings_.look_again);
+  viewer.retry->async_wait([this, id, alive = std::weak_ptr(alive_)](const boost::system::error_code& error) {
+    if (error || !alive.lock()) return;
+    const auto found = viewers_.find(id);
+    if (found != viewers_.end()) tell_facts(id, found->second);
+  });
+}
+
+// What a page shows of the file: of a series what its steps have in common. Any thread may ask.
+SeenValues ViewServer::values_of(const std::string& path, const SeenValues& common) {
+  if (files_.series()) return common;
+  const auto file = open_files_.get(path);
+  return seen_values(*file, [&] { return cameras_.cells_of(file); });
 }
 
 std::string ViewServer::count_histogram(const HistogramQuestion& question, const std::atomic<bool>& cancel) {
@@ -304,7 +333,7 @@ void ViewServer::answer_probe(ViewerId id, Viewer& viewer) {
           picture.height = view->height;
           picture.background = picture_background(files_);
           const Camera camera = cameras_.camera(file, view->scene, picture);
-          const SeenValues values = files_.series() ? common : seen_values(file->grid());
+          const SeenValues values = values_of(file_of(view->step, probe.side), common);
           if (const auto found =
                   probe_voxel(file->grid(), view->scene, camera, values.range, values.background, probe.x, probe.y)) {
             answer["found"] = true;

@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <boost/asio/io_context.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/asio/thread_pool.hpp>
 #include <chrono>
 #include <cstddef>
@@ -14,6 +15,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "daemon/config/listen_address.h"
 #include "daemon/http/access.h"
@@ -43,8 +45,9 @@ struct ViewSettings {
   std::vector<std::string> forecast_options = {};  ///< of weir convert, "--memory=N" for instance
   std::string program;                             ///< path of weir, for both
   std::string version;                             ///< of weir, shown on the page
-  std::string preview_of = {};  ///< the source that the file was made from for this, shown on the page; empty: none
-  bool any_host = false;        ///< a Host header may name anything: who asks has a token that no web page can know
+  std::string preview_of = {};    ///< the source that the file was made from for this, shown on the page; empty: none
+  std::string render_input = {};  ///< what draws that source behind "weir render", words of a shell; empty: none
+  bool any_host = false;          ///< a Host header may name anything: who asks has a token that no web page can know
   std::chrono::milliseconds look_again{1000};  ///< between two looks for steps of a series that grows
   HttpLimits http = {};
   ViewerLimits sockets = {};
@@ -76,6 +79,11 @@ class ViewServer {
     std::string told_of;                // file_identity of its file
     std::optional<std::size_t> wanted;  // the step whose facts it gets next
     bool telling = false;
+    std::optional<boost::asio::steady_timer> retry;  // until `wanted` is looked at, where no step could be read
+  };
+  struct Facts {
+    std::vector<std::string> texts;  // of each side
+    bool readable = true;            // the step's own file
   };
 
   HttpResponse answer(const HttpRequest& request) const;
@@ -89,7 +97,9 @@ class ViewServer {
   void handle(ViewerId id, Viewer& viewer, const ProbeRequest& probe);
   void handle(ViewerId id, Viewer& viewer, const ConvertRequest& request);
   void tell_facts(ViewerId id, Viewer& viewer);
-  void tell_facts(ViewerId id, std::size_t step, const SeenValues& common, const std::vector<std::string>& texts);
+  void tell_facts(ViewerId id, std::size_t step, const SeenValues& common, const Facts& facts);
+  void tell_facts_of_another(ViewerId id, Viewer& viewer, std::size_t unreadable);
+  SeenValues values_of(const std::string& path, const SeenValues& common);
   std::string count_histogram(const HistogramQuestion& question, const std::atomic<bool>& cancel);
   std::vector<int> sides() const;
   void answer_probe(ViewerId id, Viewer& viewer);

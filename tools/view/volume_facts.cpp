@@ -16,6 +16,7 @@
 #include "tools/report/volume_title.h"
 #include "tools/verify/packed_census.h"
 #include "tools/verify/tree_census.h"
+#include "tools/view/base/finite_range.h"
 
 namespace weir {
 namespace {
@@ -77,9 +78,12 @@ SeenValues seen_values(const SeriesSummary& series) {
   return {range, series.background.value_or(range.min)};
 }
 
-SeenValues seen_values(const NvdbGrid& grid) {
+SeenValues seen_values(const NvdbFile& file, const std::function<std::shared_ptr<const MacrocellGrid>()>& cells) {
+  const NvdbGrid& grid = file.grid();
   SeriesSummary one;
   add_values(one, grid.background(), {grid.value_min(), grid.value_max()});
+  if (!one.range) one.range = certified_range(file);
+  if (!one.range) one.range = finite_range(*cells());
   return seen_values(one);
 }
 

@@ -3,9 +3,12 @@
 
 #include <atomic>
 #include <cstddef>
+#include <functional>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 
 #include "format/nanovdb/nvdb_file.h"
+#include "gpu/volume/macrocell_grid.h"
 #include "tools/options/volume_series.h"
 
 namespace weir {
@@ -19,7 +22,9 @@ struct SeenValues {
   float background = 0;  ///< as RenderOptions has it
 };
 SeenValues seen_values(const SeriesSummary& series);
-SeenValues seen_values(const NvdbGrid& grid);
+/// `cells` are the file's, asked for where neither its root nor its certificate names a finite range. Throws as
+/// own_sidecar and `cells`.
+SeenValues seen_values(const NvdbFile& file, const std::function<std::shared_ptr<const MacrocellGrid>()>& cells);
 
 /// {"range", "background", "opacity"}, the opacity where a scene gives none.
 nlohmann::ordered_json values_facts(const SeenValues& values);

@@ -90,6 +90,15 @@ class Browser:
         found = self.ask("POST", "/element", {"using": "css selector", "value": selector})
         self.ask("POST", f"/element/{found[ELEMENT]}/click", {})
 
+    def double_click(self, selector):
+        """On its middle, by a mouse as a browser gets it."""
+        found = self.ask("POST", "/element", {"using": "css selector", "value": selector})
+        self.script("document.querySelector(arguments[0]).scrollIntoView({block: 'center'})", selector)
+        click = [{"type": "pointerDown", "button": 0}, {"type": "pointerUp", "button": 0}]
+        move = {"type": "pointerMove", "origin": found, "x": 0, "y": 0}
+        mouse = {"type": "pointer", "id": "mouse", "actions": [move, *click, *click]}
+        self.ask("POST", "/actions", {"actions": [mouse]})
+
     def press(self, *keys):
         """Keys by their name in KEYS, or text."""
         actions = []

@@ -166,6 +166,15 @@ TEST(Scene, RangesAndSurfacesAreAllValuesOfFloat32) {
   EXPECT_EQ(scene.volume.iso, static_cast<double>(std::numeric_limits<float>::max()));
 }
 
+TEST(Scene, PlacesAreAsFarAsWorldsAreLarge) {
+  const Scene scene = parse_scene("[camera]\nposition = [3e22, -1e60, 0]\nlook_at = [1e16, 1e60, 0]", "s.toml");
+  EXPECT_EQ(scene.camera.position, (Double3{3e22, -1e60, 0}));
+  EXPECT_EQ(scene.camera.look_at, (Double3{1e16, 1e60, 0}));
+  EXPECT_EQ(message("[camera]\nlook_at = [0, 0, 1e61]"),
+            "s.toml:2:18: look_at is 1e+61, it must be from -1e+60 to 1e+60");
+  EXPECT_EQ(message("[camera]\nup = [0, 0, 1e16]"), "s.toml:2:13: up is 1e+16, it must be from -1e+15 to 1e+15");
+}
+
 TEST(Scene, ValuesOutOfRange) {
   EXPECT_EQ(message("[volume]\nalbedo = 1.5"), "s.toml:2:10: albedo is 1.5, it must be from 0 to 1");
   EXPECT_EQ(message("[volume]\nalbedo = nan"), "s.toml:2:10: albedo is nan, it must be from 0 to 1");

@@ -147,6 +147,25 @@ def turns_and_refines(browser, url):
     same = canvas_bytes(browser)
     equal(len(same) > 1000 and same == seen, True)
     equal(browser.complaints(), [])
+    # Of a screen with several hundred frames a second the server is asked for about as many views as of one with 60.
+    views = browser.script("""
+        window.requestAnimationFrame = (draw) => setTimeout(() => draw(performance.now()), 1);
+        let views = 0;
+        const sent = WebSocket.prototype.send;
+        WebSocket.prototype.send = function(text) {
+            views += JSON.parse(text).type === 'view';
+            sent.call(this, text);
+        };
+        const begun = performance.now();
+        return new Promise((done) => {
+            const turn = () => {
+                if (performance.now() - begun > 600) { done(views); return; }
+                document.querySelector('#frame').dispatchEvent(new WheelEvent('wheel', {cancelable: true, deltaY: 1}));
+                setTimeout(turn, 1);
+            };
+            turn();
+        })""")
+    assert 1 <= views <= 52, f"{views} views in 0.6 s"
 
 
 def works_with_keys(browser, url):
@@ -202,6 +221,9 @@ def edits_the_transfer_function(browser, url):
     equal(browser.script("return document.querySelectorAll('.handle').length"), points + 1)
     browser.press("DELETE")
     equal(browser.script("return document.querySelectorAll('.handle').length"), points)
+    browser.script("delete document.querySelector('.curve-field').setPointerCapture")  # that drag() put there
+    browser.double_click(".handle:nth-child(2)")
+    equal(browser.script("return document.querySelectorAll('.handle').length"), points - 1)
     for _ in range(6):
         browser.script("document.querySelector('#undo').click()")
     equal(state(browser), {})
@@ -224,6 +246,10 @@ def takes_extreme_values(browser, url):
     equal(state(browser)["el"], "-89.9")
     converged(browser)
     equal(browser.visible("#banner"), False)
+    # The address has all digits of places and values.
+    exact = {"m": "iso", "at": "1000000000.125,-2,3e-7", "r": "0.123456789,16777217", "iso": "1.23456789012"}
+    browser.script("location.hash = arguments[0]", "&".join(f"{key}={value}" for key, value in exact.items()))
+    equal(state(browser), exact)
 
 
 def touch(browser, kind, *points):
@@ -365,6 +391,10 @@ def shows_steps_that_come(browser, url):
     equal(browser.text("#step-name"), "2 of 3: s_1.nvdb")
     come("s_4.nvdb")
     browser.wait("the step of the link", lambda: browser.text("#step-name") == "4 of 4: s_4.nvdb")
+    os.remove(steps / "s_4.nvdb")
+    browser.wait("that it is gone", lambda: browser.text("#step-name") == "no longer there: s_4.nvdb")
+    browser.press("[")
+    equal(browser.text("#step-name"), "3 of 3: s_3.nvdb")
 
 
 def compares_two_files(browser, url):
@@ -386,6 +416,7 @@ def compares_two_files(browser, url):
 
 def converts(browser, url):
     loaded(browser, url)
+    assert "opacity" not in scene_of(browser), scene_of(browser)
     browser.script("document.querySelector('#convert-panel').open = true")
     command = browser.wait("the command", lambda: browser.text("#convert-command"))
     assert command.startswith("weir convert ") and command.endswith(" --scene scene.toml"), command
@@ -401,15 +432,18 @@ def converts(browser, url):
     of_rate = forecast()
     told = re.fullmatch(r"Expected: 128\.0 KiB, PSNR of what is shown ([\d.]+) dB, of all voxels ([\d.]+) dB, largest error [\d.e-]+, in about [\d.]+ s\.", of_rate)
     assert told, of_rate
+    asked = browser.script("""
+        return new Promise((done) => {
+            const sent = WebSocket.prototype.send;
+            WebSocket.prototype.send = function(text) { done(JSON.parse(text).scene); sent.call(this, text); };
+            document.querySelector('#show-command').click();
+            WebSocket.prototype.send = sent;
+        })""")
     scene = os.path.join(directory, "scene.toml")
+    saved = scene_of(browser)
+    equal(saved.partition("[volume]")[2], asked.partition("[volume]")[2])
     with open(scene, "w", encoding="utf-8") as file:
-        file.write(browser.script("""
-            return new Promise((done) => {
-                const sent = WebSocket.prototype.send;
-                WebSocket.prototype.send = function(text) { done(JSON.parse(text).scene); sent.call(this, text); };
-                document.querySelector('#show-command').click();
-                WebSocket.prototype.send = sent;
-            })"""))
+        file.write(saved)
     words = [scene if word == "scene.toml" else word for word in command.split()]
     subprocess.run([weir, *words[1:], "--quiet"], check=True)
     with open(words[words.index("-o") + 1] + ".json", encoding="utf-8") as file:
@@ -524,8 +558,19 @@ def asks_again(browser, url):
     browser.script("""
         tell({type: 'steps', steps: ['a.nvdb'], order: [0], range: [-1, 7], background: 0, opacity: [0, 1]})""")
     assert "range = [-1, 7]" in asked(4)["scene"]
-    browser.script("socket.close()")
+    # That of a preview is drawn from its source.
+    browser.script("""
+        const fetched = window.fetch;
+        window.fetch = async (...request) => {
+            const state = await (await fetched(...request)).json();
+            const preview = {preview_of: 'r.h5', render_input: 'r.h5 --volume dense --dataset=/a'};
+            return new Response(JSON.stringify({...state, ...preview}));
+        };
+        socket.close()""")
     asked(5)
+    equal(browser.text("#render-command").split()[:7],
+          ["weir", "render", "r.h5", "--volume", "dense", "--dataset=/a", "-o"])
+    equal(browser.text("#render-title"), "This view of the source itself")
 
 
 def shows_values_that_are_not_finite(browser, url):
@@ -607,7 +652,7 @@ def asks_for_the_token(browser, url):
         document.querySelector('#login button').click()""", text)
     enter("wrong")
     browser.wait("the refusal", lambda: "token" in (browser.text("#login-error") or ""))
-    enter("secret")
+    enter("secret ")  # as a paste may bring it
     browser.wait("the page is filled", lambda: browser.visible("#main"))
     converged(browser)
 
@@ -629,6 +674,14 @@ def says_when_the_server_is_gone(browser, url):
     browser.script("window.fetch = window.real_fetch")
     browser.wait("it says so", lambda: browser.text("#link") == "not connected")
     browser.wait("and why", lambda: browser.text("#banner") == "The server does not answer; it may have ended.")
+    # Whoever tries again by hand takes the place of what waits to try again.
+    asked = browser.script("""
+        let asked = 0;
+        window.fetch = (...request) => { ++asked; return window.real_fetch(...request); };
+        const login = document.querySelector('#login');
+        for (let i = 0; i < 4; ++i) login.dispatchEvent(new Event('submit', {cancelable: true}));
+        return new Promise((done) => setTimeout(() => done(asked), 2200))""")
+    assert 4 <= asked <= 6, f"{asked} requests, four of them by hand"
 
 
 def of_process(pid, name):

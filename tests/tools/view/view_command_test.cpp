@@ -160,7 +160,15 @@ TEST_F(ViewCommandTest, Source_IsShownThroughAConversionThatGoesWithIt) {
                       "--work-dir", folder, "--progress", "never"});
   const std::uint16_t port = port_of(child);
   ASSERT_NE(port, 0);
-  EXPECT_EQ(nlohmann::json::parse(get(port, "/api/state").second)["preview_of"], directory_ / "dump.bin");
+  const auto state = nlohmann::json::parse(get(port, "/api/state").second);
+  EXPECT_EQ(state["preview_of"], directory_ / "dump.bin");
+  EXPECT_EQ(state["render_input"], cat(directory_ / "dump.bin", " --volume dense --dims=40,30,20 --type=float32"));
+  const std::string words = state["render_input"];
+  const std::string picture = directory_ / "picture.png";
+  const CommandResult drawn = run_command(
+      {"/bin/sh", "-c", cat("\"$0\" render ", words, " -o \"$1\" --size 32x24 --spp 1"), WEIR_COMMAND, picture});
+  EXPECT_EQ(drawn.exit_code, 0) << drawn.err;
+  EXPECT_EQ(read_file(picture).substr(1, 3), "PNG");
   ViewClient client(port);
   EXPECT_EQ(client.text("facts").value()["grid_type"], "packed");
   client.show(1, true);

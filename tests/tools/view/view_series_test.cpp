@@ -1,7 +1,9 @@
 // The server of weir view with several files: steps, steps that come, and two files beside each other.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
+#include <limits>
 
 #include "format/base/text.h"
 #include "ingest/files/numbered_series.h"
@@ -18,13 +20,16 @@ using std::chrono::milliseconds;
 
 class ViewSeriesTest : public ConvertedVolume {
  protected:
-  /// A volume of 24 x 20 x 16 values from 0 to `most`.
-  std::string ramp(const std::string& name, float most) {
+  /// A volume of 24 x 20 x 16 values from 0 to `most`, the second of them infinite where that is asked for.
+  std::string ramp(const std::string& name, float most, bool infinite = false) {
     const std::string raw = directory_ / "w_24x20x16_float32.raw";
     std::vector<float> values(24 * 20 * 16);
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = most * static_cast<float>(i) / (24 * 20 * 16 - 1);
+    if (infinite) values[1] = std::numeric_limits<float>::infinity();
     write_file(raw, std::string(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)));
-    EXPECT_EQ(run_weir({"convert", raw, "-o", directory_ / name, "--lossless"}).exit_code, 0);
+    std::vector<std::string> command{"convert", raw, "-o", directory_ / name, "--lossless"};
+    if (infinite) command.insert(command.end(), {"--nonfinite", "keep", "--encoding", "float"});
+    EXPECT_EQ(run_weir(command).exit_code, 0);
     return directory_ / name;
   }
 };
@@ -105,6 +110,63 @@ TEST_F(ViewSeriesTest, SingleFileThatIsReplaced_HasItsOwnRange) {
   std::filesystem::rename(ramp("w.nvdb", 7), volume_);
   client.show(1, true);
   EXPECT_EQ(client.text("facts").value()["range"], Json::parse("[0, 7]"));
+}
+
+TEST_F(ViewSeriesTest, FileWithInfinities_HasTheRangeOfItsFiniteValues) {
+  const std::string path = ramp("w.nvdb", 7, true);
+  const auto range = [&] {
+    ServedView served(path);
+    return ViewClient(served.port()).text("facts").value()["range"];
+  };
+  ASSERT_FALSE(std::isfinite(NvdbFile(path).grid().value_max()));
+  EXPECT_EQ(range(), Json::parse("[0, 7]"));
+  std::filesystem::remove(sidecar_path(path));
+  EXPECT_EQ(range(), Json::parse("[0, 7]")) << "by the macrocells";
+}
+
+TEST_F(ViewSeriesTest, StepWithInfinities_WidensTheRangeByItsFiniteValues) {
+  std::filesystem::create_directory(directory_ / "steps");
+  const auto step = [&](int number) { return cat(directory_ / "steps", "/s_", number, ".nvdb"); };
+  std::filesystem::rename(ramp("w.nvdb", 7), step(1));
+  const std::string kept = ramp("x.nvdb", 30, true);
+  std::filesystem::rename(kept, step(2));
+  std::filesystem::rename(sidecar_path(kept), sidecar_path(step(2)));
+  std::filesystem::rename(ramp("y.nvdb", 40, true), step(3));  // without its certificate
+  ServedView served(directory_ / "steps");
+  EXPECT_EQ(ViewClient(served.port()).text("facts").value()["range"], Json::parse("[0, 40]"));
+  std::filesystem::remove(step(3));
+  ServedView fewer(directory_ / "steps");
+  EXPECT_EQ(ViewClient(fewer.port()).text("facts").value()["range"], Json::parse("[0, 30]"));
+}
+
+TEST_F(ViewSeriesTest, FirstStepThatCannotBeRead_IsSaidAndAnotherIsTold) {
+  std::filesystem::create_directory(directory_ / "steps");
+  const auto step = [&](int number) { return cat(directory_ / "steps", "/s_", number, ".nvdb"); };
+  write_file(step(1), "no volume");
+  write_file(step(2), "no volume");
+  std::filesystem::copy(volume_, step(3));
+  ServedView served(directory_ / "steps");
+  ViewClient client(served.port());
+  const Json error = client.text("error").value();
+  EXPECT_TRUE(error["message"].get<std::string>().starts_with(step(1) + ": ")) << error;
+  const auto facts = client.text("facts");
+  ASSERT_TRUE(facts);
+  EXPECT_EQ((*facts)["step"], 2);
+  EXPECT_EQ((*facts)["file"], "s_3.nvdb");
+}
+
+TEST_F(ViewSeriesTest, FileThatBecomesReadable_IsToldToWhoWaits) {
+  ViewSettings settings;
+  settings.look_again = milliseconds(30);
+  const std::string path = directory_ / "later.nvdb";
+  write_file(path, "no volume");
+  ServedView served(path, "", settings);
+  ViewClient client(served.port());
+  ASSERT_TRUE(client.text("error"));
+  std::filesystem::rename(volume_, path);
+  const auto facts = client.text("facts");
+  ASSERT_TRUE(facts);
+  EXPECT_EQ((*facts)["file"], "later.nvdb");
 }
 
 TEST_F(ViewSeriesTest, SeriesOfAFile_BeginsAtThatFile) {

@@ -1,6 +1,7 @@
 // The WebSocket to the server: the newest view goes out, pictures and texts come in; after a break it comes back.
 
 const kAgain_ms = 1500;
+const kView_ms = 12;  // between two views, at least: a screen of 360 Hz has more frames than the server takes messages
 const encoder = new TextEncoder();
 
 const hex = (text) => [...encoder.encode(text)].map((byte) => byte.toString(16).padStart(2, "0")).join("");
@@ -12,6 +13,7 @@ export class Connection {
     this.socket = null;
     this.view = null;      // that waits for the next frame of the screen
     this.waiting = false;
+    this.sent = 0;         // when the last view went out
   }
 
   /** `series`: the only one that this page is of; a server of another one refuses. */
@@ -23,7 +25,9 @@ export class Connection {
     place.hash = "";
     const socket = new WebSocket(place, protocols);
     socket.binaryType = "arraybuffer";
+    const before = this.socket;
     this.socket = socket;
+    before?.close();
     socket.addEventListener("open", () => this.on.opened());
     socket.addEventListener("message", (event) => this.receive(socket, event.data));
     socket.addEventListener("close", () => {
@@ -35,22 +39,34 @@ export class Connection {
 
   /** Tries again after a while, by `ask`, which calls open() where the server answers. */
   retry(ask) {
-    setTimeout(ask, kAgain_ms);
+    this.forget_retry();
+    this.timer = setTimeout(ask, kAgain_ms);
+  }
+
+  /** It is tried now. */
+  forget_retry() {
+    clearTimeout(this.timer);
   }
 
   send(message) {
     if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
   }
 
-  /** Sends the view with the next frame of the screen, only the newest of those that come before it. */
+  /** Sends the view with a frame of the screen that comes soon, only the newest of those that come before it. */
   show(view) {
     this.view = view;
     if (this.waiting) return;
     this.waiting = true;
-    requestAnimationFrame(() => {
+    const send = (now) => {
+      if (now - this.sent < kView_ms) {
+        requestAnimationFrame(send);
+        return;
+      }
       this.waiting = false;
+      this.sent = now;
       this.send(this.view);
-    });
+    };
+    requestAnimationFrame(send);
   }
 
   async receive(socket, data) {

@@ -16,7 +16,8 @@ export const kStartLight = Object.freeze({az: 320, el: 49, power: 2.1, sky: 0.6}
 export const kStartDensity = {dvr: 200, path: 250, iso: 1, mip: 1};
 
 const short = (value) => Number(value.toPrecision(6));
-const list = (values) => values.map(short).join(",");
+// Of values and places in the world, which may differ little from each other, every digit counts.
+const kExact = ["at", "range", "iso"];
 
 const kKeys = {
   mode: "m", az: "az", el: "el", zoom: "z", at: "at", colormap: "c", opacity: "o", range: "r", density: "d", iso: "iso",
@@ -29,12 +30,13 @@ export function to_hash(look, file) {
   for (const [key, name] of Object.entries(kKeys)) {
     const value = key === "file" ? (look.step > 0 ? file ?? null : null) : look[key];
     if (value === null || value === kStart[key]) continue;
+    const digits = kExact.includes(key) ? String : short;
     if (key === "opacity") parts.set(name, value.map((point) => point.map(short).join("_")).join(","));
     else if (key === "box") parts.set(name, value.map((ends) => ends.join("_")).join(","));
-    else if (key === "light") parts.set(name, list([value.az, value.el, value.power, value.sky]));
-    else if (Array.isArray(value)) parts.set(name, list(value));
+    else if (key === "light") parts.set(name, [value.az, value.el, value.power, value.sky].map(short).join(","));
+    else if (Array.isArray(value)) parts.set(name, value.map(digits).join(","));
     else if (typeof value === "boolean") parts.set(name, value ? 1 : 0);
-    else parts.set(name, typeof value === "number" ? short(value) : value);
+    else parts.set(name, typeof value === "number" ? digits(value) : value);
   }
   return parts.toString().replaceAll("%2C", ",");
 }

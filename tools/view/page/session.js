@@ -42,6 +42,7 @@ export class Session {
   }
 
   async begin() {
+    this.connection.forget_retry();
     let state;
     try {
       state = await get("api/state");

@@ -74,9 +74,10 @@ export class Steps {
     else this.go(this.step, false);
   }
 
-  /** From one place to the next, and from the last to the first. */
+  /** From one place to the next, and from the last to the first; from a step that is gone to one of these. */
   neighbour(by) {
-    return this.order[(this.place() + by + this.order.length) % this.order.length];
+    const place = by < 0 ? Math.max(this.place(), 0) : this.place();
+    return this.order[(place + by + this.order.length) % this.order.length];
   }
 
   by(steps) {

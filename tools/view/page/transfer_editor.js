@@ -39,6 +39,7 @@ export class TransferEditor {
     this.changed = changed;
     this.done = done;
     this.points = [];
+    this.pressed = [];  // what the last two presses were on
     this.drawing = svg("svg", {viewBox: `0 0 ${kWidth} ${kHeight}`, preserveAspectRatio: "none", class: "curve"});
     this.bars = svg("path", {class: "bars"});
     this.area = svg("path", {class: "area"});
@@ -57,7 +58,7 @@ export class TransferEditor {
       event.preventDefault();
       this.remove(Number(event.target.dataset?.point ?? -1));
     });
-    field.addEventListener("dblclick", (event) => this.remove(Number(event.target.dataset?.point ?? -1)));
+    field.addEventListener("dblclick", () => this.remove_pressed());
     field.addEventListener("keydown", (event) => this.key(event));
   }
 
@@ -139,6 +140,7 @@ export class TransferEditor {
   press(event) {
     if (event.button !== 0) return;
     event.preventDefault();
+    this.pressed = [this.pressed.at(-1), event.target];
     const found = event.target.dataset?.point;
     if (found !== undefined) {
       this.dragged = Number(found);
@@ -181,6 +183,12 @@ export class TransferEditor {
     this.change(this.points.filter((_, at) => at !== i));
     this.done();
     this.handles.children[Math.min(i, this.points.length - 1)]?.focus();
+  }
+
+  /** A double click's own target may be the field, which captures the pointer. A point that it made first stays. */
+  remove_pressed() {
+    const [first, second] = this.pressed;
+    if (first === second) this.remove(Number(second?.dataset.point ?? -1));
   }
 
   key(event) {

@@ -103,8 +103,8 @@ function show_look() {
   for (const side of ["side-left", "side-right"]) by_id(side).hidden = look.split === null;
   show_undo();
   const [width, height] = picture_size();
-  show_command(by_id("render-command"),
-               `weir render ${shown.word} -o picture.png --scene scene.toml --size ${width}x${height}`);
+  show_command(by_id("render-command"), `weir render ${server.render_input ?? shown.word} -o picture.png ` +
+               `--scene scene.toml --size ${width}x${height}`);
 }
 
 // ---- What comes in
@@ -192,12 +192,14 @@ const editor = new TransferEditor(by_id("curve"), {
 });
 const clip_box = new ClipBox(by_id("box"), {changed: (box) => change({...look, box}), done});
 const controls = new Controls({changed: (part) => change({...look, ...part}), done});
+
+/** The opacity by which is converted: what can be seen has to be said, also by a look that has no points. */
+const converted_opacity = (shown) => look.opacity ?? simplified(curve_of(shown));
+
 const conversion = new Conversion({
   scene: () => {
     const shown = facts();
-    if (!shown) return null;
-    // What can be seen has to be said: the curve of a look that has no points.
-    return looks.to_scene({...look, opacity: look.opacity ?? simplified(curve_of(shown))}, shown, aspect());
+    return shown ? looks.to_scene({...look, opacity: converted_opacity(shown)}, shown, aspect()) : null;
   },
   step: () => look.step,
   kept: () => {
@@ -212,9 +214,11 @@ const keep = new Keep({
   file: () => steps.names[look.step],
   scene: () => {
     const [width, height] = picture_size();
+    const shown = facts();
     // Of a series the curve depends on all of its steps, which weir render of one file does not know.
-    const opacity = look.opacity ?? (steps.names.length > 1 ? curve_of(facts()) : null);
-    return looks.to_scene({...look, opacity}, facts(), width / height);
+    const curve = steps.names.length > 1 ? curve_of(shown) : null;
+    const opacity = by_id("convert-panel").open ? converted_opacity(shown) : look.opacity ?? curve;
+    return looks.to_scene({...look, opacity}, shown, width / height);
   },
   hash: () => looks.to_hash(look, steps.names[look.step]),
 });
@@ -290,6 +294,7 @@ function set_up(state) {
   by_id("preview").hidden = server.preview_of === null;
   set_text(by_id("preview"), "preview");
   by_id("preview").title = `A quick conversion of ${server.preview_of}`;
+  set_text(by_id("render-title"), server.preview_of === null ? "The same picture" : "This view of the source itself");
   offer(by_id("colormap"), [["", "of the mode"], ...Object.keys(server.colormaps).map((name) => [name, name])]);
   by_id("service").hidden = !location.pathname.endsWith("/view/");  // behind weir watch
   // A server that was started anew may number the steps otherwise.
