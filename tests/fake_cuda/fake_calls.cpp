@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "tests/fake_cuda/fake_array.h"
@@ -32,22 +33,19 @@ cudaError_t release(void* memory) {
   return cudaSuccess;
 }
 
+void* context_of(int device) { return reinterpret_cast<void*>(std::uintptr_t{1} + static_cast<unsigned>(device)); }
+
 // The driver's. A context is the address that is one more than its device's number.
 int cuCtxGetId(void*, unsigned long long* id) {
   *id = runtime().context();
   return *id != 0 ? 0 : 1;
 }
 int cuCtxGetCurrent(void** context) {
-  *context =
-      runtime().context() == 0 ? nullptr : reinterpret_cast<void*>(std::uintptr_t{1} + runtime().current_device());
+  *context = runtime().context() == 0 ? nullptr : context_of(runtime().current_device());
   return 0;
 }
 int cuCtxSetCurrent(void* context) {
-  if (context == nullptr) {
-    runtime().choose_none();
-  } else {
-    runtime().choose(static_cast<int>(number(context)) - 1);
-  }
+  runtime().make_current(context == nullptr ? std::nullopt : std::optional(static_cast<int>(number(context)) - 1));
   return 0;
 }
 int cuDevicePrimaryCtxGetState(int device, unsigned* flags, int* active) {
@@ -56,12 +54,22 @@ int cuDevicePrimaryCtxGetState(int device, unsigned* flags, int* active) {
   return 0;
 }
 
+int cuDevicePrimaryCtxRetain(void** context, int device) {
+  if (device < 0 || device >= runtime().devices()) return 1;
+  runtime().use(device);
+  *context = context_of(device);
+  return 0;
+}
+int cuDevicePrimaryCtxRelease(int) { return 0; }
+
 cudaError_t entry_point(const std::string& symbol, void** function, cudaDriverEntryPointQueryResult* result) {
   const std::map<std::string, void*> known{
       {"cuCtxGetId", reinterpret_cast<void*>(&cuCtxGetId)},
       {"cuCtxGetCurrent", reinterpret_cast<void*>(&cuCtxGetCurrent)},
       {"cuCtxSetCurrent", reinterpret_cast<void*>(&cuCtxSetCurrent)},
       {"cuDevicePrimaryCtxGetState", reinterpret_cast<void*>(&cuDevicePrimaryCtxGetState)},
+      {"cuDevicePrimaryCtxRetain", reinterpret_cast<void*>(&cuDevicePrimaryCtxRetain)},
+      {"cuDevicePrimaryCtxRelease", reinterpret_cast<void*>(&cuDevicePrimaryCtxRelease)},
   };
   const auto found = known.find(symbol);
   *function = found == known.end() ? nullptr : found->second;
@@ -72,8 +80,8 @@ cudaError_t entry_point(const std::string& symbol, void** function, cudaDriverEn
 }  // namespace
 
 // Of a call that works in a context.
-#define WEIR_ENTER(function)  \
-  runtime().choose_if_none(); \
+#define WEIR_ENTER(function)     \
+  runtime().make_some_current(); \
   if (const cudaError_t code = runtime().enter(function); code != cudaSuccess) return code
 
 extern "C" {
@@ -112,7 +120,7 @@ const char* cudaGetErrorName(cudaError_t code) {
 const char* cudaGetErrorString(cudaError_t) { return "pretended"; }
 
 cudaError_t cudaMallocAsync(void** memory, std::size_t bytes, cudaStream_t) {
-  runtime().choose_if_none();
+  runtime().make_some_current();
   if (const cudaError_t code = runtime().enter_allocation("cudaMallocAsync", bytes); code != cudaSuccess) return code;
   return allocate(memory, bytes);
 }
@@ -134,7 +142,7 @@ cudaError_t cudaFreeHost(void* memory) {
   return release(memory);
 }
 cudaError_t cudaMemGetInfo(std::size_t* free, std::size_t* total) {
-  runtime().choose_if_none();
+  runtime().make_some_current();
   *total = runtime().capacity();
   *free = *total - std::min<std::size_t>(*total, runtime().allocated_bytes());
   return cudaSuccess;
@@ -199,7 +207,7 @@ cudaError_t cudaEventCreateWithFlags(cudaEvent_t* event, unsigned) {
   return cudaSuccess;
 }
 cudaError_t cudaEventDestroy(cudaEvent_t event) {
-  runtime().choose_if_none();
+  runtime().make_some_current();
   return release(event);
 }
 cudaError_t cudaEventRecord(cudaEvent_t, cudaStream_t) {
@@ -211,7 +219,7 @@ cudaError_t cudaEventSynchronize(cudaEvent_t) {
   return cudaSuccess;
 }
 cudaError_t cudaStreamCreate(cudaStream_t* stream) {
-  runtime().choose_if_none();
+  runtime().make_some_current();
   *stream = nullptr;
   return cudaSuccess;
 }
@@ -262,7 +270,7 @@ cudaError_t cudaStreamCreateWithFlags(cudaStream_t* stream, unsigned) {
   return cudaStreamCreate(stream);
 }
 cudaError_t cudaStreamWaitEvent(cudaStream_t, cudaEvent_t, unsigned) {
-  runtime().choose_if_none();
+  runtime().make_some_current();
   return cudaSuccess;
 }
 cudaError_t cudaMemcpyPeer(void* to, int, const void* from, int, std::size_t bytes) {
@@ -271,7 +279,7 @@ cudaError_t cudaMemcpyPeer(void* to, int, const void* from, int, std::size_t byt
   return cudaSuccess;
 }
 cudaError_t cudaStreamDestroy(cudaStream_t) {
-  runtime().choose_if_none();
+  runtime().make_some_current();
   return cudaSuccess;
 }
 cudaError_t cudaStreamSynchronize(cudaStream_t) {

@@ -46,7 +46,7 @@ void FakeRuntime::reset() {
 
 FakeRuntime::Thread& FakeRuntime::thread() {
   thread_local Thread here;
-  if (here.generation != generation_) here = {generation_, 0, false};
+  if (here.generation != generation_) here = {generation_};
   return here;
 }
 
@@ -62,32 +62,38 @@ int FakeRuntime::devices() {
 
 int FakeRuntime::current_device() {
   const std::lock_guard lock(mutex_);
-  return thread().device;
+  return thread().context.value_or(thread().chosen);
 }
 
 void FakeRuntime::choose(int device) {
   const std::lock_guard lock(mutex_);
-  thread().device = device;
-  thread().has_context = true;
+  thread().chosen = device;
+  thread().context = device;
   in_use_.insert(device);
 }
 
-void FakeRuntime::choose_if_none() {
+void FakeRuntime::make_current(std::optional<int> device) {
   const std::lock_guard lock(mutex_);
-  if (thread().has_context) return;
-  thread().has_context = true;
-  in_use_.insert(thread().device);
+  thread().context = device;
 }
 
-void FakeRuntime::choose_none() {
+void FakeRuntime::make_some_current() {
   const std::lock_guard lock(mutex_);
-  thread() = {generation_, 0, false};
+  if (thread().context) return;
+  thread().context = thread().chosen;
+  in_use_.insert(thread().chosen);
+}
+
+void FakeRuntime::use(int device) {
+  const std::lock_guard lock(mutex_);
+  in_use_.insert(device);
 }
 
 std::uint64_t FakeRuntime::context() {
   const std::lock_guard lock(mutex_);
   constexpr std::uint64_t kMostDevices = 16;
-  return thread().has_context ? kMostDevices * generation_ + static_cast<std::uint64_t>(thread().device) : 0;
+  const std::optional<int> context = thread().context;
+  return context ? kMostDevices * generation_ + static_cast<std::uint64_t>(*context) : 0;
 }
 
 std::set<int> FakeRuntime::devices_in_use() {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -22,13 +23,16 @@ class FakeRuntime {
 
   void set_devices(int count);
   int devices();
-  /// That the calling thread works on: 0 until it chooses one, and again once it has no context.
+  /// That the calling thread works on: that of its context, else the one that it chose last, at first 0.
   int current_device();
-  /// Makes the context of `device` current, as a call on a thread that has none does for current_device().
+  /// Chooses `device`, and makes its context current.
   void choose(int device);
-  void choose_if_none();
-  /// The calling thread has no context afterwards.
-  void choose_none();
+  /// Makes the context of `device` current; of none: the calling thread has no context.
+  void make_current(std::optional<int> device);
+  /// As a call on a thread that has no context does, for current_device().
+  void make_some_current();
+  /// Makes the context of `device`.
+  void use(int device);
   /// The number of the calling thread's context; 0: it has none.
   std::uint64_t context();
   /// Those that have a context.
@@ -79,8 +83,8 @@ class FakeRuntime {
   // What a thread works on.
   struct Thread {
     std::uint64_t generation = 0;  // a reset makes it forget the rest
-    int device = 0;
-    bool has_context = false;
+    int chosen = 0;
+    std::optional<int> context = {};  // its device
   };
   Thread& thread();  // the calling one's
 

@@ -38,8 +38,8 @@ class DeviceCoder final : public BlockCoder {
 }  // namespace
 
 std::unique_ptr<BlockCoder> make_device_coder(int device, std::function<void(const Error&)> failed) {
-  const KeptDevice kept;
-  use_device(device);
+  check_device(device);
+  const KeptDevice kept(device);
   return std::make_unique<DeviceCoder>(device, std::move(failed));
 }
 

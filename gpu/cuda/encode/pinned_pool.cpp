@@ -11,11 +11,16 @@ namespace {
 // What was locked in a context that is gone is not locked any more.
 void unlock(PinnedPool::Piece piece) {
   if (!has_context(piece.device)) return piece.memory.forget();
-  const KeptDevice kept;
-  // Also where the thread has another context of that device.
-  if (cudaSetDevice(piece.device) != cudaSuccess) cudaGetLastError();
-  if (current_context_id() != piece.context) return piece.memory.forget();
-  const PinnedMemory unlocked = std::move(piece.memory);
+  free_on(piece.device, [&] {
+    void* const callers = current_context();  // maybe another one of that device
+    set_current_context(primary_context(piece.device));
+    if (current_context_id() == piece.context) {
+      const PinnedMemory unlocked = std::move(piece.memory);
+    } else {
+      piece.memory.forget();
+    }
+    set_current_context(callers);
+  });
 }
 
 }  // namespace

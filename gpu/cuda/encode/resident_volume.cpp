@@ -87,8 +87,8 @@ class DeviceVolume final : public ResidentVolume {
 
 std::unique_ptr<ResidentVolume> make_resident_volume(int device, const float* values, const Box& voxels,
                                                      std::function<void(const Error&)> failed) {
-  const KeptDevice kept;
-  use_device(device);
+  check_device(device);
+  const KeptDevice kept(device);
   return std::make_unique<DeviceVolume>(device, values, voxels, std::move(failed));
 }
 

@@ -21,7 +21,7 @@ int device_count() {
   return 0;
 }
 
-void use_device(int device) {
+void check_device(int device) {
   int count = 0;
   const cudaError_t code = cudaGetDeviceCount(&count);
   if (code != cudaSuccess || count == 0) {
@@ -32,6 +32,10 @@ void use_device(int device) {
   if (device < 0 || device >= count) {
     throw Error(ErrorKind::usage, cat("there is no CUDA device ", device, ", the last is ", count - 1));
   }
+}
+
+void use_device(int device) {
+  check_device(device);
   check_cuda(cudaSetDevice(device), cat("CUDA device ", device));
 }
 

@@ -33,7 +33,10 @@ void check_cuda(cudaError_t code, std::string_view what, std::uint64_t bytes = 0
 /// Devices that the driver shows; 0 where there is no driver or none is visible.
 int device_count();
 
-/// Makes `device` the current one. Throws Error(usage) where there is no such device, with what the driver said.
+/// Throws Error(usage) where there is no such device, with what the driver said.
+void check_device(int device);
+
+/// Makes `device` the current one. Throws as check_device.
 void use_device(int device);
 
 }  // namespace weir

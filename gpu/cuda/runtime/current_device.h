@@ -17,30 +17,29 @@ inline int current_device() {
   return device;
 }
 
-/// What was current when the object was made is so again at its end, a context that its caller made itself included. A
-/// thread that had no context gets none of a device that the process has none of: cudaSetDevice() makes one, of some
-/// hundred MiB, and each rank of a node would have one on its first device.
+/// A device is current while the object lives. What was current before is so again at its end: a context that the
+/// caller made itself, too, and none where there was none. cudaSetDevice() in place of that would have the thread
+/// remember another device, and make a context, of some hundred MiB, on the one that it goes back to: each rank of a
+/// node would have one on its first device.
 class KeptDevice {
  public:
-  KeptDevice() : context_(current_context()), device_(current_device()) {}
-  /// And `device` is current meanwhile. Throws Error(io).
-  explicit KeptDevice(int device) : KeptDevice() {
-    if (context_ == nullptr || device != device_) check_cuda(cudaSetDevice(device), "choosing the device");
+  /// Throws Error(io).
+  explicit KeptDevice(int device) : before_(current_context()) {
+    if (before_ != nullptr && current_device() == device) return;
+    if (void* const context = primary_context(device)) {
+      set_current_context(context);
+    } else {
+      check_cuda(cudaSetDevice(device), "choosing the device");
+    }
   }
   ~KeptDevice() {
-    if (current_context() == context_) return;
-    if (context_ != nullptr || !has_context(device_)) {
-      set_current_context(context_);
-    } else if (cudaSetDevice(device_) != cudaSuccess) {
-      cudaGetLastError();  // a refusal is not the next call's
-    }
+    if (current_context() != before_) set_current_context(before_);
   }
   KeptDevice(const KeptDevice&) = delete;
   KeptDevice& operator=(const KeptDevice&) = delete;
 
  private:
-  void* context_;
-  int device_;
+  void* before_;
 };
 
 /// Calls free(), which gives back what lies on `device`, with that current: it may be any thread that does so last.

@@ -9,6 +9,8 @@ namespace {
 using GetCurrent = int (*)(void** context);                          // cuCtxGetCurrent
 using SetCurrent = int (*)(void* context);                           // cuCtxSetCurrent
 using GetState = int (*)(int device, unsigned* flags, int* active);  // cuDevicePrimaryCtxGetState
+using Retain = int (*)(void** context, int device);                  // cuDevicePrimaryCtxRetain
+using Release = int (*)(int device);                                 // cuDevicePrimaryCtxRelease
 using GetId = int (*)(void* context, unsigned long long* id);        // cuCtxGetId; null: the current one
 
 // Null where the driver has none of that name.
@@ -44,6 +46,17 @@ bool has_context(int device) {
   unsigned flags = 0;
   int active = 0;
   return get_state != nullptr && get_state(device, &flags, &active) == 0 && active != 0;
+}
+
+void* primary_context(int device) {
+  static const auto retain = driver_function<Retain>("cuDevicePrimaryCtxRetain");
+  static const auto release = driver_function<Release>("cuDevicePrimaryCtxRelease");
+  if (retain == nullptr || release == nullptr) return nullptr;
+  const bool others = has_context(device);
+  void* context = nullptr;
+  if (retain(&context, device) != 0) return nullptr;
+  if (others) release(device);  // who made it keeps it
+  return context;
 }
 
 std::uint64_t current_context_id() {

@@ -15,6 +15,9 @@ void set_current_context(void* context);
 /// Whether this process has the context on `device` that the runtime uses. Makes none.
 bool has_context(int device);
 
+/// That context, which is made where there is none, and stays; null where the driver cannot. Makes it current nowhere.
+void* primary_context(int device);
+
 /// Which context of which device the calling thread works in: a device that is reset has another one afterwards. 0
 /// where the thread has none, or the driver does not tell (before CUDA 12).
 std::uint64_t current_context_id();
