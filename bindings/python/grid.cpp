@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "bindings/python/levels.h"
@@ -45,9 +46,16 @@ SourceOptions first_grid(const NvdbFile& file) {
   return options;
 }
 
+// Of the file itself, should the working directory be another one later.
+std::string absolute_path(const std::string& path) {
+  std::error_code error;
+  const std::filesystem::path found = std::filesystem::absolute(path, error);
+  return error ? path : found.string();
+}
+
 }  // namespace
 
-Grid::Grid(const std::string& path) : path_(path), file_(std::make_shared<Opened>()) {
+Grid::Grid(const std::string& path) : path_(path), absolute_(absolute_path(path)), file_(std::make_shared<Opened>()) {
   const py::gil_scoped_release unlocked;
   file_->file = std::make_shared<const NvdbFile>(path);
   file_->source = open_source(path, first_grid(*file_->file));
@@ -131,7 +139,7 @@ int Grid::levels() const { return level_count(opened().source->info().extent); }
 
 std::optional<std::string> Grid::sidecar() const {
   const auto file = with_file("its sidecar");
-  const std::string path = find_sidecar(path_);
+  const std::string path = find_sidecar(absolute_);
   if (!std::filesystem::exists(path)) return std::nullopt;
   return text_of(read_sidecar(path), path);
 }
@@ -227,7 +235,7 @@ std::vector<std::tuple<std::string, std::string, std::string, bool>> Grid::verif
     verification.pass_started = [&](const std::string& pass, std::uint64_t bytes) { watch.start(pass, bytes); };
     verification.pass_advanced = [&](std::uint64_t done) { watch.advance(done); };
     verification.cancel = &watch.cancelled();
-    for (const VolumeCheck& check : verify_volume(path_, verification)) {
+    for (const VolumeCheck& check : verify_volume(absolute_, verification)) {
       all.emplace_back(check.name, check.found, check.expected, check.ok);
     }
   });

@@ -104,7 +104,8 @@ class Grid {
   std::shared_ptr<Opened> with_file(const char* what) const;
   std::shared_ptr<Opened> shared() const;
 
-  std::string path_;
+  std::string path_;      ///< as it was given, for messages
+  std::string absolute_;  ///< the file's, whatever the working directory is later; empty where it lies elsewhere
   std::shared_ptr<Opened> file_;
 };
 

@@ -13,7 +13,7 @@ from . import _core
 from .device import DeviceArray, array_of, is_array_elsewhere
 from .errors import UsageError
 from .labelled import is_data_array, take_apart
-from .options import box_text, given_options, is_url, path_bytes, text_of
+from .options import box_text, given_options, is_url, path_bytes, shown_url, text_of
 
 if TYPE_CHECKING:
     import xarray
@@ -169,7 +169,7 @@ def convert(
         origin = labelled.origin if origin is None else origin
         dataset = labelled.name if dataset is None else dataset
     ranges = index is not None and any(letter in text_of(index) for letter in ":*")
-    listed = dataset is not None and not isinstance(dataset, str)
+    listed = dataset is not None and not isinstance(dataset, (str, bytes))
     several = ranges or listed or levels == "separate"
     if listed and not dataset:
         raise UsageError("dataset is an empty list; name a dataset in it")
@@ -196,7 +196,7 @@ def convert(
         missing_policy=missing_policy,
         roi=None if roi is None else box_text(roi),
         ghost=ghost,
-        dataset="\n".join(map(str, dataset)) if listed else dataset,
+        dataset="\n".join(map(text_of, dataset)) if listed else dataset,
         index=index,
         component=component,
         magnitude=magnitude,
@@ -220,7 +220,8 @@ def convert(
     )
     target = b"" if output is None else path_bytes(output)
     if is_url(source):
-        raise UsageError(f"source is {source!r}: weir.convert reads files of this machine; copy it here first")
+        shown = shown_url(source)
+        raise UsageError(f"source is {shown!r}: weir.convert reads files of this machine; copy it here first")
     if isinstance(source, (str, os.PathLike)):
         texts = _core.convert_files(path_bytes(source), target, options, several, progress)
     elif isinstance(source, numpy.ndarray) or is_array_elsewhere(source):

@@ -53,8 +53,8 @@ class Grid:
 
     def __init__(self, path: Path) -> None:
         self._path = os.fspath(path)
-        self._core = _core.Grid(path_bytes(path))
         self._absolute = os.path.abspath(self._path)
+        self._core = _core.Grid(path_bytes(path))
 
     def __enter__(self) -> Grid:
         return self
@@ -84,7 +84,7 @@ class Grid:
 
     @property
     def path(self) -> str:
-        """As it was given."""
+        """As it was given; of a URL without the user, password and query."""
         return self._path
 
     @property
@@ -257,6 +257,8 @@ class Grid:
         """
         if filter not in ("trilinear", "nearest"):
             raise UsageError(f"filter is {filter!r}, it must be 'trilinear' or 'nearest'")
+        if isinstance(points, numpy.ma.MaskedArray):
+            raise UsageError("points is a masked array; give points.filled(VALUE), or leave the masked positions out")
         try:
             given = numpy.asarray(points)
             if given.dtype.kind not in "iuf":
@@ -346,7 +348,8 @@ def open(path: Path, *, cache: Union[int, str] = "256MiB", storage_options: Opti
     cache
         Of a URL: bytes of the file, or "256MiB", above which what was read is forgotten when other blocks are asked for.
     storage_options
-        Of a URL: what fsspec's file system takes; http and https go through fsspec, too, where there are some.
+        Of a URL: what fsspec's file system takes; http and https go through fsspec, too, where there are others than
+        "headers".
 
     Raises InputError where it is no valid one; where it is missing or may not be read, that is a FileNotFoundError or
     PermissionError too.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from typing import Any, Sequence
 
 import numpy
@@ -14,10 +15,17 @@ from .errors import UsageError
 LONGEST_BOX = 150
 
 
+def _alone(value: Any) -> Any:
+    """The one value of an array without axes, of numpy, xarray or another library; anything else as it is."""
+    no_axes = getattr(value, "ndim", None) == 0 and not isinstance(value, numpy.generic)
+    return value.item() if no_axes and hasattr(value, "item") else value
+
+
 def text_of(value: Any) -> str:
     """A number so that it reads back the same; sequences with commas between; a path or a text as it is."""
-    if isinstance(value, (str, os.PathLike)):
-        return str(os.fspath(value))
+    value = _alone(value)
+    if isinstance(value, (str, bytes, os.PathLike)):
+        return os.fsdecode(value)
     if isinstance(value, (bool, numpy.bool_)):
         return str(bool(value))  # nobody means a number by it: let the check say so
     if isinstance(value, (int, numpy.integer)):
@@ -40,6 +48,16 @@ def path_bytes(path: Any) -> bytes:
 def is_url(path: Any) -> bool:
     """Whether weir.open takes it for a URL."""
     return isinstance(path, str) and "://" in path
+
+
+def shown_url(url: str) -> str:
+    """`url` as messages show it: without the user, password and query, which may be what opens it."""
+    return re.sub(r"(://[^?]*)\?.+", r"\1?...", re.sub(r"(?<=://)[^/?#]*@", "***@", url), flags=re.DOTALL)
+
+
+def shown_urls(text: str) -> str:
+    """A text, with each URL in it as messages show it."""
+    return re.sub(r"\S+://\S+", lambda found: shown_url(found[0]), text)
 
 
 def described(value: Any, longest: int = 40) -> str:
@@ -70,6 +88,7 @@ def given_options(**keywords: Any) -> dict[str, str]:
     """{"max-error": "0.5", "lossless": "true"}: what is None, and a flag that is False, is not given."""
     given = {}
     for name, value in keywords.items():
+        value = _alone(value)
         if name in _FLAGS and isinstance(value, (bool, int, numpy.bool_)):
             value = "true" if value else None
         if value is not None:

@@ -3,26 +3,31 @@
 from __future__ import annotations
 
 import json
-from typing import Any, Optional, Union
-from urllib.parse import urlsplit, urlunsplit
+from typing import Any, Mapping, Optional, Union
 
 from . import _core
 from .grid import Grid
-from .options import text_of
-from .remote_file import FsspecFile, HttpFile, RemoteFile
+from .options import shown_url, text_of
+from .remote_file import FsspecFile, HttpFile, RemoteFile, sidecar_url
 
 
 def open_remote_file(url: str, storage_options: Optional[dict[str, Any]]) -> RemoteFile:
     """What reads ranges of the file at `url`."""
-    if urlsplit(url).scheme in ("http", "https") and not storage_options:
-        return HttpFile(url)
+    headers = _headers_alone(storage_options or {})
+    if url.partition("://")[0].lower() in ("http", "https") and headers is not None:
+        return HttpFile(url, headers)
     return FsspecFile(url, storage_options or {})
 
 
-def sidecar_url(url: str) -> str:
-    """Of the sidecar beside the file at `url`, with the same query."""
-    parts = urlsplit(url)
-    return urlunsplit(parts._replace(path=parts.path + ".json")) if parts.query else url + ".json"
+def _headers_alone(options: Mapping[str, Any]) -> Optional[dict[str, str]]:
+    """The headers in fsspec's options of http; None where there is something else in them.
+
+    fsspec reads all of a file into memory where its server knows no ranges; HttpFile refuses it.
+    """
+    client = options.get("client_kwargs") or {}
+    if options.keys() - {"headers", "client_kwargs"} or client.keys() - {"headers"}:
+        return None
+    return {**(client.get("headers") or {}), **(options.get("headers") or {})}
 
 
 class RemoteGrid(Grid):
@@ -35,11 +40,12 @@ class RemoteGrid(Grid):
     def __init__(
         self, url: str, cache: Union[int, str] = "256MiB", storage_options: Optional[dict[str, Any]] = None
     ) -> None:
-        self._path = url
+        self._url = url
+        self._path = shown_url(url)
         self._cache = cache
         self._storage_options = storage_options
         self._file = open_remote_file(url, storage_options)
-        self._core = _core.open_remote(url, self._file.read, self._file.interrupt, text_of(cache))
+        self._core = _core.open_remote(self._path, self._file.read, self._file.interrupt, text_of(cache))
         self._sidecar: Optional[dict[str, Any]] = None
         self._sidecar_read = False
 
@@ -60,13 +66,13 @@ class RemoteGrid(Grid):
         Raises InputError where it is damaged, or of another file.
         """
         if not self._sidecar_read:
-            path = sidecar_url(self._path)
-            text = self._file.read_beside(path)
+            url = sidecar_url(self._url)
+            text = self._file.read_beside(url)
             if text is not None:
-                self._sidecar = json.loads(self._core.checked_sidecar(text, path))
+                self._sidecar = json.loads(self._core.checked_sidecar(text, shown_url(url)))
             self._sidecar_read = True
         return self._sidecar
 
     def __reduce__(self) -> tuple[Any, ...]:
         """A copy in another process opens the URL there."""
-        return RemoteGrid, (self._path, self._cache, self._storage_options)
+        return RemoteGrid, (self._url, self._cache, self._storage_options)

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import base64
 import contextlib
 import os
 import re
 import threading
 import weakref
-from typing import TYPE_CHECKING, Any, Callable, Iterator, Optional, Sequence
+from typing import TYPE_CHECKING, Any, Callable, Iterator, Mapping, NamedTuple, Optional, Sequence
+from urllib.parse import unquote_to_bytes, urljoin, urlsplit, urlunsplit
 
-from .errors import InputError, InputNotFoundError, InputPermissionError, IoError, UsageError
+from .errors import Error, InputError, InputNotFoundError, InputPermissionError, IoError, UsageError
+from .options import shown_url, shown_urls
 
 if TYPE_CHECKING:
     import urllib3
@@ -24,6 +27,16 @@ _AT_ONCE = 8
 _WAITS = (0.2, 0.4, 0.8)
 #: Seconds that a server may ask to wait.
 _LONGEST_WAIT = 30
+#: What servers answer that may answer otherwise soon.
+_BUSY = (429, 500, 502, 503, 504)
+#: What they answer where a file is missing: some stores say 401 or 403.
+_MISSING = (401, 403, 404, 410)
+#: What is for one server alone, and no other that it redirects to.
+_FOR_ONE_SERVER = ("authorization", "cookie", "proxy-authorization")
+#: What a caller's headers cannot say.
+_OWN_HEADERS = ("accept-encoding", "if-range", "range")
+#: Bytes of a body nobody wants that are read, so that the next request goes through the same connection.
+_SHORT_BODY = 16 << 10
 #: What a file system says of one version of a file: its size and tag, or times.
 _OF_VERSION = ("size", "ETag", "etag", "generation", "mtime", "created", "modified", "LastModified", "last_modified")
 #: No sidecar is longer.
@@ -173,54 +186,77 @@ class _BrokenConnection(IoError):
     """The body of an answer ended before its end."""
 
 
-class HttpFile(RemoteFile):
-    """A file by http or https, from a server that answers requests for ranges."""
+class _Connections(NamedTuple):
+    """What requests go through, until `given_up`."""
 
-    def __init__(self, url: str) -> None:
+    given_up: threading.Event
+    pool: urllib3.PoolManager
+
+
+class HttpFile(RemoteFile):
+    """A file by http or https, from a server that answers requests for ranges. `headers` go with each request; user and
+    password of the URL become the header Authorization, where there is none."""
+
+    def __init__(self, url: str, headers: Optional[Mapping[str, str]] = None) -> None:
         super().__init__()
+        self._url = url
+        self._shown = shown_url(url)
         try:
             import urllib3
         except ImportError:
-            raise UsageError(f"{url}: reading it wants urllib3; install python3-urllib3") from None
-        self._url = url
+            raise UsageError(f"{self._shown}: reading it wants urllib3; install python3-urllib3") from None
         self._failures = urllib3.exceptions.HTTPError
+        self._headers = {name: text for name, text in (headers or {}).items() if name.lower() not in _OWN_HEADERS}
+        self._headers["Accept-Encoding"] = "identity"
+        user = _parsed(url, self._shown).auth
+        if user is not None and not any(name.lower() == "authorization" for name in self._headers):
+            self._headers["Authorization"] = _basic_authorization(user)
         self._connect()
         self._version: Optional[str] = None  # by which the server tells that the file has changed
 
     def _connect(self) -> None:
-        self._given_up = threading.Event()
-        self._pool = _connections(self._given_up)
+        import urllib3
+
+        timeout = urllib3.Timeout(connect=10, read=30)
+        self._connections = _Connections(
+            threading.Event(), urllib3.PoolManager(maxsize=_AT_ONCE, block=True, timeout=timeout)
+        )
 
     def _give_up(self) -> None:
-        self._given_up.set()
+        self._connections.given_up.set()
         self._connect()
 
     def _read_piece(self, piece: Range) -> bytes:
+        through = self._connections
         for wait in _WAITS:
             try:
-                return self._ask_for(piece)
+                return self._ask_for(piece, through)
             except _BrokenConnection:
-                if self._given_up.wait(wait):
+                if through.given_up.wait(wait):
                     raise
-        return self._ask_for(piece)
+        return self._ask_for(piece, through)
 
-    def _ask_for(self, piece: Range) -> bytes:
+    def _ask_for(self, piece: Range, through: _Connections) -> bytes:
         offset, count = piece
-        headers = {"Range": f"bytes={offset}-{offset + count - 1}", "Accept-Encoding": "identity"}
+        headers = {"Range": f"bytes={offset}-{offset + count - 1}"}
         if self._version is not None:
             headers["If-Range"] = self._version
-        with self._answer(self._url, headers) as response:
+        with self._answer(self._url, headers, through) as response:
             if response.status == 416:
-                raise InputError(f"{self._url}: ends before byte {offset + count}; is it complete, and a NanoVDB file?")
+                raise InputError(
+                    f"{self._shown}: ends before byte {offset + count}; is it complete, and a NanoVDB file?"
+                )
             if response.status == 200 and self._version is not None:
-                raise InputError(f"{self._url}: changed while it was read; open it again")
+                raise InputError(f"{self._shown}: changed while it was read; open it again")
             if response.status == 200:
-                raise InputError(f"{self._url}: its server sends whole files only (status 200); copy the file to this machine")
-            _check_status(self._url, response)
+                raise InputError(
+                    f"{self._shown}: its server sends whole files only (status 200); copy the file to this machine"
+                )
+            _check_status(self._shown, response)
             self._check_range(response, offset, count)
             data = self._body(response, count + 1)
         if len(data) != count:
-            raise InputError(f"{self._url}: {len(data)} bytes instead of {count} at byte {offset}; is it complete?")
+            raise InputError(f"{self._shown}: {len(data)} bytes instead of {count} at byte {offset}; is it complete?")
         return self._count(data)
 
     def _check_range(self, response: urllib3.HTTPResponse, offset: int, count: int) -> None:
@@ -228,45 +264,103 @@ class HttpFile(RemoteFile):
         first, last = _range_in(said)
         if response.status != 206 or first != offset or last >= offset + count:
             raise IoError(
-                f"{self._url}: its server answers bytes {offset} to {offset + count - 1} with status {response.status} and "
-                f'Content-Range "{said}"; copy the file to this machine'
+                f"{self._shown}: its server answers bytes {offset} to {offset + count - 1} with status "
+                f'{response.status} and Content-Range "{said}"; copy the file to this machine'
             )
         version = _version(response)
         if self._version is None:
             self._version = version
         elif version is not None and version != self._version:
-            raise InputError(f"{self._url}: changed while it was read; open it again")
+            raise InputError(f"{self._shown}: changed while it was read; open it again")
 
     def read_beside(self, url: str) -> Optional[str]:
         self._leave_the_forks_connections()
-        with self._answer(url, {"Accept-Encoding": "identity"}) as response:
-            if response.status in (401, 403, 404, 410):  # some stores say 403 of what is missing
+        with self._answer(url, {}, self._connections) as response:
+            if response.status in _MISSING:
                 return None
-            _check_status(url, response)
+            _check_status(shown_url(url), response)
             data = self._body(response, _LONGEST_SIDECAR + 1)
-        return _sidecar_text(url, self._count(data))
+        return _sidecar_text(shown_url(url), self._count(data))
 
     @contextlib.contextmanager
-    def _answer(self, url: str, headers: dict[str, str]) -> Iterator[urllib3.HTTPResponse]:
+    def _answer(self, url: str, headers: dict[str, str], through: _Connections) -> Iterator[urllib3.HTTPResponse]:
         """The answer to a request, of which what is not read is not waited for."""
-        try:
-            response = self._pool.request("GET", url, headers=headers, preload_content=False)
-        except self._failures as error:
-            raise IoError(f"{url}: cannot be read: {_reason(error)}") from error
+        response = self._first_answer(url, {**self._headers, **headers}, through)
         try:
             yield response
         finally:
-            if response.length_remaining != 0:  # the connection still has the rest of the body
-                response.close()
-            response.release_conn()
+            self._leave(response)
+
+    def _first_answer(self, url: str, headers: dict[str, str], through: _Connections) -> urllib3.HTTPResponse:
+        """The first one that is no redirect and not of a busy server, of as many as there are _WAITS, and one more.
+
+        By a loop of its own, since urllib3 reads all of the bodies that it leaves out.
+        """
+        shown = shown_url(url)
+        for wait in (*_WAITS, None):
+            if through.given_up.is_set():
+                raise IoError(f"{shown}: reading was interrupted")
+            try:
+                response = through.pool.request(
+                    "GET",
+                    url,
+                    headers=headers,
+                    redirect=False,
+                    retries=False,
+                    preload_content=False,
+                    decode_content=False,
+                )
+            except self._failures as error:
+                if wait is None:
+                    raise IoError(f"{shown}: cannot be read: {_reason(error)}") from error
+                through.given_up.wait(wait)
+                continue
+            place = response.get_redirect_location()
+            if place:
+                self._leave(response)
+                if wait is None:
+                    raise IoError(f"{shown}: cannot be read: too many redirects")
+                url, headers = _redirected(url, headers, place, shown)
+            elif response.status in _BUSY and wait is not None:
+                self._leave(response)
+                through.given_up.wait(self._wait_asked_by(response, wait))
+            else:
+                return response
+        raise AssertionError("the last one returns or raises")
+
+    def _wait_asked_by(self, response: urllib3.HTTPResponse, otherwise: float) -> float:
+        import urllib3
+
+        try:
+            asked = urllib3.Retry().get_retry_after(response)
+        except (self._failures, OverflowError, TypeError, ValueError):  # no number and no date
+            return otherwise
+        return otherwise if asked is None else min(asked, _LONGEST_WAIT)
+
+    def _leave(self, response: urllib3.HTTPResponse) -> None:
+        """Lets go of an answer, and of its connection, too, where more than a few bytes of it have not been read."""
+        left = response.length_remaining
+        if left is not None and left <= _SHORT_BODY:  # of 0, too, which the connection learns by reading alone
+            with contextlib.suppress(self._failures):
+                response.read(left + 1, decode_content=False)
+        if response.length_remaining != 0:  # the connection still has the rest of the body
+            response.close()
+        response.release_conn()
 
     def _body(self, response: urllib3.HTTPResponse, most: int) -> bytes:
+        coding = response.headers.get("Content-Encoding", "").strip()
+        if coding.lower() not in ("", "identity"):  # a few bytes could become any number
+            raise InputError(
+                f"{self._shown}: its server sends compressed bytes ({coding[:40]}); copy the file to this machine"
+            )
         try:
-            data = response.read(most)
+            data = response.read(most, decode_content=False)
         except self._failures as error:
-            raise _BrokenConnection(f"{self._url}: the connection broke: {error}") from error
+            raise _BrokenConnection(f"{self._shown}: the connection broke: {error}") from error
         if len(data) < most and response.length_remaining:
-            raise _BrokenConnection(f"{self._url}: the connection broke: {response.length_remaining} bytes did not come")
+            raise _BrokenConnection(
+                f"{self._shown}: the connection broke: {response.length_remaining} bytes did not come"
+            )
         return data
 
 
@@ -275,16 +369,17 @@ class FsspecFile(RemoteFile):
 
     def __init__(self, url: str, options: dict[str, Any]) -> None:
         super().__init__()
+        self._url = url
+        self._shown = shown_url(url)
         try:
             import fsspec.core
         except ImportError:
-            raise UsageError(f"{url}: reading it wants fsspec; install python3-fsspec") from None
-        self._url = url
+            raise UsageError(f"{self._shown}: reading it wants fsspec; install python3-fsspec") from None
         self._options = options
         try:
             self._connect()
         except (ImportError, ValueError) as error:
-            raise UsageError(f"{url}: cannot be opened: {error}") from error
+            raise UsageError(f"{self._shown}: cannot be opened: {shown_urls(str(error))}") from self._cause(error)
         self._version: Optional[dict[str, Any]] = None  # as of the first bytes that were read
 
     def read(self, ranges: Sequence[Range]) -> list[bytes]:
@@ -293,7 +388,7 @@ class FsspecFile(RemoteFile):
         found = super().read(ranges)
         version = self._run(self._found_version, [(0, 0)])[0]
         if self._version is not None and version is not None and version != self._version:
-            raise InputError(f"{self._url}: changed while it was read; open it again")
+            raise InputError(f"{self._shown}: changed while it was read; open it again")
         return found
 
     def _connect(self) -> None:
@@ -314,46 +409,87 @@ class FsspecFile(RemoteFile):
 
     def _read_piece(self, piece: Range) -> bytes:
         offset, count = piece
-        data = self._cat(self._path, offset, offset + count)
+        try:
+            data = self._system.cat_file(self._path, start=offset, end=offset + count)
+        except Exception as error:  # each file system has its own
+            raise self._failure(error) from self._cause(error)
         if len(data) != count:
             raise InputError(
-                f"{self._url}: {len(data)} bytes instead of {count} at byte {offset}; is it complete, and a NanoVDB file?"
+                f"{self._shown}: {len(data)} bytes instead of {count} at byte {offset}; "
+                "is it complete, and a NanoVDB file?"
             )
         return self._count(data)
 
     def read_beside(self, url: str) -> Optional[str]:
         self._leave_the_forks_connections()
         try:
-            data = self._cat(self._path + ".json", 0, _LONGEST_SIDECAR + 1)
+            data = self._system.cat_file(sidecar_url(self._path), start=0, end=_LONGEST_SIDECAR + 1)
         except (FileNotFoundError, PermissionError):
             return None
-        return _sidecar_text(url, self._count(data))
+        except Exception as error:  # of http: aiohttp's, with the status
+            if getattr(error, "status", None) in _MISSING:
+                return None
+            raise self._failure(error) from self._cause(error)
+        return _sidecar_text(shown_url(url), self._count(data))
 
-    def _cat(self, path: str, start: int, end: int) -> bytes:
-        try:
-            return self._system.cat_file(path, start=start, end=end)
-        except FileNotFoundError as error:
-            raise InputNotFoundError(2, f"{self._url}: there is no such file", self._url) from error
-        except PermissionError as error:
-            raise InputPermissionError(13, f"{self._url}: may not be read: {error}", self._url) from error
-        except Exception as error:  # each file system has its own
-            raise IoError(f"{self._url}: cannot be read: {error or error.__class__.__name__}") from error
+    def _failure(self, error: Exception) -> Error:
+        """What weir raises where the file system raises `error`."""
+        if isinstance(error, FileNotFoundError):
+            return InputNotFoundError(2, f"{self._shown}: there is no such file", self._shown)
+        said = shown_urls(str(error)) or error.__class__.__name__
+        if isinstance(error, PermissionError):
+            return InputPermissionError(13, f"{self._shown}: may not be read: {said}", self._shown)
+        return IoError(f"{self._shown}: cannot be read: {said}")
+
+    def _cause(self, error: Exception) -> Optional[Exception]:
+        """`error`, for who looks for it; not where it may tell what the URL hides."""
+        return error if self._shown == self._url else None
 
 
-def _connections(given_up: threading.Event) -> urllib3.PoolManager:
-    """Connections that are tried again a few times, until `given_up`."""
+def _parsed(url: str, shown: str) -> urllib3.util.Url:
+    """The parts of a URL as urllib3 sees them, so that it asks the same server. Raises UsageError."""
     import urllib3
 
-    class Retries(urllib3.Retry):
-        def is_exhausted(self) -> bool:
-            return given_up.is_set() or super().is_exhausted()
+    try:
+        parts = urllib3.util.parse_url(url)
+    except ValueError:
+        parts = None
+    if parts is None or parts.scheme not in ("http", "https") or not parts.host:
+        raise UsageError(f"{shown}: is no URL of http or https; correct it")
+    return parts
 
-        def get_retry_after(self, response: urllib3.HTTPResponse) -> Optional[float]:
-            wait = super().get_retry_after(response)
-            return None if wait is None else min(wait, _LONGEST_WAIT)
 
-    retries = Retries(total=len(_WAITS), backoff_factor=0.2, status_forcelist=(429, 500, 502, 503, 504), raise_on_status=False)
-    return urllib3.PoolManager(maxsize=_AT_ONCE, block=True, retries=retries, timeout=urllib3.Timeout(connect=10, read=30))
+def _basic_authorization(user: str) -> str:
+    """The header of "user:password", %-encoded as a URL has it."""
+    name, _, password = user.partition(":")
+    both = unquote_to_bytes(name) + b":" + unquote_to_bytes(password)
+    return "Basic " + base64.b64encode(both).decode()
+
+
+def _redirected(url: str, headers: dict[str, str], place: str, shown: str) -> tuple[str, dict[str, str]]:
+    """Where `place` leads from `url`, and the headers of the request there."""
+    try:
+        target = urljoin(url, place)
+        same_server = _server(url, shown) == _server(target, shown)
+    except ValueError:
+        where = shown_url(place)[:200]
+        raise IoError(f"{shown}: its server redirects to {where!r}, which is no URL of http or https") from None
+    if same_server:
+        return target, headers
+    return target, {name: text for name, text in headers.items() if name.lower() not in _FOR_ONE_SERVER}
+
+
+def _server(url: str, shown: str) -> tuple[str, str, int]:
+    parts = _parsed(url, shown)
+    return parts.scheme, parts.host, parts.port or {"http": 80, "https": 443}[parts.scheme]
+
+
+def sidecar_url(url: str) -> str:
+    """Of the sidecar beside the file at `url`, for http and https with the same query."""
+    parts = urlsplit(url)
+    if parts.scheme not in ("http", "https") or not parts.query:
+        return url + ".json"
+    return urlunsplit(parts._replace(path=parts.path + ".json"))
 
 
 def _reason(error: Exception) -> str:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+import math
 import os
 from typing import TYPE_CHECKING, Any, Iterable, Optional
 
@@ -21,8 +23,18 @@ CHUNK = 128
 _UNNAMED = "values"
 
 
+#: Places of a list that are closer are read with what lies between them: they are in one block of 8^3 voxels or two.
+_GAP = 8
+#: A call for each costs more than to decode the box around them where there are more.
+_MOST_BOXES = 64
+#: A look-up of one voxel takes as long as to decode so many of a box.
+_LOOK_UP = 8
+#: Voxels along an axis, of which float32 has the positions of all centres.
+_MOST_SAMPLED = 2**23
+
+
 class GridArray(BackendArray):  # type: ignore[misc]
-    """A level of a grid as xarray reads arrays: of lists of places along axes, the box that holds them is read."""
+    """A level of a grid as xarray reads arrays: of lists of places along axes, the boxes that hold them are read."""
 
     def __init__(self, grid: Grid, level: int) -> None:
         self.grid = grid
@@ -32,10 +44,59 @@ class GridArray(BackendArray):  # type: ignore[misc]
 
     def __getitem__(self, key: Any) -> Any:
         # Not by xarray's explicit_indexing_adapter, which misplaces slices with negative steps.
-        box, rest = zip(*(_box_and_rest(part) for part in key.tuple))
+        parts = tuple(_from_zero(part, axis, self.shape[axis]) for axis, part in enumerate(key.tuple))
+        if isinstance(key, indexing.VectorizedIndexer):
+            return self._points(parts)
+        return self._lists(parts)
+
+    def _lists(self, parts: tuple[Any, ...]) -> Any:
+        """Of each combination of runs of the lists one box."""
+        lists = {axis: numpy.unique(part, return_inverse=True) for axis, part in enumerate(parts) if _is_list(part)}
+        if not lists or any(places.size == 0 for places, _ in lists.values()):
+            return self._box(parts, False)
+        gap = _GAP
+        found = [_runs(places, gap) for places, _ in lists.values()]
+        while math.prod(map(len, found)) > _MOST_BOXES:
+            gap *= 2
+            found = [_runs(places, gap) for places, _ in lists.values()]
+        rows = [axis for axis, part in enumerate(parts) if isinstance(part, slice) or axis in lists]
+        counts = [len(lists[axis][0]) if axis in lists else len(range(self.shape[axis])[parts[axis]]) for axis in rows]
+        values = numpy.empty(counts, self.dtype)
+        for runs in itertools.product(*found):
+            of_axis = dict(zip(lists, runs))
+            box = tuple(lists[axis][0][of_axis[axis]] if axis in lists else part for axis, part in enumerate(parts))
+            values[tuple(of_axis.get(axis, slice(None)) for axis in rows)] = self._box(box, False)
+        for place, axis in enumerate(rows):
+            if axis in lists:
+                values = values.take(lists[axis][1], place)
+        return values
+
+    def _points(self, parts: tuple[Any, ...]) -> Any:
+        """Of points that are few in the box around them each by itself, or each of their blocks."""
+        if not all(_is_list(part) for part in parts):
+            return self._box(parts, True)
+        shape = numpy.broadcast_shapes(*(part.shape for part in parts))
+        count = math.prod(shape)
+        if count == 0 or count * _LOOK_UP >= math.prod(int(part.max()) + 1 - int(part.min()) for part in parts):
+            return self._box(parts, True)
+        places = numpy.stack([numpy.broadcast_to(part, shape).ravel() for part in parts], axis=-1)
+        if self.level == 0 and max(self.shape) < _MOST_SAMPLED:
+            return self.grid.sample(places[:, ::-1] + 0.5, "nearest").reshape(shape)
+        blocks, block_of = numpy.unique(places // 8, axis=0, return_inverse=True)
+        if len(blocks) > _MOST_BOXES:
+            return self._box(parts, True)
+        values = numpy.empty(count, self.dtype)
+        for block in range(len(blocks)):
+            chosen = block_of == block
+            values[chosen] = self._box(tuple(places[chosen].T), True)
+        return values.reshape(shape)
+
+    def _box(self, parts: tuple[Any, ...], together: bool) -> Any:
+        """What `parts` ask of the box that holds all of it; whether lists are read together, as points."""
+        box, rest = zip(*(_box_and_rest(part) for part in parts))
         values = self.grid._read(box, self.level)
         rest = tuple(part for part in rest if part is not None)  # the axes that are left
-        if isinstance(key, indexing.VectorizedIndexer):
+        if together:
             return _point_by_point(values, rest)
         for axis, part in enumerate(rest):
             if not isinstance(part, slice):
@@ -43,11 +104,32 @@ class GridArray(BackendArray):  # type: ignore[misc]
         return values
 
 
+def _is_list(part: Any) -> bool:
+    return isinstance(part, numpy.ndarray) and part.ndim > 0
+
+
+def _from_zero(part: Any, axis: int, count: int) -> Any:
+    """A list of places, those from the end counted from 0; anything else as it is. Raises IndexError outside."""
+    if not _is_list(part):
+        return part
+    places = numpy.where(part < 0, part + count, part)
+    outside = part[(places < 0) | (places >= count)]
+    if outside.size > 0:
+        raise IndexError(f"index {outside[0]} is out of bounds for axis {axis} ({'zyx'[axis]}) with size {count}")
+    return places
+
+
+def _runs(places: Any, gap: int) -> list[slice]:
+    """Slices of rising `places`, between which there are steps of more than `gap`."""
+    ends = [0, *(numpy.flatnonzero(numpy.diff(places) > gap) + 1).tolist(), len(places)]
+    return [slice(begin, end) for begin, end in zip(ends, ends[1:])]
+
+
 def _box_and_rest(part: Any) -> tuple[Any, Any]:
     """The place or slice that holds what `part` asks of an axis, and what it asks of that; None: the axis is gone."""
     if isinstance(part, slice):
         return part, slice(None)
-    if isinstance(part, numpy.ndarray) and part.ndim > 0:
+    if _is_list(part):
         if part.size == 0:
             return slice(0, 0), part
         return slice(int(part.min()), int(part.max()) + 1), part - part.min()
@@ -118,7 +200,7 @@ class WeirBackendEntrypoint(BackendEntrypoint):  # type: ignore[misc]
         except BaseException:
             grid.close()
             raise
-        dataset.encoding["source"] = os.fspath(filename_or_obj)
+        dataset.encoding["source"] = grid.path
         dataset.set_close(grid.close)
         return dataset
 

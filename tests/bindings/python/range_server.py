@@ -1,5 +1,6 @@
 """A web server on loopback that answers requests for ranges, and notes them."""
 
+import contextlib
 import http.server
 import re
 import threading
@@ -16,7 +17,9 @@ class RangeServer:
 
     ranges: whether it knows ranges. tags: whether it tells versions apart. failures: how many requests it refuses with
     status 503 from now on. cut: how many answers end in the middle from now on. beyond: whether answers go on to the
-    file's end. stalled: while it is set, no request is answered. changed(path) makes another version of a file of it.
+    file's end. stalled: while it is set, no request is answered. coding: the Content-Encoding that it claims. moved:
+    where it redirects a path to, with a body of 64 MiB; wasted: bytes of these that were sent. needs: headers without
+    which it answers 401; headers: those of the last request. changed(path) makes another version of a file of it.
     """
 
     def __init__(self, files, ranges=True, tags=True):
@@ -28,6 +31,11 @@ class RangeServer:
         self.beyond = False
         self.stalled = threading.Event()
         self.forbidden = set()
+        self.coding = None
+        self.moved = {}
+        self.wasted = 0
+        self.needs = {}
+        self.headers = {}
         self.versions = dict.fromkeys(files, 1)
         self.asked = []
         self.lock = threading.Lock()
@@ -66,11 +74,26 @@ class RangeServer:
                 self.end_headers()
                 self.wfile.write(body)
 
+            def redirect(self, place):
+                self.close_connection = True
+                self.send_response(302)
+                self.send_header("Location", place)
+                self.end_headers()
+                with contextlib.suppress(OSError):  # the client does not want the rest
+                    for _ in range(1024):
+                        self.wfile.write(bytes(1 << 16))
+                        owner.wasted += 1 << 16
+
             def do_GET(self):
                 path = self.path.partition("?")[0]
                 while owner.stalled.is_set():
                     time.sleep(0.01)
+                owner.headers = dict(self.headers)
+                if path in owner.moved:
+                    return self.redirect(owner.moved[path])
                 with owner.lock:
+                    if any(self.headers.get(name) != text for name, text in owner.needs.items()):
+                        return self.answer(401)
                     if owner.failures > 0:
                         owner.failures -= 1
                         return self.answer(503)
@@ -83,6 +106,8 @@ class RangeServer:
                     found = re.fullmatch(r"bytes=(\d+)-(\d+)", self.headers.get("Range", ""))
                     same = self.headers.get("If-Range", tag) == tag
                     headers = {"ETag": tag} if owner.tags else {}
+                    if owner.coding is not None:
+                        headers["Content_Encoding"] = owner.coding
                     if not found or not owner.ranges or not same:
                         return self.answer(200, data, **headers)
                     first, last = int(found[1]), len(data) - 1 if owner.beyond else min(int(found[2]), len(data) - 1)

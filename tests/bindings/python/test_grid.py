@@ -2,6 +2,7 @@
 
 import gc
 import json
+import os
 import unittest
 
 import numpy
@@ -37,6 +38,19 @@ class Properties(FolderTest):
         checks = grid.verify()
         self.assertTrue(all(check.ok for check in checks))
         self.assertEqual(run_weir("verify", grid.path), f"{grid.path}: all {len(checks)} checks hold\n")
+
+    def test_another_working_directory_changes_nothing(self):
+        values = noise((20, 30, 40))
+        here = self.lossless(values)
+        (self.folder / "other").mkdir()
+        weir.convert(values[:9], self.folder / "other/a.nvdb", lossless=True)
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(self.folder)
+        with weir.open("a.nvdb") as grid:
+            os.chdir("other")
+            self.assertEqual(grid.sidecar, here.sidecar)
+            self.assertEqual(grid.verify(), here.verify())
+            self.assertEqual(repr(grid), "<weir.Grid 'a.nvdb', 40 x 30 x 20, fpn>")
 
     def test_verify_finds_a_changed_byte(self):
         self.lossless(noise((20, 30, 40)))

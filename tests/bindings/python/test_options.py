@@ -37,6 +37,25 @@ class Options(FolderTest):
             record = weir.convert(ramp(9, 9, 9), self.folder / "a.nvdb", lossless=value, overwrite=True)
             self.assertNotIn("lossless", record["weir"]["options"])
 
+    def test_arrays_without_axes_and_paths_of_bytes_are_what_they_hold(self):
+        import numpy
+
+        record = weir.convert(
+            ramp(9, 9, 9),
+            self.folder / "a.nvdb",
+            psnr=numpy.array(40.5),
+            lossless=numpy.array(False),
+            spacing=(numpy.array(1), 2, 3),
+            dataset=b"rho",
+            work_dir=str(self.folder).encode(),
+        )
+        options = record["weir"]["options"]
+        self.assertEqual(
+            {name: options.get(name) for name in ("psnr", "lossless", "spacing", "dataset", "work-dir")},
+            {"psnr": "40.5", "lossless": None, "spacing": "1,2,3", "dataset": "rho", "work-dir": str(self.folder)},
+        )
+        self.assertEqual(record["source"]["dataset"], "rho")
+
     def test_the_keywords_of_convert_are_those_of_the_table(self):
         page = (SOURCE / "docs/options.md").read_text()
         table = set(re.findall(r"^\| `--[^|]*(?:\\\|[^|]*)*\| `(\w+)` \|", page, re.MULTILINE))

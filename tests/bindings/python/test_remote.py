@@ -1,5 +1,6 @@
 """Files elsewhere: the same values as of the file here, in few requests, and a line where that cannot be."""
 
+import base64
 import os
 import pathlib
 import pickle
@@ -10,6 +11,7 @@ import sys
 import tempfile
 import threading
 import time
+import traceback
 import unittest
 import unittest.mock
 
@@ -96,7 +98,7 @@ class Remote(FolderTest):
         self.assertIsNone(weir.open(url).sidecar)
         server.forbidden.clear()
         server.files["/run/a.nvdb.json"] = self.files["/run/a.nvdb.json"].replace(b'"bytes"', b'"bites"')
-        self.assertIn("a.nvdb.json?key=1", self.refused(weir.InputError, lambda: weir.open(url).sidecar))
+        self.assertIn("a.nvdb.json?...: ", self.refused(weir.InputError, lambda: weir.open(url).sidecar))
 
     def test_what_was_read_is_forgotten_above_the_cache(self):
         server, url = self.served()
@@ -257,6 +259,108 @@ class Remote(FolderTest):
         with self.assertRaisesRegex(weir.IoError, "^http://.*/run/a.nvdb: the connection broke: "):
             grid[9]
 
+    def test_compressed_bodies_are_refused(self):
+        server, url = self.served()
+        grid = weir.open(url)
+        server.coding = "gzip, gzip"
+        message = self.refused(weir.InputError, lambda: grid[9])
+        self.assertEqual(
+            message, f"{url}: its server sends compressed bytes (gzip, gzip); copy the file to this machine"
+        )
+        self.assertIn("(gzip, gzip)", self.refused(weir.InputError, lambda: grid.sidecar))
+        server.coding = "identity"
+        self.assertTrue(same(grid[9], self.here[9]))
+
+    def test_redirects_are_followed_and_their_bodies_not_read(self):
+        server, _ = self.served()
+        places = {"/there": "/run/a.nvdb", "/loop": "/loop", "/file": "file:///etc/passwd?key=7", "/bad": "http://["}
+        server.moved = places
+        grid = weir.open(server.url("/there"))
+        self.assertTrue(same(grid[9], self.here[9]))
+        url = server.url("/loop")
+        self.assertEqual(self.refused(weir.IoError, weir.open, url), f"{url}: cannot be read: too many redirects")
+        for path, place in (("/file", "file:///etc/passwd?..."), ("/bad", "http://[")):
+            self.assertEqual(
+                self.refused(weir.IoError, weir.open, server.url(path)),
+                f"{server.url(path)}: its server redirects to '{place}', which is no URL of http or https",
+            )
+        self.assertLess(server.wasted, 128 << 20, "of some thirteen bodies of 64 MiB")
+
+    def test_messages_show_no_passwords_and_signatures(self):
+        server, url = self.served("/run/a.nvdb?X-Signature=secret7")
+        asked = url.replace("://", "://me:pass%3Aword@")
+        shown = server.url("/run/a.nvdb?...").replace("://", "://***@")
+        server.needs = {"Authorization": "Basic " + base64.b64encode(b"me:pass:word").decode()}
+        grid = weir.open(asked)
+        self.assertEqual(repr(grid), f"<weir.Grid '{shown}', 264 x 264 x 264, packed>")
+        self.assertEqual(grid.path, shown)
+        self.assertEqual(grid.certificate, self.here.certificate)
+        copy = pickle.loads(pickle.dumps(grid))
+        self.assertTrue(same(copy[5], self.here[5]))
+        self.assertEqual(
+            self.refused(weir.UsageError, grid.verify),
+            f"{shown}: verify reads all of the file; copy it to this machine",
+        )
+        server.needs = {"Authorization": "none"}
+        with self.assertRaises(PermissionError) as raised:
+            weir.open(asked)
+        self.assertEqual(raised.exception.filename, shown)
+        self.assertEqual(
+            str(raised.exception), f"{shown}: its server says 401 Unauthorized; it may not be read without other rights"
+        )
+        server.needs = {}
+        server.coding = "gzip"
+        with self.assertRaises(weir.InputError) as raised:
+            weir.open(asked)
+        server.close()
+        with self.assertRaises(weir.IoError) as broken:
+            weir.open(asked)
+        for error in (raised.exception, broken.exception):
+            text = "".join(traceback.format_exception(error))
+            self.assertIn(shown, text)
+            self.assertNotRegex(text, "secret7|pass%3Aword")
+        self.assertIn(repr(shown), self.refused(weir.UsageError, weir.convert, asked, self.folder / "a.nvdb"))
+        self.assertEqual(
+            self.refused(weir.UsageError, weir.open, "https://me:pass%3Aword@[/a.nvdb?key=secret7"),
+            "https://***@[/a.nvdb?...: is no URL of http or https; correct it",
+        )
+
+    def test_headers_go_to_the_server_that_they_are_for(self):
+        other, url = self.served()
+        server, _ = self.served()
+        server.moved = {"/here": "/run/a.nvdb", "/elsewhere": url}
+        headers = {"authorization": "Bearer 7", "X-Team": "a", "range": "bytes=0-9"}
+        for options in ({"headers": headers}, {"client_kwargs": {"headers": headers}}):
+            grid = weir.open(server.url("/here"), storage_options=options)
+            self.assertTrue(same(grid[9], self.here[9]))
+            self.assertEqual((server.headers["authorization"], server.headers["X-Team"]), ("Bearer 7", "a"))
+            weir.open(server.url("/elsewhere"), storage_options=options)
+            self.assertEqual((other.headers.get("authorization"), other.headers["X-Team"]), (None, "a"))
+        whole, url = self.served(ranges=False)
+        self.assertEqual(
+            self.refused(weir.InputError, weir.open, url, storage_options={"headers": headers}),
+            f"{url}: its server sends whole files only (status 200); copy the file to this machine",
+        )
+
+    def test_reads_that_were_given_up_make_no_more_requests(self):
+        server, url = self.served()
+        grid = weir.open(url)
+        server.cut = 1000
+        failed = []
+        reader = threading.Thread(target=lambda: failed.append(self.refused(weir.IoError, lambda: grid[9])))
+        reader.start()
+        while server.cut == 1000:
+            time.sleep(0.01)
+        grid._file.interrupt()
+        reader.join()
+        self.assertIn("reading was interrupted", failed[0])
+        time.sleep(0.1)
+        left = server.cut
+        time.sleep(1)
+        self.assertEqual(server.cut, left)
+        server.cut = 0
+        self.assertTrue(same(grid[9], self.here[9]))
+
     def test_answers_longer_than_what_was_asked_for(self):
         server, url = self.served()
         server.beyond = True
@@ -316,6 +420,20 @@ class Remote(FolderTest):
         with self.assertRaises(FileNotFoundError) as raised:
             weir.open("memory://run/b.nvdb")
         self.assertEqual(str(raised.exception), "memory://run/b.nvdb: there is no such file")
+        for status in (401, 403, 404, 410, 500):  # as aiohttp says it
+            answer = OSError(f"{status}, url=URL('https://me:pass@host/a.nvdb.json?key=secret7')")
+            answer.status = status
+            beside = weir.open("memory://run/a.nvdb")
+            beside._file._path = "https://host/a.nvdb?key=secret7"
+            with unittest.mock.patch.object(type(memory), "cat_file", side_effect=answer) as asked:
+                if status < 500:
+                    self.assertIsNone(beside.sidecar)
+                else:
+                    self.assertEqual(
+                        self.refused(weir.IoError, lambda: beside.sidecar),
+                        "memory://run/a.nvdb: cannot be read: 500, url=URL('https://***@host/a.nvdb.json?...",
+                    )
+            self.assertEqual(asked.call_args.args[-1], "https://host/a.nvdb.json?key=secret7")
         memory.pipe("/run/a.nvdb", bytes(len(self.files["/run/a.nvdb"])))
         message = self.refused(weir.InputError, grid.to_numpy)
         self.assertEqual(message, "memory://run/a.nvdb: changed while it was read; open it again")

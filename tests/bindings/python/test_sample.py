@@ -95,6 +95,10 @@ class Sample(FolderTest):
             "filter is 'cubic', it must be 'trilinear' or 'nearest'": ([[1, 2, 3]], "cubic"),
         }.items():
             self.assertEqual(self.refused(weir.UsageError, grid.sample, *arguments), message)
+        self.assertEqual(
+            self.refused(weir.UsageError, grid.sample, numpy.ma.masked_array([[1, 2, 3]], [[0, 0, 1]])),
+            "points is a masked array; give points.filled(VALUE), or leave the masked positions out",
+        )
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 
 import pickle
 import unittest
+import unittest.mock
 
 import numpy
 
@@ -80,6 +81,48 @@ class ToXarray(FolderTest):
             array.isel(y=places % 20, x=places % 12, z=slice(20, 3, -4)),
             numpy.moveaxis(values[20:3:-4, [0, 5, 7], [0, 5, 3]], 1, array.isel(y=places % 20).dims.index("point")),
         )
+
+    def test_lists_and_points_decode_what_they_hold(self):
+        values = ramp(70, 60, 300)
+        values[5:9, 5:9, 5:9] = numpy.nan
+        decoded = []
+        read = weir.Grid._read
+
+        def noted(grid, key, level):
+            found = read(grid, key, level)
+            decoded.append(found.size)
+            return found
+
+        for keywords in (
+            {"lossless": True},
+            {"encoding": "packed", "rate": 16},
+            {"encoding": "fpn", "rate": 5},
+            {"encoding": "fp8", "rate": 3},
+        ):
+            holds_nan = keywords.get("encoding") not in ("fpn", "fp8")
+            given = values if holds_nan else numpy.nan_to_num(values)
+            weir.convert(given, self.folder / "a.nvdb", overwrite=True, nonfinite="keep", **keywords)
+            for level in (0, 1):
+                with (
+                    self.subTest(level=level, **keywords),
+                    weir.open(self.folder / "a.nvdb") as grid,
+                    unittest.mock.patch.object(weir.Grid, "_read", noted),
+                ):
+                    array, wanted = grid.to_xarray(level=level), grid.to_numpy(level=level)
+                    last = wanted.shape[0] - 1
+                    decoded.clear()
+                    found = array[[last, 0, 7, 0, -1], ::-2, [3, 33]].values
+                    self.assertTrue(same(found, wanted[[last, 0, 7, 0, -1]][:, ::-2][:, :, [3, 33]]))
+                    self.assertEqual(sum(decoded), (8 + 1) * -(-wanted.shape[1] // 2) * 2)
+                    places = numpy.random.default_rng(3).integers(0, wanted.shape, (40, 3))
+                    places[:2] = [[5, 5, 5], [-1, -1, -1]]
+                    chosen = {axis: xarray.DataArray(places[:, i], dims="point") for i, axis in enumerate("zyx")}
+                    decoded.clear()
+                    self.assertTrue(same(array.isel(chosen).values, wanted[tuple(places.T)]))
+                    self.assertLess(sum(decoded), 40 * 8**3)
+                    chosen["z"][7] = 999
+                    with self.assertRaisesRegex(IndexError, "^index 999 is out of bounds for axis 0"):
+                        array.isel(chosen).values
 
     def test_a_quantity_that_is_called_like_an_axis(self):
         for given, name in (("/velocity/x", "velocity_x"), ("z", None), ("/z/y", "z_y")):
