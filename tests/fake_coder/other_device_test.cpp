@@ -77,6 +77,16 @@ TEST_F(OtherDevice, TheContextOfTheCallerIsCurrentAgain) {
   EXPECT_EQ(runtime().context(), before);
 }
 
+TEST_F(OtherDevice, HoldsItsContextOnceAndWhoeverElseLetsGo) {
+  runtime().retain(1);  // another library's
+  elsewhere([] {
+    for (int i = 0; i < 5; ++i) const KeptDevice kept(1);
+  });
+  EXPECT_EQ(runtime().references(1), 2);
+  runtime().release(1);
+  EXPECT_EQ(runtime().devices_in_use(), Devices{1});
+}
+
 TEST_F(OtherDevice, FreesWhatThereIsWhereTheDeviceIsGone) {
   bool freed = false;
   free_on(2, [&] { freed = true; });

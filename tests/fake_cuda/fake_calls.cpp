@@ -36,8 +36,8 @@ cudaError_t release(void* memory) {
 void* context_of(int device) { return reinterpret_cast<void*>(std::uintptr_t{1} + static_cast<unsigned>(device)); }
 
 // The driver's. A context is the address that is one more than its device's number.
-int cuCtxGetId(void*, unsigned long long* id) {
-  *id = runtime().context();
+int cuCtxGetId(void* context, unsigned long long* id) {
+  *id = context == nullptr ? runtime().context() : runtime().context_of(static_cast<int>(number(context)) - 1);
   return *id != 0 ? 0 : 1;
 }
 int cuCtxGetCurrent(void** context) {
@@ -56,11 +56,14 @@ int cuDevicePrimaryCtxGetState(int device, unsigned* flags, int* active) {
 
 int cuDevicePrimaryCtxRetain(void** context, int device) {
   if (device < 0 || device >= runtime().devices()) return 1;
-  runtime().use(device);
+  runtime().retain(device);
   *context = context_of(device);
   return 0;
 }
-int cuDevicePrimaryCtxRelease(int) { return 0; }
+int cuDevicePrimaryCtxRelease(int device) {
+  runtime().release(device);
+  return 0;
+}
 
 cudaError_t entry_point(const std::string& symbol, void** function, cudaDriverEntryPointQueryResult* result) {
   const std::map<std::string, void*> known{

@@ -41,6 +41,7 @@ void FakeRuntime::reset() {
   sticky_ = last_ = cudaSuccess;
   devices_ = 1;
   in_use_.clear();
+  references_.clear();
   ++generation_;
 }
 
@@ -84,21 +85,39 @@ void FakeRuntime::make_some_current() {
   in_use_.insert(thread().chosen);
 }
 
-void FakeRuntime::use(int device) {
+void FakeRuntime::retain(int device) {
   const std::lock_guard lock(mutex_);
-  in_use_.insert(device);
+  ++references_[device];
+}
+
+void FakeRuntime::release(int device) {
+  const std::lock_guard lock(mutex_);
+  --references_[device];
+}
+
+int FakeRuntime::references(int device) {
+  const std::lock_guard lock(mutex_);
+  return references_[device];
 }
 
 std::uint64_t FakeRuntime::context() {
   const std::lock_guard lock(mutex_);
-  constexpr std::uint64_t kMostDevices = 16;
   const std::optional<int> context = thread().context;
-  return context ? kMostDevices * generation_ + static_cast<std::uint64_t>(*context) : 0;
+  return context ? number_of(*context) : 0;
+}
+
+std::uint64_t FakeRuntime::context_of(int device) {
+  const std::lock_guard lock(mutex_);
+  return number_of(device);
 }
 
 std::set<int> FakeRuntime::devices_in_use() {
   const std::lock_guard lock(mutex_);
-  return in_use_;
+  std::set<int> devices = in_use_;
+  for (const auto& [device, references] : references_) {
+    if (references > 0) devices.insert(device);
+  }
+  return devices;
 }
 
 void FakeRuntime::fail(const std::string& function, int nth, cudaError_t code, bool sticky) {

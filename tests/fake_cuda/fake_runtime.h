@@ -31,10 +31,14 @@ class FakeRuntime {
   void make_current(std::optional<int> device);
   /// As a call on a thread that has no context does, for current_device().
   void make_some_current();
-  /// Makes the context of `device`.
-  void use(int device);
+  /// Makes the context of `device`, or counts one more who holds it.
+  void retain(int device);
+  /// The context goes with the last one, but where the runtime has it.
+  void release(int device);
+  int references(int device);
   /// The number of the calling thread's context; 0: it has none.
   std::uint64_t context();
+  std::uint64_t context_of(int device);
   /// Those that have a context.
   std::set<int> devices_in_use();
 
@@ -87,10 +91,12 @@ class FakeRuntime {
     std::optional<int> context = {};  // its device
   };
   Thread& thread();  // the calling one's
+  std::uint64_t number_of(int device) const { return 16 * generation_ + static_cast<std::uint64_t>(device); }
 
   std::mutex mutex_;
   int devices_ = 1;
-  std::set<int> in_use_;
+  std::set<int> in_use_;           // by the runtime
+  std::map<int, int> references_;  // by device, of others
   std::vector<Fault> faults_;
   std::map<std::string, std::uint64_t> calls_;
   std::map<cudaDeviceAttr, int> attributes_;

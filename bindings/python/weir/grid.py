@@ -51,6 +51,9 @@ class Grid:
     closed, it raises UsageError.
     """
 
+    #: Else the first one of a packed file decodes all of it.
+    _samples_decode_their_blocks = False
+
     def __init__(self, path: Path) -> None:
         self._path = os.fspath(path)
         self._absolute = os.path.abspath(self._path)

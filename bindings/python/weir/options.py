@@ -16,7 +16,12 @@ LONGEST_BOX = 150
 
 
 def _alone(value: Any) -> Any:
-    """The one value of an array without axes, of numpy, xarray or another library; anything else as it is."""
+    """The one value of an array without axes, of numpy, xarray or another library; anything else as it is.
+
+    Raises UsageError where that is masked.
+    """
+    if isinstance(value, numpy.ma.MaskedArray) and numpy.ma.getmaskarray(value).any():
+        raise UsageError("a number that is masked has no value; give one")
     no_axes = getattr(value, "ndim", None) == 0 and not isinstance(value, numpy.generic)
     return value.item() if no_axes and hasattr(value, "item") else value
 

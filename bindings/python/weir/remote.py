@@ -37,6 +37,8 @@ class RemoteGrid(Grid):
     weir.open; `requests` and `bytes_read` count. render and verify want all of the file: UsageError.
     """
 
+    _samples_decode_their_blocks = True
+
     def __init__(
         self, url: str, cache: Union[int, str] = "256MiB", storage_options: Optional[dict[str, Any]] = None
     ) -> None:

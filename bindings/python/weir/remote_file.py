@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import contextlib
+import functools
 import os
 import re
 import threading
@@ -27,6 +28,9 @@ _AT_ONCE = 8
 _WAITS = (0.2, 0.4, 0.8)
 #: Seconds that a server may ask to wait.
 _LONGEST_WAIT = 30
+_MOST_REDIRECTS = 10
+#: Content-Encodings that make other bytes of those of a file.
+_COMPRESSED = ("gzip", "x-gzip", "deflate", "compress", "x-compress", "br", "zstd")
 #: What servers answer that may answer otherwise soon.
 _BUSY = (429, 500, 502, 503, 504)
 #: What they answer where a file is missing: some stores say 401 or 403.
@@ -78,8 +82,8 @@ class RemoteFile:
     def _run(self, work: Callable[[Range], Any], pieces: Sequence[Range]) -> list[Any]:
         """What `work` makes of each piece, by threads that interrupt() makes nobody wait for."""
         self._leave_the_forks_connections()
-        read = _Read(work, pieces)
         with self._lock:
+            read = _Read(self._through_these_connections(work), pieces)
             self._reads.append(read)
         try:
             return read.run()
@@ -91,10 +95,14 @@ class RemoteFile:
         """Makes all calls of read that are under way raise IoError at once. A server may not answer for minutes."""
         with self._lock:
             reads = list(self._reads)
-        if reads:
-            self._give_up()
+            if reads:
+                self._give_up()
         for read in reads:
             read.fail(IoError("reading was interrupted"))
+
+    def _through_these_connections(self, work: Callable[[Range], Any]) -> Callable[[Range], Any]:
+        """`work` through the connections that there are now, whatever _give_up() makes of those to come."""
+        return work
 
     def _give_up(self) -> None:
         """Lets requests that are under way end by themselves, and keeps them from those to come."""
@@ -226,8 +234,11 @@ class HttpFile(RemoteFile):
         self._connections.given_up.set()
         self._connect()
 
-    def _read_piece(self, piece: Range) -> bytes:
-        through = self._connections
+    def _through_these_connections(self, work: Callable[[Range], Any]) -> Callable[[Range], Any]:
+        return functools.partial(work, through=self._connections)
+
+    def _read_piece(self, piece: Range, through: Optional[_Connections] = None) -> bytes:
+        through = through or self._connections
         for wait in _WAITS:
             try:
                 return self._ask_for(piece, through)
@@ -254,7 +265,7 @@ class HttpFile(RemoteFile):
                 )
             _check_status(self._shown, response)
             self._check_range(response, offset, count)
-            data = self._body(response, count + 1)
+            data = self._body(response, count + 1, self._shown)
         if len(data) != count:
             raise InputError(f"{self._shown}: {len(data)} bytes instead of {count} at byte {offset}; is it complete?")
         return self._count(data)
@@ -279,7 +290,7 @@ class HttpFile(RemoteFile):
             if response.status in _MISSING:
                 return None
             _check_status(shown_url(url), response)
-            data = self._body(response, _LONGEST_SIDECAR + 1)
+            data = self._body(response, _LONGEST_SIDECAR + 1, shown_url(url))
         return _sidecar_text(shown_url(url), self._count(data))
 
     @contextlib.contextmanager
@@ -292,12 +303,14 @@ class HttpFile(RemoteFile):
             self._leave(response)
 
     def _first_answer(self, url: str, headers: dict[str, str], through: _Connections) -> urllib3.HTTPResponse:
-        """The first one that is no redirect and not of a busy server, of as many as there are _WAITS, and one more.
+        """The first one that is no redirect and not of a busy server, which is asked as often as there are _WAITS, and once.
 
         By a loop of its own, since urllib3 reads all of the bodies that it leaves out.
         """
         shown = shown_url(url)
-        for wait in (*_WAITS, None):
+        waits = iter(_WAITS)
+        redirects = 0
+        while True:
             if through.given_up.is_set():
                 raise IoError(f"{shown}: reading was interrupted")
             try:
@@ -311,6 +324,7 @@ class HttpFile(RemoteFile):
                     decode_content=False,
                 )
             except self._failures as error:
+                wait = next(waits, None)
                 if wait is None:
                     raise IoError(f"{shown}: cannot be read: {_reason(error)}") from error
                 through.given_up.wait(wait)
@@ -318,15 +332,16 @@ class HttpFile(RemoteFile):
             place = response.get_redirect_location()
             if place:
                 self._leave(response)
-                if wait is None:
+                redirects += 1
+                if redirects > _MOST_REDIRECTS:
                     raise IoError(f"{shown}: cannot be read: too many redirects")
                 url, headers = _redirected(url, headers, place, shown)
-            elif response.status in _BUSY and wait is not None:
-                self._leave(response)
-                through.given_up.wait(self._wait_asked_by(response, wait))
-            else:
+                continue
+            wait = next(waits, None) if response.status in _BUSY else None
+            if wait is None:
                 return response
-        raise AssertionError("the last one returns or raises")
+            self._leave(response)
+            through.given_up.wait(self._wait_asked_by(response, wait))
 
     def _wait_asked_by(self, response: urllib3.HTTPResponse, otherwise: float) -> float:
         import urllib3
@@ -347,12 +362,11 @@ class HttpFile(RemoteFile):
             response.close()
         response.release_conn()
 
-    def _body(self, response: urllib3.HTTPResponse, most: int) -> bytes:
+    def _body(self, response: urllib3.HTTPResponse, most: int, shown: str) -> bytes:
         coding = response.headers.get("Content-Encoding", "").strip()
-        if coding.lower() not in ("", "identity"):  # a few bytes could become any number
-            raise InputError(
-                f"{self._shown}: its server sends compressed bytes ({coding[:40]}); copy the file to this machine"
-            )
+        # A few bytes could become any number. Others, "aws-chunked" for instance, are what a store noted of an upload.
+        if any(part.strip().lower() in _COMPRESSED for part in coding.split(",")):
+            raise InputError(f"{shown}: its server sends compressed bytes ({coding[:40]}); copy the file to this machine")
         try:
             data = response.read(most, decode_content=False)
         except self._failures as error:
@@ -455,7 +469,9 @@ def _parsed(url: str, shown: str) -> urllib3.util.Url:
     except ValueError:
         parts = None
     if parts is None or parts.scheme not in ("http", "https") or not parts.host:
-        raise UsageError(f"{shown}: is no URL of http or https; correct it")
+        # A password with a slash or a number sign makes it none, and is not where it is looked for.
+        hidden = re.sub(r"://.*@", "://***@", shown, flags=re.DOTALL)
+        raise UsageError(f"{hidden}: is no URL of http or https; correct it")
     return parts
 
 

@@ -29,6 +29,8 @@ _GAP = 8
 _MOST_BOXES = 64
 #: A look-up of one voxel takes as long as to decode so many of a box.
 _LOOK_UP = 8
+#: And a call for one block.
+_CALL = 2**11
 #: Voxels along an axis, of which float32 has the positions of all centres.
 _MOST_SAMPLED = 2**23
 
@@ -77,17 +79,19 @@ class GridArray(BackendArray):  # type: ignore[misc]
             return self._box(parts, True)
         shape = numpy.broadcast_shapes(*(part.shape for part in parts))
         count = math.prod(shape)
-        if count == 0 or count * _LOOK_UP >= math.prod(int(part.max()) + 1 - int(part.min()) for part in parts):
+        if count == 0:
             return self._box(parts, True)
+        voxels = math.prod(int(part.max()) + 1 - int(part.min()) for part in parts)  # of the box around them
         places = numpy.stack([numpy.broadcast_to(part, shape).ravel() for part in parts], axis=-1)
-        if self.level == 0 and max(self.shape) < _MOST_SAMPLED:
+        sampled = self.grid._samples_decode_their_blocks and self.level == 0 and max(self.shape) < _MOST_SAMPLED
+        if sampled and count * _LOOK_UP < voxels:
             return self.grid.sample(places[:, ::-1] + 0.5, "nearest").reshape(shape)
-        blocks, block_of = numpy.unique(places // 8, axis=0, return_inverse=True)
-        if len(blocks) > _MOST_BOXES:
+        order = numpy.lexsort((places // 8).T)
+        begins = 1 + numpy.flatnonzero(numpy.diff((places // 8)[order], axis=0).any(axis=1))
+        if (len(begins) + 1) * _CALL >= voxels:
             return self._box(parts, True)
         values = numpy.empty(count, self.dtype)
-        for block in range(len(blocks)):
-            chosen = block_of == block
+        for chosen in numpy.split(order, begins):  # those of one block
             values[chosen] = self._box(tuple(places[chosen].T), True)
         return values.reshape(shape)
 

@@ -2,6 +2,10 @@
 
 #include <cuda_runtime_api.h>
 
+#include <map>
+#include <mutex>
+#include <utility>
+
 namespace weir {
 namespace {
 
@@ -51,11 +55,16 @@ bool has_context(int device) {
 void* primary_context(int device) {
   static const auto retain = driver_function<Retain>("cuDevicePrimaryCtxRetain");
   static const auto release = driver_function<Release>("cuDevicePrimaryCtxRelease");
+  static const auto get_id = driver_function<GetId>("cuCtxGetId");
+  static std::mutex mutex;
+  static std::map<int, unsigned long long> held;  // by device, of the context that is held
   if (retain == nullptr || release == nullptr) return nullptr;
-  const bool others = has_context(device);
+  const std::lock_guard lock(mutex);
   void* context = nullptr;
   if (retain(&context, device) != 0) return nullptr;
-  if (others) release(device);  // who made it keeps it
+  unsigned long long id = 0;
+  if (get_id == nullptr || get_id(context, &id) != 0) return context;
+  if (std::exchange(held[device], id) == id) release(device);  // held already
   return context;
 }
 

@@ -15,7 +15,8 @@ void set_current_context(void* context);
 /// Whether this process has the context on `device` that the runtime uses. Makes none.
 bool has_context(int device);
 
-/// That context, which is made where there is none, and stays; null where the driver cannot. Makes it current nowhere.
+/// That context, which is made where there is none, and stays until the process ends or the device is reset; null where
+/// the driver cannot. Makes it current nowhere. Thread-safe.
 void* primary_context(int device);
 
 /// Which context of which device the calling thread works in: a device that is reset has another one afterwards. 0

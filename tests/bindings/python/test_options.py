@@ -56,6 +56,14 @@ class Options(FolderTest):
         )
         self.assertEqual(record["source"]["dataset"], "rho")
 
+    def test_a_masked_number_is_refused(self):
+        import numpy
+
+        lowest = numpy.ma.masked_array([1.0, 2.0], mask=True).min()
+        for spacing in (lowest, (1, 2, lowest)):
+            with self.assertRaisesRegex(weir.UsageError, "^a number that is masked has no value; give one$"):
+                weir.convert(ramp(9, 9, 9), self.folder / "a.nvdb", spacing=spacing)
+
     def test_the_keywords_of_convert_are_those_of_the_table(self):
         page = (SOURCE / "docs/options.md").read_text()
         table = set(re.findall(r"^\| `--[^|]*(?:\\\|[^|]*)*\| `(\w+)` \|", page, re.MULTILINE))

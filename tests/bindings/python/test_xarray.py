@@ -119,6 +119,7 @@ class ToXarray(FolderTest):
                     chosen = {axis: xarray.DataArray(places[:, i], dims="point") for i, axis in enumerate("zyx")}
                     decoded.clear()
                     self.assertTrue(same(array.isel(chosen).values, wanted[tuple(places.T)]))
+                    self.assertEqual(len(decoded), len({tuple(place // 8 for place in at) for at in places % wanted.shape}))
                     self.assertLess(sum(decoded), 40 * 8**3)
                     chosen["z"][7] = 999
                     with self.assertRaisesRegex(IndexError, "^index 999 is out of bounds for axis 0"):
