@@ -1,24 +1,44 @@
 #include "ingest/plan/page_buffer.h"
 
 #include <sys/mman.h>
+#include <unistd.h>
 
 #include <cerrno>
+#include <cstdint>
 #include <utility>
 
 #include "format/base/error.h"
 #include "format/base/text.h"
 
 namespace weir {
+namespace {
+
+constexpr std::size_t kLargePage = std::size_t{2} << 20U;
+
+std::size_t up_to_multiple(std::size_t bytes, std::size_t unit) { return (bytes + unit - 1) / unit * unit; }
+
+}  // namespace
 
 PageBuffer::PageBuffer(std::size_t size) {
   if (size == 0) return;
-  void* memory = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  const std::size_t large = size / kLargePage * kLargePage;
+  const std::size_t spare = large > 0 ? kLargePage : 0;
+  const std::size_t page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+  const std::size_t kept = up_to_multiple(size, page);
+  void* const memory = ::mmap(nullptr, kept + spare, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (memory == MAP_FAILED) {
     throw io_error("memory", compose("get ", size, " bytes for reading; lower ", option("memory")), errno);
   }
-  bytes_ = {static_cast<std::byte*>(memory), size};
-  constexpr std::size_t kLarge = std::size_t{8} << 20U;
-  if (size >= kLarge) ::madvise(memory, size, MADV_HUGEPAGE);  // fewer pages are made; where it is refused, small ones
+  auto* begin = static_cast<std::byte*>(memory);
+  if (large > 0) {  // begins at a large page; what is mapped beside it is given back
+    const std::size_t before =
+        up_to_multiple(reinterpret_cast<std::uintptr_t>(begin), kLargePage) - reinterpret_cast<std::uintptr_t>(begin);
+    if (before > 0) ::munmap(begin, before);
+    begin += before;
+    if (before < spare) ::munmap(begin + kept, spare - before);
+    ::madvise(begin, large, MADV_HUGEPAGE);  // where it is refused, there are small ones
+  }
+  bytes_ = {begin, size};
 }
 
 PageBuffer::~PageBuffer() {

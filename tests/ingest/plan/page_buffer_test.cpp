@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <fstream>
 
 #include "tests/ingest/support/scratch.h"
 
@@ -19,6 +20,32 @@ TEST(PageBuffer, AlignedAndZero) {
   EXPECT_EQ(moved.floats().back(), 2.0F);
   moved = PageBuffer(0);
   EXPECT_TRUE(moved.bytes().empty());
+}
+
+TEST(PageBuffer, OfLargePagesAsFarAsTheyFillIt) {
+  constexpr std::size_t kLargePage = std::size_t{2} << 20U;
+  for (const std::size_t size : {kLargePage - 1, kLargePage, 2 * kLargePage + 5000, 9 * kLargePage + 1}) {
+    const PageBuffer buffer(size);
+    ASSERT_EQ(buffer.bytes().size(), size);
+    if (size >= kLargePage) {
+      EXPECT_EQ(reinterpret_cast<std::uintptr_t>(buffer.bytes().data()) % kLargePage, 0U) << size;
+    }
+    EXPECT_EQ(std::count(buffer.bytes().begin(), buffer.bytes().end(), std::byte{0}), std::ptrdiff_t(size));
+    std::fill(buffer.bytes().begin(), buffer.bytes().end(), std::byte{7});
+  }
+}
+
+TEST(PageBuffer, GivesAllOfItsAddressesBack) {
+  const auto mapped = [] {
+    std::ifstream status("/proc/self/statm");
+    std::uint64_t pages = 0;
+    status >> pages;
+    return pages;
+  };
+  { const PageBuffer first(std::size_t{5} << 20U); }
+  const std::uint64_t before = mapped();
+  for (int i = 0; i < 20; ++i) const PageBuffer buffer((std::size_t{5} << 20U) + 12'345);
+  EXPECT_EQ(mapped(), before);
 }
 
 TEST(PageBuffer, RefusedMemoryIsAnError) {
