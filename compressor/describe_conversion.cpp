@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <utility>
 
 #include "compressor/conversion_identity.h"
@@ -12,7 +13,10 @@
 namespace weir {
 namespace {
 
+// NaN, which is null in the document, where no value is finite.
 std::array<double, 2> range_of(const Survey& survey) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  if (survey.finite == 0) return {kNone, kNone};
   return {static_cast<double>(survey.min), static_cast<double>(survey.max)};
 }
 

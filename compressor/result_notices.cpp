@@ -30,11 +30,16 @@ Message overflow_notice(const Sidecar& sidecar) {
 
 }  // namespace
 
+void say_loss(const Sidecar& sidecar, const ConversionOptions& options, const Notice& notice) {
+  if (!notice) return;
+  if (const Message line = rounding_notice(sidecar, options.budget); !line.empty()) notice(line);
+  if (const Message line = overflow_notice(sidecar); !line.empty()) notice(line);
+}
+
 void say_result(const Sidecar& sidecar, const ConversionOptions& options, const Notice& notice) {
   if (!notice) return;
   if (const Message line = scene_notice(sidecar, options.output); !line.empty()) notice(line);
-  if (const Message line = rounding_notice(sidecar, options.budget); !line.empty()) notice(line);
-  if (const Message line = overflow_notice(sidecar); !line.empty()) notice(line);
+  say_loss(sidecar, options, notice);
   if (options.budget.kind != Budget::Kind::automatic) return;
   if (const Message line = default_notice(sidecar, options.output); !line.empty()) notice(line);
 }

@@ -32,9 +32,7 @@ std::unique_ptr<Journal> open_journal(const SourceInfo& info, const ConversionOp
                         " lies on a memory file system; choose an output on a disk or ", option("resume", "off")));
   }
   if (!is_resumable(info, options, in_memory)) {
-    if (remove_leftovers(files, options.output) && control.notice) {
-      control.notice(cat(options.output, ": what an interrupted conversion of it had left is removed"));
-    }
+    if (remove_leftovers(files, options.output) && control.notice) control.notice(leftovers_notice(options.output));
     // Unless it is this conversion's WorkDirectory.
     if (!options.work_dir.empty() || in_memory) remove_if_empty(files, hidden_directory_of(options.output));
     return nullptr;

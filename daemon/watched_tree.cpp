@@ -69,6 +69,9 @@ WatchedTree::WatchedTree(boost::asio::io_context& io, DiskTurns& turns, WatchCon
                                  [this](const std::string& line) {
                                    log_.warn("watch", {{"watch", config_.label}, {"notice", line}});
                                  }});
+  if (const std::string unused = config_.unused_key(); !unused.empty()) {
+    log_.warn("watch", {{"watch", config_.label}, {"notice", unused}});
+  }
   schedule(milliseconds(0));
 }
 

@@ -161,6 +161,27 @@ class FileNames {
   std::map<std::string, std::vector<DatasetInfo>> datasets_;
 };
 
+// "{dataset} and no {step}": the words of `name` that `step` has none of.
+std::string missing_words(std::string_view name, const SeriesStep& step) {
+  std::string missing;
+  for (const char* word : {"{stem}", "{dataset}", "{step}"}) {
+    if (name.find(word) == std::string_view::npos || !step_name(word, step).empty()) continue;
+    missing += cat(missing.empty() ? "" : " and no ", word);
+  }
+  return missing;
+}
+
+// Without a word that the step has not, a name may be an extension alone, that of a hidden file.
+void require_stem(const std::string& output, std::string_view name, const SeriesStep& step, const std::string& path) {
+  const std::string made = path.substr(path.rfind('/') + 1);
+  const bool is_bare = made.empty() || (made.front() == '.' && made.find('.', 1) == std::string::npos);
+  const std::string missing = missing_words(name, step);
+  if (!is_bare || missing.empty()) return;
+  const std::string would = made.empty() ? "there would be no name" : cat("the name would be ", made);
+  throw Error(ErrorKind::usage, compose(option("output", output), ": ", volume_text(step), " has no ", missing, ", so ",
+                                        would, "; use {stem} or a plain name"));
+}
+
 // No name tells volumes apart that have the same words.
 Message remedy_for_names(const SeriesStep& a, const SeriesStep& b) {
   if (a.stem != b.stem || dataset_part(a.dataset) != dataset_part(b.dataset) || a.step != b.step) {
@@ -204,10 +225,12 @@ std::vector<std::string> series_outputs(std::span<const SeriesStep> steps, const
   std::map<std::string, const SeriesStep*> taken;
   std::vector<std::string> paths;
   for (const SeriesStep& step : steps) {
-    std::filesystem::path path = output.substr(0, directory_end) + step_name(output.substr(directory_end), step);
+    const std::string name = output.substr(directory_end);
+    std::filesystem::path path = output.substr(0, directory_end) + step_name(name, step);
     if (output.empty()) path = std::filesystem::path(named_by_head(step.path)).replace_filename(default_name(step));
     if (directory) path /= default_name(step);
     path = with_level(path.string(), step);
+    require_stem(output, name, step, path.string());
     const auto [other, is_new] = taken.emplace(path.lexically_normal().string(), &step);
     if (!is_new) {
       throw Error(ErrorKind::usage, compose(path.string(), ": ", steps.size(), " volumes, and two of them (",

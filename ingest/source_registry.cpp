@@ -72,6 +72,7 @@ constexpr std::array kFormats{
                  .open = open_zarr,
                  .list = list_zarr,
                  .container = true,
+                 .vectors = true,
                  .directory = true,
                  .chunks = true},
     // Asked late: its signature may lie anywhere behind a user block.
@@ -89,36 +90,6 @@ constexpr std::array kFormats{
                  .list = list_raw,
                  .raw_shape = true},
 };
-
-void refuse_foreign_options(const std::string& path, const SourceFormat& format, const SourceOptions& options) {
-  const auto refuse = [&](bool given, const Message& what, std::string_view meant) {
-    if (!given) return;
-    throw Error(ErrorKind::usage,
-                compose(path, ": ", what, " is for ", meant, ", and this is ", format.name, "; leave it out"));
-  };
-  if (!format.raw_shape) {
-    refuse(options.extent.has_value(), option("dims"), "raw files");
-    refuse(options.type.has_value(), option("type"), "raw files");
-    refuse(options.big_endian.has_value(), option("endian"), "raw files");
-    refuse(options.offset.has_value(), option("offset"), "raw files");
-  }
-  if (!format.container) {
-    refuse(!options.dataset.empty(), option("dataset"), "files that hold several volumes");
-    refuse(!options.magnitude.empty(), option("magnitude"), "files that hold several volumes");
-    refuse(!options.index.empty() || !options.index_choices.empty(), option("index"), "arrays of more than three axes");
-  }
-  if (!format.vectors)
-    refuse(options.component.has_value(), option("component"), "arrays of vectors in HDF5, VTK and OpenVDB files");
-  if (format.levels == nullptr) {
-    refuse(options.levels != Levels::composite, option("levels", "separate"), "AMReX plotfiles");
-    refuse(options.level.has_value(), option("level"), "AMReX plotfiles");
-    refuse(options.upsampling.has_value(), option("upsample"), "AMReX plotfiles");
-  }
-  if (!format.chunks) {
-    refuse(options.missing_chunks != MissingChunks::fill, option("missing-chunks", "error"),
-           "Zarr arrays and HDF5 files");
-  }
-}
 
 /// The position that options.index_choices stand for in `path`.
 std::vector<std::int64_t> chosen_position(const std::string& path, const SourceFormat& format,
@@ -162,6 +133,12 @@ std::unique_ptr<VolumeSource> open_file(const std::string& path, const SourceOpt
   return format.open(path, chosen);
 }
 
+/// Throws where `path` is a directory, and what should be the file in it that says what it is, is no file.
+void refuse_irregular_head(const std::string& path) {
+  const auto head = irregular_head(path);
+  if (head) throw input_error(head->path, head->what);
+}
+
 }  // namespace
 
 std::span<const SourceFormat> source_formats() { return kFormats; }
@@ -169,6 +146,7 @@ std::span<const SourceFormat> source_formats() { return kFormats; }
 const SourceFormat& format_of(const std::string& path) {
   std::array<std::byte, kMagicBytes> bytes{};
   const auto directory = head_in_directory(path);
+  if (!directory) refuse_irregular_head(path);
   InputFile file(directory.value_or(path), DirectIo::off);
   const auto head = std::span(bytes).first(std::min<std::uint64_t>(kMagicBytes, file.size()));
   file.read_buffered(0, head, ReadPath::through);
@@ -179,6 +157,37 @@ const SourceFormat& format_of(const std::string& path) {
     throw input_error(path, "is a directory, and its Header is not that of an AMReX plotfile; name a file in it");
   }
   return *format;
+}
+
+void refuse_foreign_options(const std::string& path, const SourceFormat& format, const SourceOptions& options) {
+  const auto refuse = [&](bool given, const Message& what, std::string_view meant) {
+    if (!given) return;
+    throw Error(ErrorKind::usage,
+                compose(path, ": ", what, " is for ", meant, ", and this is ", format.name, "; leave it out"));
+  };
+  if (!format.raw_shape) {
+    refuse(options.extent.has_value(), option("dims"), "raw files");
+    refuse(options.type.has_value(), option("type"), "raw files");
+    refuse(options.big_endian.has_value(), option("endian"), "raw files");
+    refuse(options.offset.has_value(), option("offset"), "raw files");
+  }
+  if (!format.container) {
+    refuse(!options.dataset.empty(), option("dataset"), "files that hold several volumes");
+    refuse(!options.magnitude.empty(), option("magnitude"), "files that hold several volumes");
+    refuse(!options.index.empty() || !options.index_choices.empty(), option("index"), "arrays of more than three axes");
+  }
+  if (!format.vectors)
+    refuse(options.component.has_value(), option("component"),
+           "arrays of vectors in HDF5, Zarr, VTK and OpenVDB files");
+  if (format.levels == nullptr) {
+    refuse(options.levels != Levels::composite, option("levels", "separate"), "AMReX plotfiles");
+    refuse(options.level.has_value(), option("level"), "AMReX plotfiles");
+    refuse(options.upsampling.has_value(), option("upsample"), "AMReX plotfiles");
+  }
+  if (!format.chunks) {
+    refuse(options.missing_chunks != MissingChunks::fill, option("missing-chunks", "error"),
+           "Zarr arrays and HDF5 files");
+  }
 }
 
 bool is_nanovdb(const std::string& path) { return format_of(path).name == "nanovdb"; }

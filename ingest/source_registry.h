@@ -46,6 +46,9 @@ const SourceFormat& format_of(const std::string& path);
 /// Whether that is the format of NanoVDB files, whatever its name ends with. Throws as format_of.
 bool is_nanovdb(const std::string& path);
 
+/// Throws Error(usage) where an option is not for `format`, that of `path`.
+void refuse_foreign_options(const std::string& path, const SourceFormat& format, const SourceOptions& options);
+
 /// Opens `path` in its format, places it by options.spacing and options.origin and cuts out options.roi.
 /// Throws what that format's open throws, and Error(usage) where an option is not for this format, or the
 /// stored type cannot hold options.missing.

@@ -289,7 +289,7 @@ typedef struct weir_grid_info {
   int64_t index_min[3]; /* of its lowest voxel */
   double spacing[3];    /* world units per voxel */
   double origin[3];     /* world position of the centre of voxel (0, 0, 0) */
-  double range[2];      /* of the decoded active values, as the file says */
+  double range[2];      /* of the decoded active values, as the file says; NaN where it says none */
   double background;    /* what voxels outside the domain read */
   uint64_t file_bytes;
   uint64_t grid_offset; /* bytes before the grid */
@@ -300,7 +300,7 @@ typedef struct weir_grid_info {
   double psnr_db;         /* infinite where lossless */
   double mse;             /* mean squared error, of decoded against float32 values */
   double max_abs_error;   /* largest error of a voxel */
-  double source_range[2]; /* of the finite values of the source */
+  double source_range[2]; /* of the finite values of the source; NaN where there is none */
   uint64_t nonfinite;     /* NaN and infinite voxels of the source */
   uint64_t missing;       /* voxels without data */
   int32_t certified;

@@ -91,9 +91,7 @@ PushedBoxes::PushedBoxes(SourceInfo info, const ConversionOptions& options, cons
     if (work_.path() != hidden) remove_if_empty(*local_, hidden);
   });
   team_.follow(removed);
-  if (removed && control_.notice) {
-    control_.notice(cat(options_.output, ": what an interrupted conversion of it had left is removed"));
-  }
+  if (removed && control_.notice) control_.notice(leftovers_notice(options_.output));
 }
 
 void PushedBoxes::box(const Box& box, const void* data, const std::array<std::int64_t, 3>& stride) {

@@ -78,7 +78,8 @@ class DifferenceTally {
     if (c.finite > 0) c.range = range_;
     if (max_abs_ > 0.0) c.max_abs_at = max_abs_at_;
     const MinMax range = c.range.value_or(MinMax{0.0F, 0.0F});
-    c.error = make_certificate(squared_error_.value(), max_abs_, different_ == 0, c.finite, range.min, range.max);
+    const std::uint64_t compared = c.finite - c.nonfinite_decoded;
+    c.error = make_certificate(squared_error_.value(), max_abs_, different_ == 0, compared, range.min, range.max);
     return c;
   }
 

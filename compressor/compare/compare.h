@@ -29,10 +29,10 @@ struct CompareOptions {
 
 struct Comparison {
   std::uint64_t voxels = 0;
-  std::uint64_t finite = 0;               ///< source voxels that are finite: the error is over these
+  std::uint64_t finite = 0;               ///< source voxels that are finite
   std::uint64_t nonfinite = 0;            ///< source voxels that are NaN or infinite, or hold no data
   std::uint64_t missing = 0;              ///< those that hold no data
-  std::uint64_t nonfinite_decoded = 0;    ///< finite source voxels that read NaN or infinite; not in the error's sums
+  std::uint64_t nonfinite_decoded = 0;    ///< of those, such that read NaN or infinite: the error is over the others
   std::uint64_t different = 0;            ///< finite source voxels that do not read bit for bit
   std::uint64_t nonfinite_different = 0;  ///< the same of those that are not finite: replaced, or dropped
   std::uint64_t missing_different = 0;    ///< and of those that hold no data

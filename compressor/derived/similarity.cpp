@@ -2,13 +2,13 @@
 
 #include <algorithm>
 
+#include "compressor/compare/window_begins.h"
+
 namespace weir {
 namespace {
 
-/// Begins of windows along an axis of `extent` voxels.
-std::int64_t windows_along(std::int64_t extent) {
-  if (extent < SimilarityTally::kWindow) return 1;
-  return (extent - SimilarityTally::kWindow) / SimilarityTally::kStride + 1;
+WindowBegins windows_along(std::int64_t extent) {
+  return {extent, std::min(extent, SimilarityTally::kWindow), std::min(extent, SimilarityTally::kStride)};
 }
 
 /// Sums over a window, of values less the middle of the range: then the differences of squares stay small.
@@ -50,13 +50,10 @@ void SimilarityTally::add(const ValuePair& values, const Box& part) {
   if (!(range_ > 0)) return;
   const Index3& lo = values.domain.lo;
   const Index3 extent = values.domain.extent();
-  const Index3 count{windows_along(extent.x), windows_along(extent.y), windows_along(extent.z)};
-  const auto first = [](std::int64_t from) { return ceil_div(std::max<std::int64_t>(from, 0), kStride); };
-  const Box begins{{first(part.lo.x - lo.x), first(part.lo.y - lo.y), first(part.lo.z - lo.z)},
-                   min({first(part.hi.x - lo.x), first(part.hi.y - lo.y), first(part.hi.z - lo.z)}, count)};
+  const VolumeWindows windows{windows_along(extent.x), windows_along(extent.y), windows_along(extent.z)};
   double sum = 0;
-  for_each_index(begins, [&](const Index3& begin) {
-    const Index3 corner = lo + begin * kStride;
+  for_each_index(windows.in({part.lo - lo, part.hi - lo}), [&](const Index3& number) {
+    const Index3 corner = lo + windows.at(number);
     const Box window = intersect({corner, corner + Index3{kWindow, kWindow, kWindow}}, values.domain);
     WindowSums sums;
     sums.voxels = window.voxels();

@@ -16,9 +16,10 @@ struct Similarity {
   std::optional<double> mean;  ///< none without a window, and of a volume of one value
 };
 
-/// Windows of 8^3 voxels, equally weighed, begin at every fourth voxel along each axis from the volume's lowest one and
-/// lie in it whole; along an axis of less than 8 voxels there is one. C1 = (0.01 L)^2, C2 = (0.03 L)^2, L the range of
-/// the source; variances are divided by the number of voxels. For one thread; sums do not depend on order and grouping.
+/// Windows of 8^3 voxels, equally weighed, begin at every fourth voxel along each axis from the volume's lowest one,
+/// and once more so that the last one ends with the axis; along an axis of less than 8 voxels there is one. C1 = (0.01
+/// L)^2, C2 = (0.03 L)^2, L the range of the source; variances are divided by the number of voxels. For one thread;
+/// sums do not depend on order and grouping.
 class SimilarityTally {
  public:
   static constexpr std::int64_t kWindow = 8;

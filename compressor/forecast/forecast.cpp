@@ -19,6 +19,7 @@
 #include "compressor/forecast/work_time.h"
 #include "compressor/plan/memory_plan.h"
 #include "compressor/plan/reading_plan.h"
+#include "compressor/result_notices.h"
 #include "compressor/resume.h"
 #include "compressor/resume/work_directory.h"
 #include "compressor/select/file_size.h"
@@ -125,9 +126,11 @@ class Forecaster {
   void try_volume() {
     ConversionControl control = trial_control();
     // What nobody asked for is said of a file that was written.
-    if (options_.budget.kind != Budget::Kind::automatic) control.notice = control_.notice;
+    const bool asked = options_.budget.kind != Budget::Kind::automatic;
+    if (asked) control.notice = control_.notice;
     SampledSource source(source_, plan_);
     const Trial trial = run_trial(source, options_, control, files_);
+    if (!asked) say_loss(trial.sidecar, options_, control_.notice);
     Forecast& f = forecast_;
     f.exact_bytes = true;
     f.sampled_voxels = static_cast<std::uint64_t>(domain_.voxels());
@@ -168,6 +171,8 @@ class Forecaster {
     refuse_sampled_values(options_, trial.sidecar);
     describe_work(trial, parts, cost, sampled.varied_share());
     describe_file(trial.sidecar);
+    const ConversionLoss& loss = copy.copied_loss();
+    forecast_.loss = {loss.inexact, loss.overflow, loss.max_abs_error};
     if (!forecast_.exact_bytes) {
       const double bytes = scale.file_bytes(trial.sidecar);
       forecast_.file_bytes = {bytes, bytes, bytes};
@@ -243,6 +248,7 @@ class Forecaster {
     f.error = without_spread(s.error);
     f.value_low = s.value_range[0];
     f.value_high = s.value_range[1];
+    f.loss = s.conversion_loss;
     if (!s.visible) return;
     f.shown_voxels = s.visible->voxels;
     if (f.shown_voxels > 0) f.shown = without_spread(s.visible->error);

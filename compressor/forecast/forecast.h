@@ -12,6 +12,7 @@
 #include "compressor/conversion_options.h"
 #include "compressor/forecast/spread.h"
 #include "format/io/file_system.h"
+#include "format/sidecar/sidecar.h"
 #include "ingest/source/volume_source.h"
 
 namespace weir {
@@ -47,8 +48,9 @@ struct Forecast {
   ForecastError error;
   std::optional<ForecastError> shown;  ///< with a scene that shows something of what was converted
   std::uint64_t shown_voxels = 0;      ///< finite ones among those that were converted
-  double value_low = 0;                ///< of all that was converted
+  double value_low = 0;                ///< of all that was converted; NaN where no value is finite
   double value_high = 0;
+  Sidecar::ConversionLoss loss;  ///< of the values that were converted, not scaled to the volume's
 
   double survey_s = 0;  ///< at the rates measured while the sample was converted
   double encode_s = 0;  ///< selection, encode pass, digest and flush

@@ -33,7 +33,7 @@ SampleCopy::SampleCopy(VolumeSource& sample, std::unique_ptr<File> file, std::ui
     if (cancel != nullptr && *cancel) throw interrupted_error();
     const Box box = plan.voxel_box(plan.leaf_box(i));
     values.resize(static_cast<std::size_t>(box.voxels()));
-    sample.read(box, values);
+    copied_loss_.add(sample.read(box, values));
     for_each_run(box, [&](std::uint64_t offset, std::size_t first, std::size_t count) {
       file_->write_at(offset, std::as_bytes(std::span(values).subspan(first, count)));
     });

@@ -26,6 +26,8 @@ class SampleCopy final : public VolumeSource {
   bool in_memory() const override { return true; }
   const CellPlaces* places() const override { return places_; }
   std::uint64_t bytes_read() const override { return bytes_read_; }
+  /// What the sample's values lost as they became float32; reading the copy loses nothing more.
+  const ConversionLoss& copied_loss() const { return copied_loss_; }
 
  private:
   template <typename Action>
@@ -34,6 +36,7 @@ class SampleCopy final : public VolumeSource {
   SourceInfo info_;
   const CellPlaces* places_;
   std::unique_ptr<File> file_;
+  ConversionLoss copied_loss_;
   std::atomic<std::uint64_t> bytes_read_{0};
 };
 

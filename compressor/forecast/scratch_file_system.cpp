@@ -24,6 +24,7 @@ class ScratchFileSystem::ScratchFile final : public File {
   void sync() override { file_->sync(); }
   std::uint64_t size() override { return file_->size(); }
   int descriptor() const override { return file_->descriptor(); }
+  std::span<const std::byte> memory() const override { return file_->memory(); }
 
  private:
   std::shared_ptr<File> file_;

@@ -193,7 +193,7 @@ constexpr ConversionOption kInputOptions[] = {
      read_index},
     {{.key = "component",
       .argument = "N|x|y|z|magnitude",
-      .help = "of vectors or tensors in an HDF5, VTK or OpenVDB file: the component with this position, or the "
+      .help = "of vectors or tensors in an HDF5, Zarr, VTK or OpenVDB file: the component with this position, or the "
               "length of the vector"},
      read_component},
     {{.key = "magnitude",

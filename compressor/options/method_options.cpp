@@ -94,10 +94,9 @@ constexpr ConversionOption kMethodOptions[] = {
       .argument = "RATE",
       .standard = "8",
       .help =
-          "the file is exactly ceil(float32 bytes of the volume / RATE) long. Without any budget the rate is 8. Then a "
-          "volume whose smallest possible file is longer gets that file, and one of less than 128^3 voxels gets at "
-          "least "
-          "40 dB",
+          "the file is exactly ceil(float32 bytes of the volume / RATE) long: 8 is an eighth of float32, not 8 bits a "
+          "voxel as ZFP's rate. Without any budget the rate is 8. Then a volume whose smallest possible file is longer "
+          "gets that file, and one of less than 128^3 voxels gets at least 40 dB",
       .group = "budget"},
      read_rate},
     {{.key = "psnr",

@@ -45,7 +45,7 @@ constexpr ConversionOption kRunOptions[] = {
     {{.key = "threads",
       .argument = "N",
       .standard = "0",
-      .help = "0: all of the machine's, for convert as many of them as --memory holds"},
+      .help = "number of threads; 0: one per core (convert: fewer if --memory is small)"},
      read_threads},
     {{.key = "backend",
       .argument = "auto|cpu|cuda",

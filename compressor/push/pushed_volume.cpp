@@ -69,9 +69,7 @@ struct PushedFiles {
   PushedFiles(const SourceInfo& info, const ConversionOptions& options, const ConversionControl& control, bool faces,
               const MemoryPlan& memory, FileSystem& files)
       : output(files, options.output, options.overwrite), work(files, options.output, options.work_dir) {
-    if (remove_leftovers(files, options.output) && control.notice) {
-      control.notice(cat(options.output, ": what an interrupted conversion of it had left is removed"));
-    }
+    if (remove_leftovers(files, options.output) && control.notice) control.notice(leftovers_notice(options.output));
     work.hold_records(memory.record_bytes > 0);
     const NodeLattice leaves = make_lattice(info.domain(), kLeafDim);
     stores.emplace(SurveyStores{RowStore(work.spill_records(), leaves, memory.selection), {}, {}});

@@ -300,4 +300,8 @@ bool remove_leftovers(FileSystem& files, const std::string& output) {
   return any;
 }
 
+std::string leftovers_notice(const std::string& output) {
+  return cat(output, ": what an interrupted conversion of it had left is removed");
+}
+
 }  // namespace weir

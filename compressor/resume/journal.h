@@ -106,5 +106,7 @@ std::optional<Checkpoint> read_journal(FileSystem& files, const std::string& out
 /// Removes whatever a conversion of `output` may have left to be continued; false where there is nothing. The caller
 /// holds the lock on the output.
 bool remove_leftovers(FileSystem& files, const std::string& output);
+/// The notice that it was true of `output`.
+std::string leftovers_notice(const std::string& output);
 
 }  // namespace weir

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "format/base/text.h"
+
 namespace weir {
 
 std::uint64_t job_memory(const ServiceConfig& service) {
@@ -19,6 +21,23 @@ std::uint64_t standard_viewer_memory(const ServiceConfig& service, std::uint64_t
     if (job_memory(with) >= least_job) return bytes;
   }
   return 0;
+}
+
+std::string no_viewer_reason(const ServiceConfig& service) {
+  if (!service.is_standard_viewer) return "viewer_memory is 0 in the configuration";
+  constexpr std::uint64_t kLeastMemoryWithViewer = 8 * kLeastViewerMemory;
+  if (service.memory < kLeastMemoryWithViewer) {
+    return cat("memory is ", format_bytes(service.memory), ", and below ", format_bytes(kLeastMemoryWithViewer),
+               " there is none by default; set viewer_memory = \"", kLeastViewerMemory >> 20U,
+               "MiB\" or give more memory");
+  }
+  return cat("memory is ", format_bytes(service.memory), ", and with a viewer each of ", service.jobs,
+             " jobs would get too little of it; give more memory, or fewer jobs");
+}
+
+std::string WatchConfig::unused_key() const {
+  if (!gives_delete_after || source == AfterDone::delete_after_verify) return "";
+  return "delete_after has no effect, since nothing is deleted; set source = \"delete-after-verify\", or leave it out";
 }
 
 std::optional<std::string> WatchConfig::convert_option(std::string_view option) const {

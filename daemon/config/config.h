@@ -24,6 +24,7 @@ struct ServiceConfig {
   std::string token;                              ///< bearer token; never empty where others than loopback may connect
   std::uint64_t memory = std::uint64_t{1} << 30;  ///< bytes, the daemon, all jobs and the viewer together
   std::uint64_t viewer_memory = std::uint64_t{192} << 20;  ///< bytes of it for the viewer; 0: there is none
+  bool is_standard_viewer = false;                         ///< viewer_memory is not in the configuration
   int jobs = 1;                                            ///< concurrent conversions
   int threads = 0;                                         ///< of each job; 0: all of the machine's
   int nice = 0;                                            ///< of the jobs, 0 to 19
@@ -50,6 +51,9 @@ inline constexpr std::uint64_t kMostStandardViewerMemory = std::uint64_t{512} <<
 /// that is less than kForecastingViewerMemory, but not than kLeastViewerMemory, the former, or else the eighth; 0 where
 /// it leaves a job less than `least_job` bytes.
 std::uint64_t standard_viewer_memory(const ServiceConfig& service, std::uint64_t least_job);
+
+/// Why there is no viewer: what viewer_memory = 0 comes from and, where it is standard_viewer_memory()'s, the remedy.
+std::string no_viewer_reason(const ServiceConfig& service);
 
 /// The ceiling of one job in bytes: an equal share of what the daemon and the viewer leave.
 std::uint64_t job_memory(const ServiceConfig& service);
@@ -83,13 +87,16 @@ struct WatchConfig {
   double poll_interval_s = 1;
   Priority priority = Priority::oldest;
   AfterDone source = AfterDone::keep;
-  double delete_after_s = 600;     ///< between the end of a job and the deletion of its source
-  Follow follow = Follow::inside;  ///< inside: in `directory` and below, symbolic links resolved
+  double delete_after_s = 600;      ///< between the end of a job and the deletion of its source
+  bool gives_delete_after = false;  ///< delete_after is in the configuration
+  Follow follow = Follow::inside;   ///< inside: in `directory` and below, symbolic links resolved
   bool thumbnails = true;
   std::vector<std::string> convert_options;  ///< arguments of `weir convert`, as read_watch_options() writes them
 
   /// The value of --NAME in convert_options ("true" of a flag); nullopt where it is not given.
   std::optional<std::string> convert_option(std::string_view option) const;
+  /// Of a key that has no effect beside the others, and what to do; empty: there is none.
+  std::string unused_key() const;
   bool operator==(const WatchConfig&) const = default;
 };
 

@@ -10,8 +10,12 @@ namespace {
 
 constexpr std::string_view kUnix = "unix:";
 
-[[noreturn]] void refuse(std::string_view text) {
-  throw Error(ErrorKind::usage, cat('"', text, "\" is no address; write HOST:PORT, as 127.0.0.1:8470 or [::1]:8470"));
+[[noreturn]] void refuse(std::string_view text, std::string_view option, const std::string& reason) {
+  throw Error(ErrorKind::usage, cat(option, option.empty() ? "" : ": ", text, reason));
+}
+
+[[noreturn]] void refuse(std::string_view text, std::string_view option) {
+  refuse(cat('"', text, '"'), option, " is no address; write HOST:PORT, as 127.0.0.1:8470 or [::1]:8470");
 }
 
 }  // namespace
@@ -21,24 +25,24 @@ std::string ListenAddress::text() const {
   return host.find(':') == std::string::npos ? cat(host, ':', port) : cat('[', host, "]:", port);
 }
 
-ListenAddress parse_listen_address(std::string_view text) {
+ListenAddress parse_listen_address(std::string_view text, std::string_view option) {
   if (text.starts_with(kUnix)) {
-    if (text.size() == kUnix.size()) refuse(text);
+    if (text.size() == kUnix.size()) refuse(text, option);
     if (text.size() > kUnix.size() + kLongestSocketPath) {
-      throw Error(ErrorKind::usage, cat(text, ": a socket's path has ", kLongestSocketPath, " bytes at most"));
+      refuse(text, option, cat(": a socket's path has ", kLongestSocketPath, " bytes at most"));
     }
     return {"", 0, std::string(text.substr(kUnix.size()))};
   }
   const std::size_t colon = text.rfind(':');
-  if (colon == std::string_view::npos || colon == 0) refuse(text);
+  if (colon == std::string_view::npos || colon == 0) refuse(text, option);
   std::string_view host = text.substr(0, colon);
   const bool bracketed = host.front() == '[' && host.back() == ']';
   if (bracketed) host = host.substr(1, host.size() - 2);
   // Without brackets, the last group of an IPv6 address would be taken for the port.
-  if (host.empty() || bracketed != (host.find(':') != std::string_view::npos)) refuse(text);
-  if (host.find_first_of(" /@[]") != std::string_view::npos) refuse(text);
+  if (host.empty() || bracketed != (host.find(':') != std::string_view::npos)) refuse(text, option);
+  if (host.find_first_of(" /@[]") != std::string_view::npos) refuse(text, option);
   const auto port = parse_int(text.substr(colon + 1));
-  if (!port || *port < 0 || *port > 65535) refuse(text);
+  if (!port || *port < 0 || *port > 65535) refuse(text, option);
   return {std::string(host), static_cast<std::uint16_t>(*port)};
 }
 

@@ -19,8 +19,8 @@ struct ListenAddress {
 };
 
 /// "127.0.0.1:8470", "[::1]:8470", "localhost:0", "unix:/run/weir.sock". Throws Error(usage) naming `text` where it is
-/// none of these.
-ListenAddress parse_listen_address(std::string_view text);
+/// none of these, beginning with `option`, "--listen", where that is given.
+ListenAddress parse_listen_address(std::string_view text, std::string_view option = {});
 
 /// Bytes of the path of a Unix socket, at most: the system takes 107, and a ".new" is appended for a moment.
 inline constexpr std::size_t kLongestSocketPath = 103;

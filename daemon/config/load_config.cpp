@@ -55,19 +55,19 @@ class ConfigReader {
     const auto bytes = text != nullptr     ? parse_bytes(text->get())
                        : number != nullptr ? parse_bytes(std::to_string(number->get()))
                                            : std::nullopt;
-    if (!bytes) toml.fail(*node, cat(key, " must be a size such as 1073741824, \"64MiB\" or \"1.5GB\""));
+    if (!bytes) {
+      toml.fail(*node,
+                cat(key, " is ", value_found(*node), ", it must be a size such as 1073741824, \"64MiB\" or \"1.5GB\""));
+    }
     value = *bytes;
   }
 
-  /// A number of seconds or a text such as "10min".
-  void read_seconds(std::string_view key, double& value, Bounds bounds) {
+  /// A number of seconds or a text such as "10min"; whether the key is there.
+  bool read_seconds(std::string_view key, double& value, Bounds bounds) {
     const toml::node* node = toml.find(key);
-    if (node == nullptr) return;
+    if (node == nullptr) return false;
     if (!node->is_string() && !node->is_number()) fail_duration(*node, key);
-    if (node->is_number()) {
-      toml.read(key, value, bounds);
-      return;
-    }
+    if (node->is_number()) return toml.read(key, value, bounds);
     const std::string& text = node->as_string()->get();
     const std::optional<double> seconds = parse_duration_s(text);
     if (!seconds) fail_duration(*node, key);
@@ -75,6 +75,7 @@ class ConfigReader {
       toml.fail(*node, cat(key, " is \"", text, "\", it must be from ", bounds.low, " to ", bounds.high, " seconds"));
     }
     value = *seconds;
+    return true;
   }
 
   /// Absolute and normal, without a slash at its end.
@@ -94,7 +95,8 @@ class ConfigReader {
 
  private:
   [[noreturn]] void fail_duration(const toml::node& node, std::string_view key) {
-    toml.fail(node, cat(key, " must be a number of seconds or a text such as \"90s\", \"10min\", \"2h\" or \"3d\""));
+    toml.fail(node, cat(key, " is ", value_found(node),
+                        ", it must be a number of seconds or a text such as \"90s\", \"10min\", \"2h\" or \"3d\""));
   }
 
   fs::path directory_;
@@ -159,6 +161,7 @@ void read_listen(ConfigReader& reader, const toml::table& table, ServiceConfig& 
 void read_viewer_memory(ConfigReader& reader, ServiceConfig& service) {
   if (reader.toml.find("viewer_memory") == nullptr) {
     service.viewer_memory = standard_viewer_memory(service, kLeastMemory);
+    service.is_standard_viewer = true;
     return;
   }
   reader.read_bytes("viewer_memory", service.viewer_memory);
@@ -265,7 +268,7 @@ WatchConfig read_watch(const toml::table& table, const std::string& path) {
   }
   reader.choose("priority", watch.priority, kPriorities);
   reader.choose("source", watch.source, kAfterDone);
-  reader.read_seconds("delete_after", watch.delete_after_s, {0, 31'536'000});
+  watch.gives_delete_after = reader.read_seconds("delete_after", watch.delete_after_s, {0, 31'536'000});
   reader.choose("follow", watch.follow, kFollow);
   reader.toml.read("thumbnails", watch.thumbnails);
   watch.convert_options = read_watch_options(reader.toml, table);

@@ -218,7 +218,8 @@ ViewerView JobViewer::view() const {
   view.memory_bytes = service_.viewer_memory;
   if (over_ || service_.viewer_memory == 0) {
     view.state = ViewerState::off;
-    view.reason = over_ ? "the service is stopping" : "viewers are off: viewer_memory is 0 in the configuration";
+    const char* const off = service_.is_standard_viewer ? "no viewer: " : "viewers are off: ";
+    view.reason = over_ ? "the service is stopping" : off + no_viewer_reason(service_);
     return view;
   }
   view.state = state_;

@@ -19,6 +19,14 @@ toml::table parse_toml(std::string_view text, const std::string& path) {
   }
 }
 
+std::string value_found(const toml::node& node) {
+  if (const auto* text = node.as_string()) return cat('"', text->get(), '"');
+  if (const auto* whole = node.as_integer()) return cat(whole->get());
+  if (const auto* number = node.as_floating_point()) return cat(number->get());
+  if (const auto* truth = node.as_boolean()) return truth->get() ? "true" : "false";
+  return node.is_array() ? "an array" : node.is_table() ? "a table" : "a date or a time";
+}
+
 const toml::node* TomlReader::find(std::string_view key) {
   known_.emplace(key);
   return table_.get(key);
@@ -26,7 +34,7 @@ const toml::node* TomlReader::find(std::string_view key) {
 
 double TomlReader::number(const toml::node& node, std::string_view key, Bounds bounds) const {
   const std::optional<double> value = node.is_number() ? node.value<double>() : std::nullopt;
-  if (!value) fail(node, cat(key, " must be a number"));
+  if (!value) fail(node, cat(key, " is ", value_found(node), ", it must be a number"));
   if (!(*value >= bounds.low && *value <= bounds.high)) {
     fail(node, cat(key, " is ", *value, ", it must be ",
                    bounds.high < 1e300 ? cat("from ", bounds.low, " to ", bounds.high) : "finite and at least ",
@@ -51,7 +59,7 @@ bool TomlReader::read(std::string_view key, std::optional<double>& value, Bounds
 bool TomlReader::read(std::string_view key, int& value, Bounds bounds) {
   const toml::node* node = find(key);
   if (node == nullptr) return false;
-  if (!node->is_integer()) fail(*node, cat(key, " must be a whole number"));
+  if (!node->is_integer()) fail(*node, cat(key, " is ", value_found(*node), ", it must be a whole number"));
   value = static_cast<int>(number(*node, key, bounds));
   return true;
 }

@@ -22,6 +22,9 @@ namespace weir {
 /// Parses a whole document; Error(input) with the parser's place and reason.
 toml::table parse_toml(std::string_view text, const std::string& path);
 
+/// `node` for a message: "90d" in quotes, true, 1.5; of what is no single value what it is: an array.
+std::string value_found(const toml::node& node);
+
 /// Inclusive bounds of a number.
 struct Bounds {
   double low = -1e300;

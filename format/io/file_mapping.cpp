@@ -26,6 +26,12 @@ constexpr std::uint64_t kSampledPages = 16;
   throw Error(ErrorKind::input, error.message(), error.system_failure());
 }
 
+Descriptor open_to_read(const std::string& path) {
+  Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));  // a pipe must not block
+  if (!file) fail_input(path, "open", errno);
+  return file;
+}
+
 struct stat status_of(const Descriptor& file, const std::string& path) {
   struct stat status {};
   if (::fstat(file.get(), &status) != 0) fail_input(path, "stat", errno);
@@ -45,8 +51,10 @@ void* map(const Descriptor& file, std::size_t bytes) {
 }  // namespace
 
 FileMapping::FileMapping(const std::string& path, const std::string& suffix)
-    : path_(path), file_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {  // a pipe must not block
-  if (!file_) fail_input(path, "open", errno);
+    : FileMapping(open_to_read(path), path, suffix) {}
+
+FileMapping::FileMapping(Descriptor file, const std::string& path, const std::string& suffix)
+    : path_(path), file_(std::move(file)) {
   const struct stat status = status_of(file_, path);
   if (!S_ISREG(status.st_mode)) {
     throw Error(ErrorKind::input, cat(path, ": not a regular file; give a ", suffix, " file"));

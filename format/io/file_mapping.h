@@ -17,6 +17,8 @@ class FileMapping {
  public:
   /// Throws Error(input) for a missing, empty or no regular file; `suffix`, ".nvdb", is what should have been given.
   FileMapping(const std::string& path, const std::string& suffix);
+  /// The same of `file`, open for reading, whatever has `path` now, which messages name.
+  FileMapping(Descriptor file, const std::string& path, const std::string& suffix);
   ~FileMapping();
   FileMapping(FileMapping&& other) noexcept;
   FileMapping& operator=(FileMapping&&) = delete;

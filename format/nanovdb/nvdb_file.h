@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "format/io/file_mapping.h"
 #include "format/nanovdb/nvdb_grid.h"
@@ -13,10 +14,12 @@ namespace weir {
 class NvdbFile {
  public:
   /// Maps and validates. Throws Error(input) for a missing, empty or invalid file.
-  explicit NvdbFile(const std::string& path)
-      : path_(path),
-        mapping_(path, ".nvdb"),
-        grid_(NvdbGrid::open(mapping_.bytes(), path, [this] { mapping_.release_pages(); })) {}
+  explicit NvdbFile(const std::string& path) : NvdbFile(FileMapping(path, ".nvdb")) {}
+  /// The same of what is mapped.
+  explicit NvdbFile(FileMapping mapping)
+      : path_(mapping.path()),
+        mapping_(std::move(mapping)),
+        grid_(NvdbGrid::open(mapping_.bytes(), path_, [this] { mapping_.release_pages(); })) {}
 
   const std::string& path() const { return path_; }
   const NvdbGrid& grid() const { return grid_; }

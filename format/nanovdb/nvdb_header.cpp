@@ -167,6 +167,7 @@ NvdbHeader read_nvdb_header(std::span<const std::byte> bytes, const std::string&
   }
   header.type = static_cast<GridType>(type);
   header.name = nvdb_grid_name(bytes, record);
+  header.has_min_max = (grid.get<std::uint32_t>(nvdb::grid::kFlags) & nvdb::grid::kFlagMinMax) != 0;
   header.voxel_size = load3(grid, nvdb::grid::kVoxelSize);
   for (std::size_t i = 0; i < 9; ++i) header.matrix[i] = grid.get<double>(nvdb::grid::kMap + 88 + 8 * i);
   header.world_origin = load3(grid, nvdb::grid::kMap + 232);  // the map's vec as double

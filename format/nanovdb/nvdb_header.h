@@ -18,6 +18,7 @@ struct NvdbHeader {
   std::uint64_t grid_bytes = 0;   ///< inside the file, at least the fixed head of a grid
   std::uint32_t version = 0;      ///< of the grid: major << 21 | minor << 10 | patch
   GridType type = GridType::float32;
+  bool has_min_max = true;  ///< whether the root's smallest and largest value mean anything
   std::string name;
   std::array<double, 3> voxel_size{};
   std::array<double, 9> matrix{};  ///< row-major: world = matrix * index + world_origin

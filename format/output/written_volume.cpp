@@ -1,8 +1,23 @@
 #include "format/output/written_volume.h"
 
+#include <fcntl.h>
+
+#include <cerrno>
+#include <utility>
+
 #include "format/base/error.h"
 
 namespace weir {
+namespace {
+
+FileMapping mapping_of(const File& file) {
+  if (file.descriptor() < 0) return {file.path(), ".nvdb"};
+  Descriptor own(::fcntl(file.descriptor(), F_DUPFD_CLOEXEC, 0));
+  if (!own) throw io_error(file.path(), "open once more", errno);
+  return {std::move(own), file.path(), ".nvdb"};
+}
+
+}  // namespace
 
 // What a reader calls a bad file is here a device that does not hold what was written.
 WrittenVolume::WrittenVolume(const File& file) {
@@ -10,7 +25,7 @@ WrittenVolume::WrittenVolume(const File& file) {
     if (const auto bytes = file.memory(); !bytes.empty()) {
       held_ = NvdbGrid::open(bytes, file.path());
     } else {
-      mapped_.emplace(file.path());
+      mapped_.emplace(mapping_of(file));
     }
   } catch (const Error& error) {
     throw Error(ErrorKind::io, compose(error.message(), "; it was written just now, check the disk"),

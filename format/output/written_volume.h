@@ -11,8 +11,9 @@ namespace weir {
 
 class WrittenVolume {
  public:
-  /// Maps `file`, which is complete and must not be written to while this object is used, by its path; uses its bytes
-  /// where they are where it lies in memory. Throws Error(io) where it cannot be read back.
+  /// Maps `file`, which is complete and must not be written to while this object is used: by its descriptor, whatever
+  /// has its path, and by its path where it has none. Uses its bytes where they are where it lies in memory. Throws
+  /// Error(io) where it cannot be read back.
   explicit WrittenVolume(const File& file);
 
   const NvdbGrid& grid() const { return mapped_ ? mapped_->grid() : *held_; }

@@ -74,7 +74,7 @@ struct Sidecar {
     Box index_bbox;                  ///< half open, written [[lo x, y, z], [hi x, y, z]]
   } grid;
 
-  std::array<double, 2> value_range{};  ///< finite minimum and maximum of the source
+  std::array<double, 2> value_range{};  ///< finite minimum and maximum of the source; NaN where no value is finite
 
   struct Nonfinite {
     std::uint64_t count = 0;       ///< voxels of the source that are NaN or infinite

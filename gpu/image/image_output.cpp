@@ -118,7 +118,7 @@ std::vector<std::byte> encode_exr(const Image& image) {
 ImageFile::ImageFile(FileSystem& files, const std::string& path, bool overwrite)
     : files_(files), path_(path), overwrite_(overwrite), exr_(extension_of(path) == ".exr") {
   if (!exr_ && extension_of(path) != ".png") {
-    throw Error(ErrorKind::usage, cat(path, ": an image's name must end in .png or .exr"));
+    throw Error(ErrorKind::usage, compose(option("output", path), ": an image's name must end in .png or .exr"));
   }
   const std::filesystem::path target(path);
   std::error_code ignored;

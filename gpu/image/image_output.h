@@ -35,8 +35,9 @@ std::vector<std::byte> encode_exr(const Image& image);
 /// `commit` there is only a hidden temporary file beside it, which the destructor removes.
 class ImageFile {
  public:
-  /// Throws Error(usage) where `path` does not end in .png or .exr, is a directory, or exists and `overwrite` is false,
-  /// Error(io) where its directory is missing or read-only. `files` must outlive the object.
+  /// Throws Error(usage) where `path`, which the option `output` gives, does not end in .png or .exr, is a directory,
+  /// or exists and `overwrite` is false, Error(io) where its directory is missing or read-only. `files` must outlive
+  /// the object.
   ImageFile(FileSystem& files, const std::string& path, bool overwrite);
   ~ImageFile();
   ImageFile(const ImageFile&) = delete;

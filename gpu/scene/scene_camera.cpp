@@ -24,7 +24,11 @@ Double3 cross(const Double3& a, const Double3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 double length(const Double3& a) { return std::hypot(a[0], a[1], a[2]); }
-Double3 unit(const Double3& a) { return a * (1 / length(a)); }
+Double3 unit(const Double3& a) {
+  const double largest = std::max({std::abs(a[0]), std::abs(a[1]), std::abs(a[2])});
+  const Double3 scaled{a[0] / largest, a[1] / largest, a[2] / largest};  // of subnormal numbers, 1 / length is infinite
+  return scaled * (1 / length(scaled));
+}
 Double3 as_double(const Index3& i) {
   return {static_cast<double>(i.x), static_cast<double>(i.y), static_cast<double>(i.z)};
 }

@@ -1,6 +1,7 @@
 #include "gpu/scene/scene_transfer.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "format/sidecar/scene_opacity.h"
 #include "gpu/image/colormap.h"
@@ -13,10 +14,17 @@ namespace {
 // around the background would veil everything else.
 constexpr double kTransparentShare = 0.06;
 
-double default_opacity(double value, double low, double high, double background) {
-  const double reach = std::max(std::abs(high - background), std::abs(low - background));
-  if (!(reach > 0)) return 0.5;  // a constant volume is a fog, not nothing
-  const double x = (std::abs(value - background) / reach - kTransparentShare) / (1 - kTransparentShare);
+// Of the entry at `position`, 0 to 1, of a table over [low, high]. Values beyond the table take its end's opacity, so
+// that where the background lies there the end is transparent in its place.
+double default_opacity(double position, double low, double high, double background) {
+  if (!(high > low)) {
+    const bool end = (background < low && position == 0) || (background > high && position == 1);
+    return end ? 0 : 0.5;  // a constant volume is a fog, not nothing
+  }
+  const double from = std::isfinite(background) ? std::clamp(background, low, high) : low;
+  const double reach = std::max(high - from, from - low);
+  const double value = low + position * (high - low);
+  const double x = (std::abs(value - from) / reach - kTransparentShare) / (1 - kTransparentShare);
   return x > 0 ? x * std::sqrt(x) : 0;
 }
 
@@ -40,11 +48,9 @@ TransferFunction make_transfer_function(const SceneVolume& volume, MinMax range,
                                       [](const Float3& a, const Float3& b, float f) { return mix(a, b, f); });
       colour = {linear_from_srgb(srgb.x), linear_from_srgb(srgb.y), linear_from_srgb(srgb.z)};
     }
-    const double low = range.min;
-    const double high = range.max;
-    const float opacity =
-        opacities.empty() ? static_cast<float>(default_opacity(low + position * (high - low), low, high, background))
-                          : opacities[i];
+    const float opacity = opacities.empty()
+                              ? static_cast<float>(default_opacity(position, range.min, range.max, background))
+                              : opacities[i];
     table[i] = {colour.x, colour.y, colour.z, opacity};
   }
   return {std::move(table), range.min, range.max};

@@ -9,6 +9,7 @@
 #include "gpu/math/vector3.h"
 #include "gpu/scene/transfer_function.h"
 #include "gpu/volume/level_choice.h"
+#include "gpu/volume/volume_sampler.h"
 
 namespace weir {
 
@@ -40,6 +41,12 @@ struct MediumProperties {
 template <class Volume>
 struct Medium : MediumProperties {
   Volume volume;
+
+  /// Voxels between two samples of a ray of `length`, in shortest edges, at a position of it: those along the cubes
+  /// that look-ups read there, but no more than a cell has, nor than the ray, else rays would miss what is thin.
+  WEIR_HOST_DEVICE float sample_distance(const Float3& p, float length) const {
+    return lesser(lesser(spacing(volume, p), cells.edge), greater(length, 1.0F));
+  }
 
   /// At a position inside the domain, as a ray of that kind sees it; filters may draw numbers.
   WEIR_HOST_DEVICE Rgba colour(const Float3& position, RayKind kind, Random& random) const {

@@ -79,6 +79,71 @@ void read_domains(PlotfileText& text, AmrexHeader& header) {
   while (text.next_byte() == '(') text.box("a level's domain");
 }
 
+/// Of the numbers that must fit each other, which some codes write with six digits.
+constexpr double kDigitsSlack = 2e-5;
+
+char axis_name(std::size_t axis) { return "xyz"[axis]; }
+
+std::int64_t cells_along(const Box& domain, std::size_t axis) {
+  const Index3 e = domain.extent();
+  return axis == 0 ? e.x : axis == 1 ? e.y : e.z;
+}
+
+std::array<double, 3> upper_corner(PlotfileText& text, const std::array<double, 3>& lower) {
+  const std::array<double, 3> upper = three(text, "the domain's upper corner");
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (upper.at(axis) > lower.at(axis)) continue;
+    throw text.error(cat("the domain's upper corner has ", upper.at(axis), " along ", axis_name(axis),
+                         ", and must be above that of its lower corner, ", lower.at(axis), "; the header is damaged"));
+  }
+  return upper;
+}
+
+/// Of level 0 the size of its cells is the domain's by their number. The corners' digits count: where they are large,
+/// little is known of their difference.
+void require_domain_size(const PlotfileText& text, const AmrexHeader& header, const std::array<double, 3>& upper) {
+  const AmrexLevelHeader& level = header.levels.front();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto cells = static_cast<double>(cells_along(level.domain, axis));
+    const double lo = header.corner.at(axis);
+    const double hi = upper.at(axis);
+    const double expected = hi / cells - lo / cells;
+    const double slack = kDigitsSlack * (std::fabs(hi) / cells + std::fabs(lo) / cells);
+    if (std::fabs(level.spacing.at(axis) - expected) <= slack) continue;
+    throw text.error(cat("the size of level 0's cells along ", axis_name(axis), " is ", level.spacing.at(axis),
+                         ", and must be ", expected, ", as the domain reaches from ", lo, " to ", hi, " and has ",
+                         cells_along(level.domain, axis), " cells there; the header is damaged"));
+  }
+}
+
+void require_refined_size(const PlotfileText& text, const AmrexHeader& header, std::size_t number) {
+  const AmrexLevelHeader& level = header.levels[number];
+  const std::array<std::int64_t, 3> ratio{level.ratio.x, level.ratio.y, level.ratio.z};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double coarse = header.levels[number - 1].spacing.at(axis);
+    const double expected = coarse / static_cast<double>(ratio.at(axis));
+    if (std::fabs(level.spacing.at(axis) - expected) <= kDigitsSlack * expected) continue;
+    throw text.error(cat("the size of level ", number, "'s cells along ", axis_name(axis), " is ",
+                         level.spacing.at(axis), ", and must be ", expected, ", that of level ", number - 1, ", ",
+                         coarse, ", by the ratio ", ratio.at(axis), "; the header is damaged"));
+  }
+}
+
+void read_cell_sizes(PlotfileText& text, AmrexHeader& header, const std::array<double, 3>& upper) {
+  for (std::size_t i = 0; i < header.levels.size(); ++i) {
+    std::array<double, 3>& spacing = header.levels[i].spacing;
+    spacing = three(text, "the size of a level's cells");
+    for (const double s : spacing) {
+      if (!(s > 0)) throw text.error(cat("the size of a level's cells has ", s, ", and must be above 0"));
+    }
+    if (i == 0) {
+      require_domain_size(text, header, upper);
+    } else {
+      require_refined_size(text, header, i);
+    }
+  }
+}
+
 /// A path inside the plotfile.
 std::string inner_path(const PlotfileText& text, const std::string& path) {
   bool inside = !path.empty() && path.front() != '/';
@@ -122,16 +187,11 @@ AmrexHeader parse_amrex_header(PlotfileText& text) {
   header.time = text.real("the time");
   header.levels.resize(static_cast<std::size_t>(text.integer_in("the finest level", 0, kMostLevels - 1)) + 1);
   header.corner = three(text, "the domain's lower corner");
-  three(text, "the domain's upper corner");
+  const std::array<double, 3> upper = upper_corner(text, header.corner);
   read_domains(text, header);
   for (std::size_t i = 0; i < header.levels.size(); ++i) text.skip_word("a level's step");
   text.rest_of_line();
-  for (AmrexLevelHeader& level : header.levels) {
-    level.spacing = three(text, "the size of a level's cells");
-    for (const double s : level.spacing) {
-      if (!(s > 0)) throw text.error(cat("the size of a level's cells has ", s, ", and must be above 0"));
-    }
-  }
+  read_cell_sizes(text, header, upper);
   const std::int64_t coordinates = text.integer("the kind of coordinates");
   if (coordinates != 0) {
     throw text.error(cat("the coordinates are ",

@@ -34,7 +34,7 @@ bool begins_as_amrex_header(std::string_view text);
 
 /// The ratios are those of the domains, since the file has that of one axis only; it must agree. Throws Error(input)
 /// with path and line: 1-D and 2-D plotfiles, coordinates that are not Cartesian, domains that do not refine each
-/// other, and whatever is damaged.
+/// other, sizes of cells that fit neither the domain nor each other, and whatever is damaged.
 AmrexHeader parse_amrex_header(PlotfileText& text);
 
 }  // namespace weir

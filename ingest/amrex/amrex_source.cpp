@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <filesystem>
 #include <limits>
+#include <map>
+#include <string_view>
 #include <utility>
 
 #include "format/base/error.h"
@@ -57,22 +59,43 @@ class AmrexSource final : public VolumeSource {
   Composite composite_;
 };
 
-// Why the component of this position cannot be converted.
-std::string component_obstacle(const std::vector<std::string>& names, std::size_t i) {
-  if (names[i].empty()) return "it has no name";
-  const auto end = names.begin() + static_cast<std::ptrdiff_t>(i);
-  return std::find(names.begin(), end, names[i]) == end ? "" : "another component before it has the same name";
+// Why components cannot be converted, by position: --dataset says nothing but a name.
+std::vector<std::string> component_obstacles(const std::vector<std::string>& names) {
+  std::map<std::string_view, std::size_t> counts;
+  for (const std::string& name : names) ++counts[name];
+  std::vector<std::string> obstacles;
+  for (const std::string& name : names) {
+    obstacles.emplace_back(name.empty()        ? "it has no name"
+                           : counts[name] == 1 ? ""
+                                               : "another component has the same name");
+  }
+  return obstacles;
+}
+
+void refuse_second(const std::string& path, const std::vector<std::string>& names, std::size_t first) {
+  const auto after = names.begin() + static_cast<std::ptrdiff_t>(first) + 1;
+  const auto second = std::find(after, names.end(), names[first]);
+  if (second == names.end()) return;
+  throw input_error(
+      path, cat("its components ", first + 1, " and ", second - names.begin() + 1, " of ", names.size(),
+                " both have the name ", in_quotes(names[first]),
+                ", which does not say which of them is meant; give one of them another name in its ", kDirectoryHead));
 }
 
 Error several_components(const std::string& path, const std::vector<std::string>& names) {
+  const std::vector<std::string> obstacles = component_obstacles(names);
   Message commands;
-  for (std::size_t i = 0; i < std::min(names.size(), kMostComponentsShown); ++i) {
+  std::size_t shown = 0;
+  for (std::size_t i = 0; i < names.size() && shown < kMostComponentsShown; ++i) {
+    if (!obstacles[i].empty()) continue;
     DatasetInfo info;
     info.name = names[i];
-    commands += compose(i == 0 ? "" : "; ", CommandLineText{convert_command(path, true, info), volume_keys(info)});
+    commands +=
+        compose(shown++ == 0 ? "" : "; ", CommandLineText{convert_command(path, true, info), volume_keys(info)});
   }
-  if (names.size() > kMostComponentsShown)
-    commands += cat("; and ", names.size() - kMostComponentsShown, " more (weir inspect lists them)");
+  if (names.size() > shown)
+    commands += shown == 0 ? "none has a name of its own (weir inspect lists them)"
+                           : cat("; and ", names.size() - shown, " more (weir inspect lists them)");
   return {ErrorKind::usage,
           compose(path, ": holds ", names.size(), " components; choose one with ", option("dataset"), ": ", commands)};
 }
@@ -84,7 +107,11 @@ std::size_t chosen_component(const std::string& path, const std::vector<std::str
     throw several_components(path, names);
   }
   const auto found = std::find(names.begin(), names.end(), wanted);
-  if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+  if (found != names.end()) {
+    const auto position = static_cast<std::size_t>(found - names.begin());
+    refuse_second(path, names, position);
+    return position;
+  }
   std::string there;
   for (std::size_t i = 0; i < std::min(names.size(), kMostComponentsShown); ++i)
     there += cat(i == 0 ? "" : ", ", in_quotes(names[i]));
@@ -172,14 +199,15 @@ bool recognises_amrex(std::string_view path, std::span<const std::byte> head) {
 
 std::unique_ptr<VolumeSource> open_amrex(const std::string& path, const SourceOptions& options) {
   refuse_index(path, options);
-  const AmrexHeader header = read_amrex_header(path);
+  const AmrexHeader header = read_amrex_header(path, options.cancel);
   const std::size_t component = chosen_component(path, header.components, options.dataset);
   const std::size_t finest = chosen_level(path, header, options);
   const bool separate = options.levels == Levels::separate;
   if (separate) refuse_upsampling(path, options);
   const std::size_t level = separate ? own_level(path, finest, options) : finest;
-  Plotfile plotfile =
-      open_plotfile(path, {finest + 1, options.memory / kMemoryShare, {.of_components = false, .of_boxes = component}});
+  Plotfile plotfile = open_plotfile(
+      path,
+      {finest + 1, options.memory / kMemoryShare, {.of_components = false, .of_boxes = component}, options.cancel});
   SourceInfo info;
   info.path = path;
   info.format = "amrex";
@@ -211,11 +239,12 @@ std::unique_ptr<VolumeSource> open_amrex(const std::string& path, const SourceOp
 
 std::vector<DatasetInfo> list_amrex(const std::string& path, const SourceOptions& options) {
   refuse_index(path, options);
-  const Plotfile plotfile =
-      open_plotfile(path, {SIZE_MAX, options.memory / kMemoryShare, {.of_components = true, .of_boxes = {}}});
+  const Plotfile plotfile = open_plotfile(
+      path, {SIZE_MAX, options.memory / kMemoryShare, {.of_components = true, .of_boxes = {}}, options.cancel});
   const AmrexHeader& header = plotfile.header;
   const std::size_t level = chosen_level(path, header, options);
   const Index3& extent = plotfile.levels[level].extent;
+  const std::vector<std::string> obstacles = component_obstacles(header.components);
   std::vector<DatasetInfo> list;
   for (std::size_t i = 0; i < header.components.size(); ++i) {
     DatasetInfo info;
@@ -223,7 +252,7 @@ std::vector<DatasetInfo> list_amrex(const std::string& path, const SourceOptions
     info.extents = {extent.x, extent.y, extent.z};
     info.type = real_layout_text(plotfile.layout);
     info.layout = levels_text(header);
-    info.obstacle = component_obstacle(header.components, i);
+    info.obstacle = obstacles[i];
     if (info.obstacle.empty() && options.levels == Levels::composite)
       info.obstacle = extent_obstacle(extent, scalar_bytes(plotfile.layout.type));
     if (const std::string range = component_range_text(plotfile, i); !range.empty())
@@ -237,7 +266,7 @@ std::vector<DatasetInfo> list_amrex(const std::string& path, const SourceOptions
 }
 
 std::int64_t count_amrex_levels(const std::string& path, const SourceOptions& options) {
-  return static_cast<std::int64_t>(chosen_level(path, read_amrex_header(path), options)) + 1;
+  return static_cast<std::int64_t>(chosen_level(path, read_amrex_header(path, options.cancel), options)) + 1;
 }
 
 std::string unwritten_part(const std::string& header_path) {

@@ -1,8 +1,10 @@
 #include "ingest/amrex/composite.h"
 
 #include <algorithm>
+#include <bit>
 #include <mutex>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "format/base/error.h"
@@ -12,6 +14,7 @@
 #include "ingest/plan/for_pieces.h"
 #include "ingest/plan/staging.h"
 #include "ingest/source/extent.h"
+#include "ingest/values/decode_values.h"
 
 namespace weir {
 namespace {
@@ -51,6 +54,27 @@ Box bounds_of_boxes(const std::vector<Box>& boxes) {
   return bounds;
 }
 
+/// As `mapping`, but values that stand for "no data" read as missing_value(), which nothing is made linear with.
+ValueMapping marking(ValueMapping mapping) {
+  mapping.keeps_missing = false;
+  return mapping;
+}
+
+template <typename T>
+float kept_value_of(const ValueMapping& mapping, ScalarType type) {
+  const T value = std::visit([](const auto v) { return static_cast<T>(v); }, mapping.missing.front());
+  float read = 0;
+  decode_values(std::as_bytes(std::span(&value, 1)), type, std::endian::native == std::endian::big, mapping,
+                std::span(&read, 1));
+  return read;
+}
+
+/// What the stored value that stands for "no data" reads as. Plotfiles name none: it is that of --missing alone.
+float value_of_missing(const ValueMapping& mapping, ScalarType type) {
+  if (mapping.missing.empty() || !holds(type, mapping.missing.front())) return missing_value();
+  return type == ScalarType::float32 ? kept_value_of<float>(mapping, type) : kept_value_of<double>(mapping, type);
+}
+
 /// The cells between planes of the grid of kTile.
 std::vector<Box> tiles_of(const Box& box) {
   const Index3 first = floor_div(box.lo, kTile);
@@ -69,11 +93,14 @@ Composite::Composite(const Plotfile& plotfile, std::size_t component, const Valu
     : plotfile_(plotfile),
       wanted_(plotfile.levels.size() - 1),
       upsampling_(upsampling),
-      reader_(plotfile, component, mapping, mode, notice) {}
+      mapping_(mapping),
+      coarse_mapping_(marking(mapping)),
+      kept_value_(value_of_missing(mapping, plotfile.layout.type)),
+      reader_(plotfile, component, mode, notice) {}
 
 Composite::Composite(const Plotfile& plotfile, std::size_t component, const ValueMapping& mapping, std::size_t own,
                      DirectIo mode, const Notice& notice)
-    : plotfile_(plotfile), wanted_(own), own_(true), reader_(plotfile, component, mapping, mode, notice) {}
+    : plotfile_(plotfile), wanted_(own), own_(true), mapping_(mapping), reader_(plotfile, component, mode, notice) {}
 
 ConversionLoss Composite::read(const Box& box, std::span<float> values) {
   return upsampling_ == Upsampling::linear && wanted_ > 0 ? read_linear(box, values) : read_constant(box, values);
@@ -99,7 +126,7 @@ ConversionLoss Composite::read_repeated(const RepeatedPart& part, std::span<floa
   const Box cells = coarsened(part.box, part.by);
   const std::vector<CoverPart> parts = composite_parts(level, cells);
   ConversionLoss loss;
-  for (const auto& of_fab : by_fab(parts)) loss.add(reader_.read(level, of_fab, cells, values));
+  for (const auto& of_fab : by_fab(parts)) loss.add(reader_.read(level, of_fab, cells, mapping_, values));
   return loss.times(static_cast<std::uint64_t>(volume(part.by)));
 }
 
@@ -134,7 +161,7 @@ ConversionLoss Composite::read_constant(const Box& box, std::span<float> values)
                                           static_cast<std::size_t>(slab.voxels()));
       const std::vector<CoverPart> parts_of_slab = parts_of(slab, in_slab);
       for (const auto& of_fab : by_fab(parts_of_slab)) {
-        const ConversionLoss loss = reader_.read(wanted_, of_fab, slab, in_slab);
+        const ConversionLoss loss = reader_.read(wanted_, of_fab, slab, mapping_, in_slab);
         const std::lock_guard lock(mutex);
         total.add(loss);
       }
@@ -142,7 +169,7 @@ ConversionLoss Composite::read_constant(const Box& box, std::span<float> values)
     return total;
   }
   for_pieces(std::ssize(groups), threads_for(box), [&](std::int64_t i) {
-    const ConversionLoss loss = reader_.read(wanted_, groups[static_cast<std::size_t>(i)], box, values);
+    const ConversionLoss loss = reader_.read(wanted_, groups[static_cast<std::size_t>(i)], box, mapping_, values);
     const std::lock_guard lock(mutex);
     total.add(loss);
   });
@@ -157,7 +184,7 @@ ConversionLoss Composite::read_linear(const Box& box, std::span<float> values) {
     const Box& tile = tiles[static_cast<std::size_t>(i)];
     const Index3 e = tile.extent();
     std::vector<float> of_tile(static_cast<std::size_t>(tile.voxels()));
-    const ConversionLoss loss = read_tile(wanted_, tile, of_tile);
+    const ConversionLoss loss = read_tile(wanted_, tile, mapping_, of_tile);
     for (std::int64_t row = 0; row < e.y * e.z; ++row) {
       const Index3 first{0, row % e.y, row / e.y};
       std::copy_n(of_tile.begin() + row * e.x, e.x,
@@ -169,18 +196,33 @@ ConversionLoss Composite::read_linear(const Box& box, std::span<float> values) {
   return total;
 }
 
-ConversionLoss Composite::read_tile(std::size_t level, const Box& box, std::span<float> values) {
+ConversionLoss Composite::read_tile(std::size_t level, const Box& box, const ValueMapping& mapping,
+                                    std::span<float> values) {
   const LevelCover cover = cover_box(plotfile_.levels, level, level, box);
   ConversionLoss loss;
-  for (const auto& parts : by_fab(cover.parts)) loss.add(reader_.read(level, parts, box, values));
+  for (const auto& parts : by_fab(cover.parts)) loss.add(reader_.read(level, parts, box, mapping, values));
   if (cover.rest.empty()) return loss;
   if (level == 0) throw uncovered(plotfile_, cover.rest.front());
   const Index3 by = plotfile_.levels[level].ratio;
   const Box support = linear_support(bounds_of_boxes(cover.rest), by, plotfile_.levels[level - 1].extent);
   std::vector<float> coarse(static_cast<std::size_t>(support.voxels()));
-  read_tile(level - 1, support, coarse);
-  for (const Box& part : cover.rest) upsample_linear({support, coarse}, by, part, box, values);
+  read_tile(level - 1, support, coarse_mapping_, coarse);
+  for (const Box& part : cover.rest) {
+    upsample_linear({support, coarse}, by, part, box, values);
+    if (mapping.keeps_missing && !mapping.missing.empty()) loss.unmarked += keep_missing(part, box, values);
+  }
   return loss;
+}
+
+std::uint64_t Composite::keep_missing(const Box& part, const Box& box, std::span<float> values) const {
+  std::uint64_t count = 0;
+  for_each_index(part, [&](const Index3& i) {
+    float& value = values[static_cast<std::size_t>(linear_index(i - box.lo, box.extent()))];
+    if (!is_missing(value)) return;
+    value = kept_value_;
+    ++count;
+  });
+  return count;
 }
 
 std::uint64_t Composite::working_bytes() const {

@@ -28,7 +28,8 @@ class Composite {
             DirectIo mode, const Notice& notice);
 
   /// Reads `box` of the wanted level's domain, which begins at 0; x fastest. Of linear values, loss is that of the
-  /// cells that are read as they are stored. Throws what InputFile and FabFiles throw.
+  /// cells that are read as they are stored; but values that stand for "no data" and are kept are counted in any case.
+  /// Throws what InputFile and FabFiles throw.
   ConversionLoss read(const Box& box, std::span<float> values);
 
   /// As VolumeSource has them. What coarser levels have repeats where values are constant in their cells.
@@ -47,13 +48,19 @@ class Composite {
   std::vector<CoverPart> parts_of(const Box& box, std::span<float> values) const;
   ConversionLoss read_constant(const Box& box, std::span<float> values);
   ConversionLoss read_linear(const Box& box, std::span<float> values);
-  /// One tile of a composite of linear values; by the calling thread alone.
-  ConversionLoss read_tile(std::size_t level, const Box& box, std::span<float> values);
+  /// One tile of a composite of linear values after `mapping`, what is between coarse cells after coarse_mapping_; by
+  /// the calling thread alone.
+  ConversionLoss read_tile(std::size_t level, const Box& box, const ValueMapping& mapping, std::span<float> values);
+  /// Gives the missing voxels of `part` of the box `box` kept_value_; counts them.
+  std::uint64_t keep_missing(const Box& part, const Box& box, std::span<float> values) const;
 
   const Plotfile& plotfile_;
   std::size_t wanted_;
   Upsampling upsampling_ = Upsampling::constant;
   bool own_ = false;  ///< the wanted level alone
+  ValueMapping mapping_;
+  ValueMapping coarse_mapping_;         ///< of cells between which there are linear values: "no data" is never kept
+  float kept_value_ = missing_value();  ///< what "no data" reads as
   FabReader reader_;
 };
 

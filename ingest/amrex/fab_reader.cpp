@@ -125,16 +125,14 @@ struct Painter {
 
 }  // namespace
 
-FabReader::FabReader(const Plotfile& plotfile, std::size_t component, ValueMapping mapping, DirectIo mode,
-                     Notice notice)
+FabReader::FabReader(const Plotfile& plotfile, std::size_t component, DirectIo mode, Notice notice)
     : plotfile_(plotfile),
       component_(component),
-      mapping_(std::move(mapping)),
       files_(plotfile, mode),
       check_(plotfile, component, std::move(notice)) {}
 
 ConversionLoss FabReader::read(std::size_t wanted, std::span<const CoverPart> parts, const Box& box,
-                               std::span<float> values) {
+                               const ValueMapping& mapping, std::span<float> values) {
   const std::size_t number = parts.front().level;
   const std::uint32_t fab = parts.front().fab;
   const PlotfileLevel& level = plotfile_.levels[number];
@@ -152,7 +150,7 @@ ConversionLoss FabReader::read(std::size_t wanted, std::span<const CoverPart> pa
   stored.bytes = scalar_bytes(plotfile_.layout.type);
   stored.offset = files_.values_offset(number, fab, *file) +
                   component_ * static_cast<std::uint64_t>(volume(stored.extent)) * stored.bytes;
-  const Painter painter{by, plotfile_.layout, mapping_, box, values};
+  const Painter painter{by, plotfile_.layout, mapping, box, values};
   const StagingPool::Lease staging(staging_);
   ConversionLoss loss;
   for_each_piece(stored, {needed.lo - cells.lo, needed.hi - cells.lo}, [&](const Box& piece) {

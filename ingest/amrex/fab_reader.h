@@ -19,19 +19,19 @@ namespace weir {
 class FabReader {
  public:
   /// `plotfile` outlives the object. `notice` is for RangeCheck.
-  FabReader(const Plotfile& plotfile, std::size_t component, ValueMapping mapping, DirectIo mode, Notice notice);
+  FabReader(const Plotfile& plotfile, std::size_t component, DirectIo mode, Notice notice);
 
   /// Writes the values of `parts`, which are of one FAB and lie in `box`, of cells of level `wanted`, to their places
-  /// in `values`, that box x fastest. A cell of a coarser level gives all cells in it its value. Loss is counted of
-  /// what is written. Rows of the FAB that lie near each other are read together.
-  ConversionLoss read(std::size_t wanted, std::span<const CoverPart> parts, const Box& box, std::span<float> values);
+  /// in `values`, that box x fastest, after `mapping`. A cell of a coarser level gives all cells in it its value. Loss
+  /// is counted of what is written. Rows of the FAB that lie near each other are read together.
+  ConversionLoss read(std::size_t wanted, std::span<const CoverPart> parts, const Box& box, const ValueMapping& mapping,
+                      std::span<float> values);
 
   std::uint64_t bytes_read() const { return files_.bytes_read(); }
 
  private:
   const Plotfile& plotfile_;
   std::size_t component_;
-  ValueMapping mapping_;
   FabFiles files_;
   RangeCheck check_;
   StagingPool staging_;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <numeric>
+#include <tuple>
 #include <utility>
 
 #include "format/base/error.h"
@@ -19,8 +21,11 @@ constexpr auto kMostVolume = static_cast<std::int64_t>(UINT64_C(1) << 60U);  // 
 
 /// A header's file and its text.
 struct HeaderFile {
-  explicit HeaderFile(const std::string& path)
-      : file(path, DirectIo::off), pieces(file, 0, file.size()), text(path, [this] { return pieces.next_piece(); }) {}
+  explicit HeaderFile(const std::string& path, Interruption interruption = nullptr)
+      : file(path, DirectIo::off), pieces(file, 0, file.size()), text(path, [this, interruption] {
+          throw_if_interrupted(interruption);
+          return pieces.next_piece();
+        }) {}
 
   InputFile file;
   FileText pieces;
@@ -55,8 +60,9 @@ void move_to_domain(const std::string& path, const Box& domain, std::vector<Cell
   }
 }
 
-void refuse_overlaps(const std::string& path, const PlotfileLevel& level, const Index3& first) {
-  const auto [a, b] = level.index.overlapping();
+void refuse_overlaps(const std::string& path, const PlotfileLevel& level, const Index3& first,
+                     Interruption interruption) {
+  const auto [a, b] = level.index.overlapping(interruption);
   if (a == b) return;
   const auto in_file = [&](std::uint32_t i) {
     const Box box = level.boxes[i].box();
@@ -93,28 +99,49 @@ std::unique_ptr<InputFile> open_fab_file(const std::string& path, const std::str
   }
 }
 
+/// Where the values of a FAB end that begin at `offset`; UINT64_MAX where that is no 64-bit number.
+std::uint64_t values_end(const Plotfile& plotfile, const PlotfileLevel& level, std::size_t fab, std::uint64_t offset) {
+  const std::uint64_t components = plotfile.header.components.size();
+  std::uint64_t end = 0;
+  const bool fits = !__builtin_mul_overflow(level.cells(fab), components * scalar_bytes(plotfile.layout.type), &end) &&
+                    !__builtin_add_overflow(end, offset, &end);
+  return fits ? end : UINT64_MAX;
+}
+
+/// FABs without headers of their own do not say whose they are: what lies in two of them is seen here, or never.
+void refuse_shared_bytes(const Plotfile& plotfile, const PlotfileLevel& level, const std::string& header) {
+  const auto& places = level.places;
+  std::vector<std::uint32_t> order(places.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return std::tie(places[a].file, places[a].offset) < std::tie(places[b].file, places[b].offset);
+  });
+  for (std::size_t i = 1; i < order.size(); ++i) {
+    const FabPlace& place = places[order[i - 1]];
+    const FabPlace& next = places[order[i]];
+    if (place.file != next.file) continue;
+    const std::uint64_t end = values_end(plotfile, level, order[i - 1], place.offset);
+    if (end <= next.offset) continue;
+    throw input_error(level.path(place.file),
+                      cat("the FABs at offsets ", place.offset, " and ", next.offset,
+                          " have bytes in common: the first ends at ", end, "; ", header, " is damaged"));
+  }
+}
+
 /// What of the file a FAB takes, its header included. Fills plotfile.layout where it is the first one.
 std::uint64_t fab_end(InputFile& file, const PlotfileLevel& level, std::size_t fab, Plotfile& plotfile, bool first) {
   const std::uint64_t offset = level.places[fab].offset;
-  std::uint64_t header_bytes = 0;
-  if (!level.bare) {
-    const FabHeader header = read_fab_header(file, offset);
-    if (first) plotfile.layout = header.layout;
-    header_bytes = header.bytes;
-  }
-  const std::uint64_t cells = level.cells(fab);
-  const std::uint64_t components = plotfile.header.components.size();
-  std::uint64_t bytes = 0;
-  if (__builtin_mul_overflow(cells, components * scalar_bytes(plotfile.layout.type), &bytes) ||
-      __builtin_add_overflow(bytes, offset + header_bytes, &bytes)) {
-    return UINT64_MAX;
-  }
-  return bytes;
+  if (level.bare) return values_end(plotfile, level, fab, offset);
+  const FabHeader header = read_fab_header(file, offset);
+  if (first) plotfile.layout = header.layout;
+  return values_end(plotfile, level, fab, offset + header.bytes);
 }
 
-void check_fab_files(Plotfile& plotfile, const PlotfileLevel& level, const std::string& header, bool first) {
+void check_fab_files(Plotfile& plotfile, const PlotfileLevel& level, const std::string& header, bool first,
+                     Interruption interruption) {
   const std::vector<std::size_t> last = last_fabs(level);
   for (std::uint32_t i = 0; i < level.files.size(); ++i) {
+    throw_if_interrupted(interruption);
     const auto file = open_fab_file(level.path(i), header);
     note(plotfile, file->state());
     const std::uint64_t offset = level.places[last[i]].offset;
@@ -126,12 +153,12 @@ void check_fab_files(Plotfile& plotfile, const PlotfileLevel& level, const std::
   }
 }
 
-PlotfileLevel open_level(Plotfile& plotfile, std::size_t number, std::uint64_t memory, const RangesKept& ranges) {
+PlotfileLevel open_level(Plotfile& plotfile, std::size_t number, std::uint64_t memory, const PlotfileParts& parts) {
   const AmrexLevelHeader& said = plotfile.header.levels[number];
   const std::string path = cell_header_path(plotfile, number);
-  HeaderFile file(path);
+  HeaderFile file(path, parts.interruption);
   note(plotfile, file.file.state());
-  CellHeader cells = parse_cell_header(file.text, file.file.size(), memory, ranges);
+  CellHeader cells = parse_cell_header(file.text, file.file.size(), memory, parts.ranges);
   if (std::cmp_not_equal(cells.components, plotfile.header.components.size())) {
     throw input_error(path, cat("has ", cells.components, " components, and Header has ",
                                 plotfile.header.components.size(), "; the plotfile is damaged"));
@@ -156,10 +183,11 @@ PlotfileLevel open_level(Plotfile& plotfile, std::size_t number, std::uint64_t m
                                 real_layout_text(plotfile.layout), "; all must be alike"));
   }
   if (cells.layout) plotfile.layout = *cells.layout;
+  if (level.bare) refuse_shared_bytes(plotfile, level, path);
   level.index = BoxIndex(level.boxes);
-  refuse_overlaps(path, level, said.domain.lo);
+  refuse_overlaps(path, level, said.domain.lo, parts.interruption);
   if (number == 0) require_cover(path, level);
-  check_fab_files(plotfile, level, path, number == 0);
+  check_fab_files(plotfile, level, path, number == 0, parts.interruption);
   return level;
 }
 
@@ -181,8 +209,8 @@ std::string cell_header_path(const Plotfile& plotfile, std::size_t level) {
   return cat(plotfile_directory(plotfile.path), '/', plotfile.header.levels[level].cells, "_H");
 }
 
-AmrexHeader read_amrex_header(const std::string& path) {
-  HeaderFile file(cat(plotfile_directory(path), '/', kDirectoryHead));
+AmrexHeader read_amrex_header(const std::string& path, Interruption interruption) {
+  HeaderFile file(cat(plotfile_directory(path), '/', kDirectoryHead), interruption);
   return parse_amrex_header(file.text);
 }
 
@@ -190,7 +218,7 @@ Plotfile open_plotfile(const std::string& path, const PlotfileParts& parts) {
   Plotfile plotfile;
   plotfile.path = path;
   {
-    HeaderFile file(cat(plotfile_directory(path), '/', kDirectoryHead));
+    HeaderFile file(cat(plotfile_directory(path), '/', kDirectoryHead), parts.interruption);
     note(plotfile, file.file.state());
     plotfile.header = parse_amrex_header(file.text);
     for (const AmrexLevelHeader& level : plotfile.header.levels) {
@@ -205,7 +233,7 @@ Plotfile open_plotfile(const std::string& path, const PlotfileParts& parts) {
   const std::size_t levels = std::min(parts.levels, plotfile.header.levels.size());
   std::uint64_t memory = parts.memory;
   for (std::size_t i = 0; i < levels; ++i) {
-    plotfile.levels.push_back(open_level(plotfile, i, memory, parts.ranges));
+    plotfile.levels.push_back(open_level(plotfile, i, memory, parts));
     memory -= std::min(memory, plotfile.levels.back().boxes.size() * kBytesPerBox);
   }
   return plotfile;

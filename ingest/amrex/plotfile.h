@@ -12,6 +12,7 @@
 #include "ingest/amrex/amrex_header.h"
 #include "ingest/amrex/box_index.h"
 #include "ingest/amrex/cell_header.h"
+#include "ingest/amrex/interruption.h"
 #include "ingest/amrex/real_layout.h"
 #include "ingest/files/file_states.h"
 
@@ -53,18 +54,19 @@ std::string box_in_file(const Plotfile& plotfile, std::size_t level, std::uint32
 /// "plt00042/Level_0/Cell_H".
 std::string cell_header_path(const Plotfile& plotfile, std::size_t level);
 
-/// Its header alone.
-AmrexHeader read_amrex_header(const std::string& path);
+/// Its header alone. Throws Error(interrupted), too.
+AmrexHeader read_amrex_header(const std::string& path, Interruption interruption);
 
 struct PlotfileParts {
   std::size_t levels = SIZE_MAX;      ///< the coarsest ones, as many of them
   std::uint64_t memory = UINT64_MAX;  ///< bytes, for boxes and indices over them
   RangesKept ranges;
+  Interruption interruption = nullptr;  ///< ends opening with Error(interrupted)
 };
 
 /// Opens it. Throws Error(input) with path and place for what is damaged, missing or cut: a FAB file is there and long
-/// enough for the last of its FABs; boxes lie in their domain and have no cell in common; level 0 covers it.
-/// Error(usage) where the boxes take more than `parts.memory`.
+/// enough for the last of its FABs; FABs without headers have no byte in common; boxes lie in their domain and have no
+/// cell in common; level 0 covers it. Error(usage) where the boxes take more than `parts.memory`.
 Plotfile open_plotfile(const std::string& path, const PlotfileParts& parts);
 
 }  // namespace weir

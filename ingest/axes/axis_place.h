@@ -23,8 +23,10 @@ struct AxisPlace {
   bool has_coordinates = false;  ///< the file has a dataset of them
   /// AxisPlacement::orientation of the axes together; else empty.
   std::string orientation = {};
-  bool falls = false;        ///< they are equally spaced, and the last one is the lowest
-  bool points_down = false;  ///< CF's attribute `positive` says that they rise downwards, as depths do
+  bool falls = false;             ///< they are equally spaced, and the last one is the lowest
+  std::string spacing_from = {};  ///< what of the file says the spacing, "attribute resolution"; empty: coordinates
+  std::string origin_from = {};   ///< the same of the origin
+  bool points_down = false;       ///< CF's attribute `positive` says that they rise downwards, as depths do
 };
 
 /// "Time=4 x bottom_top=14 x 48 x 48".

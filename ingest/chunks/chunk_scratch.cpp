@@ -17,7 +17,8 @@ constexpr std::uint64_t kScratchShare = 8;
 }  // namespace
 
 ScratchPool::ScratchPool(const ScratchSize& size, std::uint64_t memory, const std::string& name)
-    : scratch_bytes_((size.two ? 2 : 1) * std::uint64_t{size.buffer_bytes} + size.codec_bytes + kInflaterBytes) {
+    : scratch_bytes_((size.two ? 2 : 1) * std::uint64_t{size.buffer_bytes} + size.codec_bytes + size.gathered_bytes +
+                     kInflaterBytes) {
   if (scratch_bytes_ > memory / 2) {
     throw Error(ErrorKind::usage,
                 compose(name, ": decoding one of its chunks of ", format_bytes(size.chunk_bytes), " takes ",
@@ -27,7 +28,7 @@ ScratchPool::ScratchPool(const ScratchSize& size, std::uint64_t memory, const st
   const std::uint64_t cores = std::max(1U, std::thread::hardware_concurrency());
   const std::uint64_t count = std::clamp<std::uint64_t>(memory / kScratchShare / scratch_bytes_, 1, cores);
   for (std::uint64_t i = 0; i < count; ++i) {
-    all_.push_back(std::make_unique<ChunkScratch>(size.buffer_bytes, size.two));
+    all_.push_back(std::make_unique<ChunkScratch>(size.buffer_bytes, size.two, size.gathered_bytes));
     free_.push(all_.back().get());
   }
 }

@@ -16,19 +16,22 @@ namespace weir {
 
 /// What one chunk at a time is decoded in, between the buffers.
 struct ChunkScratch {
-  ChunkScratch(std::size_t buffer_bytes, bool two) : buffer(buffer_bytes), other(two ? buffer_bytes : 0) {}
+  ChunkScratch(std::size_t buffer_bytes, bool two, std::size_t gathered_bytes = 0)
+      : buffer(buffer_bytes), other(two ? buffer_bytes : 0), gathered(gathered_bytes) {}
 
   PageBuffer buffer;
   PageBuffer other;
+  PageBuffer gathered;
   ChunkInflater inflater;
 };
 
 /// How large they are.
 struct ScratchSize {
-  std::size_t chunk_bytes = 0;   ///< of a decoded chunk, for messages
-  std::size_t buffer_bytes = 0;  ///< of each buffer: the most a chunk takes at any stage
-  bool two = false;              ///< `other` is used
-  std::size_t codec_bytes = 0;   ///< that a library takes besides while it decodes one chunk
+  std::size_t chunk_bytes = 0;     ///< of a decoded chunk, for messages
+  std::size_t buffer_bytes = 0;    ///< of each buffer: the most a chunk takes at any stage
+  bool two = false;                ///< `other` is used
+  std::size_t codec_bytes = 0;     ///< that a library takes besides while it decodes one chunk
+  std::size_t gathered_bytes = 0;  ///< of `gathered`: what is put together of several chunks, else 0
 };
 
 /// Scratch for several chunks at a time, lent to whoever decodes. Thread-safe; untouched scratch costs no

@@ -52,13 +52,4 @@ const void* load_driver(const std::string& name, const std::string& what) {
   return driver;
 }
 
-bool has_driver(const std::string& name) {
-  try {
-    load_driver(name, name);
-    return true;
-  } catch (const Error&) {
-    return false;
-  }
-}
-
 }  // namespace weir

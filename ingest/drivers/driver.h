@@ -14,9 +14,6 @@ namespace weir {
 /// build of weir.
 const void* load_driver(const std::string& name, const std::string& what);
 
-/// Whether load_driver would return.
-bool has_driver(const std::string& name);
-
 /// A driver's entry, which the driver defines by WEIR_DRIVER_ENTRY: a digest of the headers that both sides are
 /// compiled with is a part of its name, so that no program takes a driver of another build.
 #define WEIR_DRIVER_ENTRY extern "C" __attribute__((visibility("default"))) const void* WEIR_DRIVER_SYMBOL()

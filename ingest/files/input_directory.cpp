@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <system_error>
+#include <utility>
 
 namespace weir {
 
@@ -13,6 +14,46 @@ std::optional<std::string> head_in_directory(const std::string& path) {
   for (const char* const head : kDirectoryHeads) {
     const std::filesystem::path file = std::filesystem::path(path) / head;
     if (std::filesystem::is_regular_file(file, ignored)) return file.string();
+  }
+  return std::nullopt;
+}
+
+namespace {
+
+// Empty of a regular file, and of nothing.
+std::string irregular_what(const std::filesystem::path& file) {
+  const auto no_file = [](const std::string& kind) {
+    return "is " + kind + " and not a regular file; copy its content to one";
+  };
+  std::error_code ignored;
+  switch (std::filesystem::status(file, ignored).type()) {
+    case std::filesystem::file_type::fifo:
+      return no_file("a pipe");
+    case std::filesystem::file_type::socket:
+      return no_file("a socket");
+    case std::filesystem::file_type::block:
+    case std::filesystem::file_type::character:
+      return no_file("a device");
+    case std::filesystem::file_type::directory:
+      return file.filename() == kDirectoryHead ? "" : "is a directory and not a file; copy the array again";
+    case std::filesystem::file_type::not_found:
+      return std::filesystem::is_symlink(file, ignored)
+                 ? "is a link to a file that is not there; fetch that file, or remove the link"
+                 : "";
+    default:
+      return "";
+  }
+}
+
+}  // namespace
+
+std::optional<IrregularHead> irregular_head(const std::string& path) {
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(path, ignored)) return std::nullopt;
+  for (const char* const head : kDirectoryHeads) {
+    const std::filesystem::path file = std::filesystem::path(path) / head;
+    std::string what = irregular_what(file);
+    if (!what.empty()) return IrregularHead{file.string(), std::move(what)};
   }
   return std::nullopt;
 }

@@ -18,6 +18,16 @@ inline constexpr std::array<const char*, 4> kDirectoryHeads{kDirectoryHead, "zar
 /// or holds none.
 std::optional<std::string> head_in_directory(const std::string& path);
 
+/// What lies in the place of a file of kDirectoryHeads.
+struct IrregularHead {
+  std::string path;
+  std::string what;  ///< "is a pipe and not a regular file; copy its content to one"
+};
+
+/// The first of kDirectoryHeads in the directory `path` that is a pipe, a socket, a device, a link to nothing or, but
+/// for Header, a directory; nullopt where there is none.
+std::optional<IrregularHead> irregular_head(const std::string& path);
+
 /// Whether `path` is a directory that holds one of them.
 inline bool is_input_directory(const std::string& path) { return head_in_directory(path).has_value(); }
 

@@ -13,6 +13,7 @@
 #include "ingest/hdf5/meaning/dataset_facts.h"
 #include "ingest/hdf5/meaning/dimension_scales.h"
 #include "ingest/hdf5/meaning/volume_slice.h"
+#include "ingest/values/value_notes.h"
 
 namespace weir {
 namespace {
@@ -54,7 +55,9 @@ DatasetInfo described(const Hdf5Object& object, const DatasetFacts& facts) {
   if (facts.meaning.unit_si) add(info.attributes, "unit_si", cat(*facts.meaning.unit_si));
   add(info.attributes, "missing", missing_text(facts.meaning.mapping));
   add(info.attributes, "values", packing_text(facts.meaning.mapping));
-  add(info.attributes, "note", facts.meaning.note);
+  std::string notes = facts.meaning.note;
+  add_note(facts.place_note, notes);
+  add(info.attributes, "note", notes);
   const auto is_named = [](const AxisPlace& axis) { return !axis.label.empty(); };
   if (std::any_of(facts.axes.begin(), facts.axes.end(), is_named)) {
     add(info.attributes, "axes", axes_text(facts.axes));

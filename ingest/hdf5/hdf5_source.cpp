@@ -26,6 +26,7 @@
 #include "ingest/source/reversed_source.h"
 #include "ingest/values/decode_values.h"
 #include "ingest/values/raw_values.h"
+#include "ingest/values/value_notes.h"
 
 namespace weir {
 namespace {
@@ -305,6 +306,11 @@ SourceInfo source_info(const std::string& path, const Opening& opening) {
   info.lengths = opening.slice.components.count > 1 && opening.slice.components.choice.magnitude;
   info.spacing = opening.slice.spacing;
   info.origin = opening.slice.origin;
+  for (std::size_t i = 0; i < kVolumeRank; ++i) {
+    const AxisPlace& axis = opening.facts.axes[opening.slice.roles.volume.at(kVolumeRank - 1 - i)];
+    info.spacing_from.at(i) = axis.spacing_from;
+    info.origin_from.at(i) = axis.origin_from;
+  }
   info.file_bytes = file.size();
   info.mtime_ns = file.mtime_ns();
   return info;
@@ -329,6 +335,7 @@ std::unique_ptr<VolumeSource> open_hdf5(const std::string& path, const SourceOpt
   opening.info = source_info(path, opening);
   opening.info.details = field_details(file.get(), opening.object, opening.facts.axes, opening.slice);
   opening.info.details.values_note = opening.facts.meaning.note;
+  if (!options.spacing) add_note(opening.facts.place_note, opening.info.details.values_note);
   opening.note_files({file_of(opening.object.handle.get())});
   if (options.component) opening.info.details.component = component_text(*options.component);
   const std::array<bool, 3> falls = opening.slice.falls;

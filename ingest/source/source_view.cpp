@@ -52,10 +52,14 @@ class SourceView final : public VolumeSource {
   SourceInfo info_;
 };
 
-Error unusable(const std::string& path, bool given, std::string_view key, double value, std::string_view rule) {
-  if (given) return {ErrorKind::usage, compose(path, ": ", option(key), " has ", value, "; each must be ", rule)};
+// Of the spacing or origin, `key`, of `info`: given by the user, or as `from` says it in the file.
+Error unusable(const SourceInfo& info, bool given, std::string_view key, double value, std::string_view rule,
+               const std::string& from) {
+  if (given) return {ErrorKind::usage, compose(info.path, ": ", option(key), " has ", value, "; each must be ", rule)};
+  const std::string where = from.empty() || info.dataset.empty() ? info.path : cat(info.path, ": ", info.dataset);
+  const std::string found = from.empty() ? cat(value) : cat(value, " (", from, ')');
   return {ErrorKind::input,
-          compose(path, ": its ", key, " has ", value, ", which is not ", rule, "; give ", option(key, "x,y,z"))};
+          compose(where, ": its ", key, " has ", found, ", which is not ", rule, "; give ", option(key, "x,y,z"))};
 }
 
 }  // namespace
@@ -104,24 +108,34 @@ std::unique_ptr<VolumeSource> crop_source(std::unique_ptr<VolumeSource> source, 
   return std::make_unique<SourceView>(std::move(source), std::move(cropped));
 }
 
+namespace {
+
+void check_given_place(const SourceInfo& placed, const SourceOptions& options) {
+  for (std::size_t a = 0; a < placed.spacing.size(); ++a) {
+    const double s = placed.spacing.at(a);
+    const auto refuse = [&](std::string_view rule) {
+      return unusable(placed, options.spacing.has_value(), "spacing", s, rule, placed.spacing_from.at(a));
+    };
+    if (!(s > 0.0) || !std::isfinite(s)) throw refuse("finite and above 0");
+    if (s < kLeastSpacing || s > kMostSpacing) throw refuse("within 1e-37 and 1e+37");
+  }
+  for (std::size_t a = 0; a < placed.origin.size(); ++a) {
+    const double o = placed.origin.at(a);
+    const auto refuse = [&](std::string_view rule) {
+      return unusable(placed, options.origin.has_value(), "origin", o, rule, placed.origin_from.at(a));
+    };
+    if (!std::isfinite(o)) throw refuse("finite");
+    if (std::fabs(o) > kMostOrigin) throw refuse("within -1e+37 and 1e+37");
+  }
+}
+
+}  // namespace
+
 std::unique_ptr<VolumeSource> place_source(std::unique_ptr<VolumeSource> source, const SourceOptions& options) {
   SourceInfo placed = source->info();
   placed.spacing = options.spacing.value_or(placed.spacing);
   placed.origin = options.origin.value_or(placed.origin);
-  for (const double s : placed.spacing) {
-    if (!(s > 0.0) || !std::isfinite(s)) {
-      throw unusable(placed.path, options.spacing.has_value(), "spacing", s, "finite and above 0");
-    }
-    if (s < kLeastSpacing || s > kMostSpacing) {
-      throw unusable(placed.path, options.spacing.has_value(), "spacing", s, "within 1e-37 and 1e+37");
-    }
-  }
-  for (const double o : placed.origin) {
-    if (!std::isfinite(o)) throw unusable(placed.path, options.origin.has_value(), "origin", o, "finite");
-    if (std::fabs(o) > kMostOrigin) {
-      throw unusable(placed.path, options.origin.has_value(), "origin", o, "within -1e+37 and 1e+37");
-    }
-  }
+  check_given_place(placed, options);
   if (const std::string why = too_far_away(placed.domain(), placed.spacing, placed.origin); !why.empty()) {
     throw Error(options.spacing ? ErrorKind::usage : ErrorKind::input,
                 compose(placed.path, ": ", why, "; give a smaller ", option("spacing")));

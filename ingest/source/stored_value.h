@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -27,7 +28,7 @@ double as_double(const StoredValue& value);
 /// and NaN and infinities.
 bool holds(ScalarType type, const StoredValue& value);
 
-/// How stored values become the volume's: value = stored * scale + offset, computed in double, except
+/// How stored values become the volume's: value = stored * scale + offset, computed by scaled(), except
 /// where the stored value is one of `missing`: such a voxel reads as missing_value(), or, with keeps_missing, as any
 /// other.
 struct ValueMapping {
@@ -37,6 +38,12 @@ struct ValueMapping {
   bool keeps_missing = false;  ///< stored values that stand for "no data" are taken as data
   bool gaps = false;           ///< there are voxels without a stored value, which read as missing_value() in any case
 
+  /// In double; of 64-bit integers, whose last bits a double may not have, in long double.
+  template <typename T>
+  auto scaled(T stored) const {
+    using Wide = std::conditional_t<std::is_integral_v<T> && sizeof(T) == 8, long double, double>;
+    return static_cast<Wide>(stored) * static_cast<Wide>(scale) + static_cast<Wide>(offset);
+  }
   bool scales() const { return scale != 1 || offset != 0; }
   bool identity() const { return !scales() && missing.empty() && !gaps; }
   /// Whether voxels may read as missing_value().

@@ -39,6 +39,8 @@ struct SourceInfo {
   ValueMapping mapping;                          ///< from stored values to the volume's
   std::array<double, 3> spacing{1.0, 1.0, 1.0};  ///< world units per voxel, > 0
   std::array<double, 3> origin{0.0, 0.0, 0.0};   ///< world position of the centre of voxel (0, 0, 0)
+  std::array<std::string, 3> spacing_from = {};  ///< what of the file says it, "attribute resolution"; may be empty
+  std::array<std::string, 3> origin_from = {};   ///< the same of the origin
   std::uint64_t file_bytes = 0;                  ///< of the file at `path`
   std::int64_t mtime_ns = 0;                     ///< modification time, nanoseconds since 1970
   std::string files_digest;                      ///< FileStates of all files it lies in; empty where that is one

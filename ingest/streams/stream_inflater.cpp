@@ -74,7 +74,8 @@ void StreamInflater::finish() const {
 }
 
 void StreamInflater::damaged(const std::string& what) const {
-  throw Error(ErrorKind::input, cat(where_, ": ", what, ", at byte ", packed_, " of them, ", unpacked_, " unpacked"));
+  throw Error(ErrorKind::input, cat(where_, ": ", what, ", at byte ", packed_, " of them, ", unpacked_,
+                                    " unpacked; copy the file again"));
 }
 
 }  // namespace weir

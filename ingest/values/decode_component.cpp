@@ -31,35 +31,39 @@ void gather(const std::byte* from, std::size_t width, std::size_t stride, std::s
 }
 
 template <typename T>
-void widen(std::span<const std::byte> bytes, bool swap, std::span<double> numbers) {
+void widen(std::span<const std::byte> bytes, bool swap, const ValueMapping& mapping, std::span<double> numbers) {
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     std::array<std::byte, sizeof(T)> one;
     std::memcpy(one.data(), bytes.data() + i * sizeof(T), sizeof(T));
     if (swap) std::reverse(one.begin(), one.end());
-    numbers[i] = static_cast<double>(std::bit_cast<T>(one));
+    const T stored = std::bit_cast<T>(one);
+    numbers[i] = mapping.scales() ? static_cast<double>(mapping.scaled(stored)) : static_cast<double>(stored);
   }
 }
 
-/// Numbers before scale and offset, in double.
-void stored_numbers(std::span<const std::byte> bytes, ScalarType type, bool big_endian, std::span<double> numbers) {
+/// Numbers after scale and offset, in double.
+void scaled_numbers(std::span<const std::byte> bytes, ScalarType type, bool big_endian, const ValueMapping& mapping,
+                    std::span<double> numbers) {
   const bool swap = big_endian != kNativeIsBig;
   switch (type) {
     case ScalarType::uint32:
-      return widen<std::uint32_t>(bytes, swap, numbers);
+      return widen<std::uint32_t>(bytes, swap, mapping, numbers);
     case ScalarType::int32:
-      return widen<std::int32_t>(bytes, swap, numbers);
+      return widen<std::int32_t>(bytes, swap, mapping, numbers);
     case ScalarType::uint64:
-      return widen<std::uint64_t>(bytes, swap, numbers);
+      return widen<std::uint64_t>(bytes, swap, mapping, numbers);
     case ScalarType::int64:
-      return widen<std::int64_t>(bytes, swap, numbers);
+      return widen<std::int64_t>(bytes, swap, mapping, numbers);
     case ScalarType::float64:
-      return widen<double>(bytes, swap, numbers);
+      return widen<double>(bytes, swap, mapping, numbers);
     default:  // exact in float32
       break;
   }
   std::array<float, kVoxelsAtOnce> floats;
   convert_values(bytes, type, big_endian, std::span(floats).first(numbers.size()));
-  std::copy_n(floats.begin(), numbers.size(), numbers.begin());
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    numbers[i] = mapping.scales() ? mapping.scaled(floats[i]) : static_cast<double>(floats[i]);
+  }
 }
 
 class Magnitudes {
@@ -72,11 +76,8 @@ class Magnitudes {
   /// The next component of values.size() voxels.
   void add(std::span<const std::byte> bytes, std::size_t voxels) {
     const auto numbers = std::span(numbers_).first(voxels);
-    stored_numbers(bytes, type_, big_endian_, numbers);
-    for (std::size_t i = 0; i < voxels; ++i) {
-      const double number = mapping_.scales() ? numbers[i] * mapping_.scale + mapping_.offset : numbers[i];
-      sums_[i] += squared_part(number);
-    }
+    scaled_numbers(bytes, type_, big_endian_, mapping_, numbers);
+    for (std::size_t i = 0; i < voxels; ++i) sums_[i] += squared_part(numbers[i]);
     if (mapping_.missing.empty()) return;
     const auto marked = std::span(marked_).first(voxels);
     decode_values(bytes, type_, big_endian_, marking_, marked);

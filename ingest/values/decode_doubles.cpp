@@ -10,6 +10,7 @@
 
 #include "format/base/error.h"
 #include "ingest/values/convert_values.h"
+#include "ingest/values/half_values.h"
 
 namespace weir {
 namespace {
@@ -43,8 +44,7 @@ double decoded(T stored, ScalarType type, const ValueMapping& mapping) {
   for (const StoredValue& value : mapping.missing) {
     if (holds(type, value) && is_same(stored, value)) return std::numeric_limits<double>::quiet_NaN();
   }
-  const auto value = static_cast<double>(stored);
-  return mapping.scales() ? value * mapping.scale + mapping.offset : value;
+  return mapping.scales() ? static_cast<double>(mapping.scaled(stored)) : static_cast<double>(stored);
 }
 
 template <typename T>
@@ -72,7 +72,7 @@ double decode_one(std::span<const std::byte> bytes, ScalarType type, bool big, c
       return decode_as<std::int64_t>(bytes, type, big, mapping);
     case ScalarType::float16:
     case ScalarType::bfloat16:
-      return decoded(load_half(bytes, type, big), type, mapping);
+      return decoded(load_half(bytes, type, big), ScalarType::float32, mapping);
     case ScalarType::float32:
       return decode_as<float>(bytes, type, big, mapping);
     case ScalarType::float64:
@@ -86,10 +86,12 @@ double decode_one(std::span<const std::byte> bytes, ScalarType type, bool big, c
 std::vector<double> decode_doubles(std::span<const std::byte> bytes, ScalarType type, bool big_endian,
                                    const ValueMapping& mapping) {
   const std::size_t size = scalar_bytes(type);
+  const bool half = type == ScalarType::float16 || type == ScalarType::bfloat16;
+  const ValueMapping stored = half ? with_stored_missing(mapping, type) : mapping;
   std::vector<double> values;
   values.reserve(bytes.size() / size);
   for (std::size_t at = 0; at + size <= bytes.size(); at += size) {
-    values.push_back(decode_one(bytes.subspan(at, size), type, big_endian, mapping));
+    values.push_back(decode_one(bytes.subspan(at, size), type, big_endian, stored));
   }
   return values;
 }

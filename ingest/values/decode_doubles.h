@@ -10,8 +10,8 @@
 
 namespace weir {
 
-/// All of `bytes`, whole values of `type`, after `mapping`; NaN where it says that they are missing. Integers beyond 53
-/// bits are rounded.
+/// All of `bytes`, whole values of `type`, after `mapping`; NaN where it says that they are missing. What a double
+/// cannot hold, integers beyond 53 bits for instance, is rounded, once they are scaled.
 std::vector<double> decode_doubles(std::span<const std::byte> bytes, ScalarType type, bool big_endian,
                                    const ValueMapping& mapping);
 

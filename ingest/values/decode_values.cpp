@@ -11,6 +11,7 @@
 
 #include "format/base/error.h"
 #include "ingest/values/convert_values.h"
+#include "ingest/values/half_values.h"
 
 namespace weir {
 namespace {
@@ -72,12 +73,28 @@ class Decoder {
   }
 
   ConversionLoss scale(std::span<const T> stored, const MissingMask& missing, std::span<float> values) const {
+    if constexpr (std::is_integral_v<T> && sizeof(T) == 8) return scale_wide(stored, missing, values);
     std::array<double, kAtOnce> scaled;
     for (std::size_t i = 0; i < stored.size(); ++i) {
-      scaled[i] = missing[i] ? 0.0 : static_cast<double>(stored[i]) * mapping_.scale + mapping_.offset;
+      scaled[i] = missing[i] ? 0.0 : static_cast<double>(mapping_.scaled(stored[i]));
     }
     const auto used = std::span<const double>(scaled).first(stored.size());
     return convert_values(std::as_bytes(used), ScalarType::float64, kNativeIsBig, values);
+  }
+
+  // 64-bit integers: what an offset takes from large ones may leave small ones, of which every bit counts.
+  ConversionLoss scale_wide(std::span<const T> stored, const MissingMask& missing, std::span<float> values) const {
+    ConversionLoss loss;
+    for (std::size_t i = 0; i < stored.size(); ++i) {
+      const long double exact = missing[i] ? 0.0L : static_cast<long double>(mapping_.scaled(stored[i]));
+      values[i] = static_cast<float>(exact);
+      const auto error = static_cast<double>(std::fabs(static_cast<long double>(values[i]) - exact));
+      loss.overflow += std::isinf(error) ? 1U : 0U;
+      if (std::isinf(error) || error == 0.0) continue;
+      ++loss.inexact;
+      loss.max_abs_error = std::max(loss.max_abs_error, error);
+    }
+    return loss;
   }
 
   ScalarType type_;
@@ -114,7 +131,8 @@ ConversionLoss decode_as(std::span<const std::byte> bytes, ScalarType type, bool
 // float16 and bfloat16 have no arithmetic of their own everywhere: every value is exact in float32.
 ConversionLoss decode_half(std::span<const std::byte> bytes, ScalarType type, bool big_endian,
                            const ValueMapping& mapping, std::span<float> values) {
-  const Decoder<float> decoder(ScalarType::float32, mapping);
+  const ValueMapping stored = with_stored_missing(mapping, type);
+  const Decoder<float> decoder(ScalarType::float32, stored);
   std::array<float, kAtOnce> widened;
   ConversionLoss loss;
   for (std::size_t start = 0; start < values.size(); start += kAtOnce) {

@@ -13,7 +13,7 @@ namespace weir {
 
 /// As convert_values, after `mapping`: missing values, and they alone where there may be any, become missing_value()
 /// and count as no loss, unless the mapping keeps them as data, which counts them as unmarked; scaled ones are computed
-/// in double, and their loss is counted against that double.
+/// by ValueMapping::scaled, and their loss is counted against what that gives.
 ConversionLoss decode_values(std::span<const std::byte> bytes, ScalarType type, bool big_endian,
                              const ValueMapping& mapping, std::span<float> values);
 

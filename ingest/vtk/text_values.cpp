@@ -65,8 +65,8 @@ void spool_values(Words& words, std::uint64_t count, SpoolFile& spool, const std
     }
     T value{};
     if (!parse(word, value)) {
-      throw Error(ErrorKind::input,
-                  cat(where, ": value ", i, " of its text is ", in_quotes(word), ", no number of its type"));
+      throw Error(ErrorKind::input, cat(where, ": value ", i, " of its text is ", in_quotes(word),
+                                        ", no number of its type; correct it, or the type in the header"));
     }
     values.push_back(value);
     if (values.size() == kValuesAtATime || i + 1 == count) {

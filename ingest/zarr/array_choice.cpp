@@ -10,6 +10,7 @@
 #include "ingest/axes/axis_details.h"
 #include "ingest/headers/header_text.h"
 #include "ingest/source/convert_command.h"
+#include "ingest/values/value_notes.h"
 #include "ingest/zarr/meaning/multiscales.h"
 #include "ingest/zarr/meaning/outer_store.h"
 #include "ingest/zarr/metadata/zarr_json.h"
@@ -139,12 +140,18 @@ DatasetInfo describe_array(ZarrStore& store, const ZarrNode& node, Surroundings&
     if (!info.axis_names.empty()) info.attributes.emplace_back("axes", chosen.meaning.axes.text());
     info.attributes.emplace_back("fill value", chosen.array.fill_text);
     if (!chosen.meaning.values.units.empty()) info.attributes.emplace_back("units", chosen.meaning.values.units);
+    if (const ComponentAxis& vectors = chosen.meaning.components; vectors.found()) {
+      info.components = vectors.count;
+      info.attributes.emplace_back("components", cat(vectors.count, " along the last axis, ", vectors.evidence));
+    }
     if (info.extents.size() >= kAxesOfSpace) {
       const VolumeAxes axes = chosen.meaning.volume_axes();
       for (auto& listed : listed_axes(axes)) info.attributes.push_back(std::move(listed));
       add_units(axes, info);
     }
-    if (!chosen.meaning.axes.note.empty()) info.attributes.emplace_back("note", chosen.meaning.axes.note);
+    std::string notes = chosen.meaning.axes.note;
+    add_note(chosen.meaning.values.note, notes);
+    if (!notes.empty()) info.attributes.emplace_back("note", std::move(notes));
     info.obstacle = chosen.meaning.obstacle;
     info.index_axes = chosen.meaning.leading();
     const bool single = std::all_of(info.index_axes.begin(), info.index_axes.end(),
@@ -179,13 +186,16 @@ ListedArrays listed_arrays(ZarrStore& store, const std::string& path, Surroundin
   return listed;
 }
 
-ChosenArray only_array(ZarrStore& store, const std::string& path, Surroundings& around) {
+ChosenArray only_array(ZarrStore& store, const std::string& path, const SourceOptions& options, Surroundings& around) {
   ListedArrays listed = listed_arrays(store, path, around);
+  const auto has_components = [](const DatasetInfo& info) { return info.components > 1 && info.obstacle.empty(); };
+  const bool of_vectors = options.component && std::ranges::any_of(listed.infos, has_components);
   std::vector<DatasetInfo> volumes;
   std::optional<std::size_t> only;
   std::string obstacle;
   for (std::size_t i = 0; i < listed.infos.size(); ++i) {
     const DatasetInfo& info = listed.infos[i];
+    if (of_vectors && !has_components(info)) continue;
     if (info.obstacle.empty() && !info.by_name_only) {
       only = i;
       volumes.push_back(info);
@@ -203,7 +213,8 @@ ChosenArray only_array(ZarrStore& store, const std::string& path, Surroundings& 
 
 }  // namespace
 
-ChosenArray choose_array(ZarrStore& store, const std::string& path, const std::string& dataset) {
+ChosenArray choose_array(ZarrStore& store, const std::string& path, const SourceOptions& options) {
+  const std::string& dataset = options.dataset;
   Surroundings around(store, path);
   if (!dataset.empty()) return named_array(store, path, dataset, around);
   const auto root = zarr_node(store, {});
@@ -211,7 +222,7 @@ ChosenArray choose_array(ZarrStore& store, const std::string& path, const std::s
   if (root) {
     if (const auto finest = finest_level(*root)) return named_array(store, path, *finest, around);
   }
-  return only_array(store, path, around);
+  return only_array(store, path, options, around);
 }
 
 std::vector<DatasetInfo> list_arrays(ZarrStore& store, const std::string& path) {

@@ -8,12 +8,13 @@
 #include "format/base/ascii.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "ingest/axes/space_axis.h"
 #include "ingest/chunks/chunk_boxes.h"
 #include "ingest/files/file_states.h"
 #include "ingest/files/input_directory.h"
 #include "ingest/source/reversed_source.h"
 #include "ingest/zarr/array_choice.h"
-#include "ingest/zarr/storage/zarr_chunks.h"
+#include "ingest/zarr/storage/gathered_chunks.h"
 #include "ingest/zarr/store/open_store.h"
 #include "ingest/zarr/store/zip_directory.h"
 
@@ -23,12 +24,15 @@ namespace {
 /// Memory of open shards, of keys and of metadata, in bytes.
 constexpr std::uint64_t kZarrOwnBytes = std::uint64_t{2} << 20U;
 
-ScratchSize scratch_of(const ZarrArray& array, const ChunkGeometry& geometry) {
-  return scratch_size(array.values(), geometry.unit_shape().bytes());
+ScratchSize scratch_of(const ZarrArray& array, const VoxelParts& parts) {
+  ScratchSize size = scratch_size(array.values(), parts.parts.front().geometry.unit_shape().bytes());
+  size.gathered_bytes = parts.gathered_bytes();
+  return size;
 }
 
-ChunkedVolume volume_of(const ZarrArray& array, const ChunkGeometry& geometry, const SourceInfo& info,
+ChunkedVolume volume_of(const ZarrArray& array, const VoxelParts& parts, const SourceInfo& info,
                         const std::string& where) {
+  const ChunkGeometry& geometry = parts.parts.front().geometry;
   ChunkedVolume volume;
   volume.name = where;
   volume.extent = geometry.extent();
@@ -36,20 +40,21 @@ ChunkedVolume volume_of(const ZarrArray& array, const ChunkGeometry& geometry, c
   volume.type = array.type;
   volume.big_endian = array.values().big_endian;
   volume.mapping = info.mapping;
+  volume.components = parts.components;
   volume.fill = array.fill.value_or(std::vector<std::byte>(scalar_bytes(array.type)));
   return volume;
 }
 
 class ZarrSource final : public VolumeSource {
  public:
-  ZarrSource(std::unique_ptr<ZarrStore> store, const ChosenArray& chosen, const ChunkGeometry& geometry,
-             SourceInfo info, const Box& wanted, const SourceOptions& options)
+  ZarrSource(std::unique_ptr<ZarrStore> store, const ChosenArray& chosen, const VoxelParts& parts, SourceInfo info,
+             const Box& wanted, const SourceOptions& options)
       : store_(std::move(store)),
         info_(std::move(info)),
         where_(store_->shown(chosen.node.key)),
-        scratch_(scratch_of(chosen.array, geometry), options.memory, where_),
-        chunks_({*store_, chosen.node.key, chosen.array.keys}, chosen.array, geometry, options.memory, options.cancel),
-        boxes_(volume_of(chosen.array, geometry, info_, where_), chunks_, scratch_) {
+        scratch_(scratch_of(chosen.array, parts), options.memory, where_),
+        chunks_({*store_, chosen.node.key, chosen.array.keys}, chosen.array, parts, options.memory, options.cancel),
+        boxes_(volume_of(chosen.array, parts, info_, where_), chunks_, scratch_) {
     note_unstored(chosen, wanted, options);
     note_files(chosen);
   }
@@ -93,11 +98,11 @@ class ZarrSource final : public VolumeSource {
 
   void note_files(const ChosenArray& chosen) {
     FileStates files;
-    files.add(store_->file_of(chosen.node.document), chunks_.scan().digest);
+    files.add(store_->file_of(chosen.node.document), chunks_.digest());
     const FileState& state = files.files().front();
     const bool alone = store_->is_one_file();
-    info_.file_bytes = alone ? state.bytes : state.bytes + chunks_.scan().bytes;
-    info_.mtime_ns = std::max(state.mtime_ns, chunks_.scan().mtime_ns);
+    info_.file_bytes = alone ? state.bytes : state.bytes + chunks_.object_bytes();
+    info_.mtime_ns = std::max(state.mtime_ns, chunks_.mtime_ns());
     info_.files_digest = alone ? std::string() : files.digest();
     info_.files = files.files();
   }
@@ -106,7 +111,7 @@ class ZarrSource final : public VolumeSource {
   SourceInfo info_;
   std::string where_;
   ScratchPool scratch_;
-  ZarrChunks chunks_;
+  GatheredChunks chunks_;
   ChunkBoxes boxes_;
 };
 
@@ -130,8 +135,10 @@ bool recognises_zarr(std::string_view path, std::span<const std::byte> head) {
 
 std::unique_ptr<VolumeSource> open_zarr(const std::string& path, const SourceOptions& options) {
   std::unique_ptr<ZarrStore> store = open_zarr_store(path, options.memory);
-  const ChosenArray chosen = choose_array(*store, path, options.dataset);
+  ChosenArray chosen = choose_array(*store, path, options);
   const std::string where = store->shown(chosen.node.key);
+  if (chosen.array.shape.size() <= kSpaceAxes) check_obstacle(chosen.meaning, options, where);
+  choose_component(chosen.array, options.component, options.index.size(), where, chosen.meaning);
   check_obstacle(chosen.meaning, options, where);
   const auto index = checked_index(chosen.meaning, options.index, where);
   SourceInfo info;
@@ -140,13 +147,15 @@ std::unique_ptr<VolumeSource> open_zarr(const std::string& path, const SourceOpt
   info.dataset = chosen.node.key;
   describe_volume(chosen.array, chosen.meaning, index, info);
   options.complete(info.mapping);
-  const ChunkGeometry geometry(chosen.array, index, where);
+  if (options.component) info.details.component = component_text(*options.component);
+  info.lengths = options.component && options.component->magnitude;
+  const VoxelParts parts = voxel_parts(chosen.array, index, chosen.meaning.components, options.component, where);
   std::array<bool, 3> falls{};
   for (std::size_t i = 0; i < falls.size(); ++i) falls.at(i) = chosen.meaning.volume_axes().at(i)->falls;
   const Box domain = info.domain();
   const Box wanted = options.roi ? mirrored_box(intersect(options.roi->in(domain), domain), domain, falls) : domain;
-  return reverse_axes(
-      std::make_unique<ZarrSource>(std::move(store), chosen, geometry, std::move(info), wanted, options), falls);
+  return reverse_axes(std::make_unique<ZarrSource>(std::move(store), chosen, parts, std::move(info), wanted, options),
+                      falls);
 }
 
 std::vector<DatasetInfo> list_zarr(const std::string& path, const SourceOptions& options) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace weir::scene_notice_test {
 namespace {
 
@@ -15,6 +17,10 @@ TEST(SceneNotice, SceneThatShowsNothing_IsSaidWithTheValuesThatThereAre) {
   sidecar.visible->blocks = 0;
   EXPECT_EQ(scene_notice(sidecar, "a.nvdb").text(),
             "a.nvdb: none.toml shows nothing of a.raw, whose values are from 0 to 0.997; correct its range, opacity or "
+            "region, or leave out --scene");
+  sidecar.value_range = {std::nan(""), std::nan("")};
+  EXPECT_EQ(scene_notice(sidecar, "a.nvdb").text(),
+            "a.nvdb: none.toml shows nothing of a.raw, no value of which is finite; correct its range, opacity or "
             "region, or leave out --scene");
 }
 

@@ -40,6 +40,29 @@ TEST(WatchedTree, DoesNothingAfterItsDestruction) {
   EXPECT_TRUE(store.job(id).has_value()) << "it looked at its jobs";
 }
 
+TEST(WatchedTree, AKeyWithoutEffect_IsLogged) {
+  const TemporaryDirectory directory;
+  boost::asio::io_context io;
+  JobStore store(directory / "weir.db");
+  ServiceConfig service;
+  service.log_file = directory / "weir.log";
+  const EventLog log(service);
+  DiskTurns turns(io);
+  WatchConfig watch;
+  watch.label = watch.directory = directory / "in";
+  watch.output = directory / "out";
+  const auto logged = [&](bool gives_delete_after) {
+    watch.gives_delete_after = gives_delete_after;
+    const WatchedTree tree(io, turns, watch, store, log, WatchedTree::Reports{[] {}, [](std::int64_t) {}});
+    std::ifstream in(service.log_file);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  };
+  EXPECT_EQ(logged(false).find("delete_after"), std::string::npos);
+  EXPECT_NE(
+      logged(true).find("warn watch watch=" + watch.label + " notice=\"delete_after has no effect, since nothing "),
+      std::string::npos);
+}
+
 /// A tree over a directory of its own, without a service.
 class WatchedTreeTest : public ::testing::Test {
  protected:

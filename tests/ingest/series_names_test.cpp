@@ -64,6 +64,24 @@ TEST(SeriesNames, OutputNamesTakeStemDatasetAndStep) {
             "{stem in an output's name is not known; there are {stem}, {dataset} and {step}");
 }
 
+TEST(SeriesNames, WordsThatLeaveNothingBeforeTheExtension_AreRefused) {
+  const std::vector<SeriesStep> one{{"in/a.raw", "", {}, "a", ""}};
+  const auto refusal = [&](const std::string& output) {
+    return message_of_error(ErrorKind::usage, [&] { series_outputs(one, output); });
+  };
+  EXPECT_EQ(refusal("{step}.nvdb"),
+            "-o {step}.nvdb: in/a.raw has no {step}, so the name would be .nvdb; use {stem} or a plain name");
+  EXPECT_EQ(refusal("e/{dataset}{step}.nvdb"),
+            "-o e/{dataset}{step}.nvdb: in/a.raw has no {dataset} and no {step}, so the name would be .nvdb; use "
+            "{stem} or a plain name");
+  EXPECT_EQ(refusal("e/{step}"),
+            "-o e/{step}: in/a.raw has no {step}, so there would be no name; use {stem} or a plain name");
+  EXPECT_EQ(series_outputs(one, "e/t{step}.nvdb"), Names{"e/t.nvdb"});
+  EXPECT_EQ(series_outputs(one, "e/{stem}{step}.nvdb"), Names{"e/a.nvdb"});
+  EXPECT_EQ(series_outputs(one, "{step}/.nvdb"), Names{"{step}/.nvdb"}) << "as it is given";
+  EXPECT_EQ(series_outputs(std::vector<SeriesStep>{{"a.raw", "", {}, "a", "7"}}, "{step}.nvdb"), Names{"7.nvdb"});
+}
+
 // Of a file that cannot be listed, or holds one volume.
 TEST(SeriesNames, OfAFileThatHoldsOneVolume_AreItsStem) {
   const Scratch scratch;

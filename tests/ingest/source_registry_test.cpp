@@ -1,5 +1,7 @@
 #include "ingest/source_registry.h"
 
+#include <sys/stat.h>
+
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -168,6 +170,23 @@ TEST(SourceRegistry, Directories_WithoutAKnownHeader_AreRefused) {
   EXPECT_EQ(
       message_of_error(ErrorKind::input, [&] { open_source(scratch.path("run"), {}); }),
       scratch.path("run") + ": is a directory, and its Header is not that of an AMReX plotfile; name a file in it");
+}
+
+TEST(SourceRegistry, DirectoriesWhoseHeaderIsNoFile_AreRefusedByItsName) {
+  const Scratch scratch;
+  std::filesystem::create_directory(scratch.path("run"));
+  const auto refusal = [&] {
+    return message_of_error(ErrorKind::input, [&] { open_source(scratch.path("run"), {}); });
+  };
+  ASSERT_EQ(::mkfifo(scratch.path("run/.zarray").c_str(), 0600), 0);
+  EXPECT_EQ(refusal(), scratch.path("run/.zarray") + ": is a pipe and not a regular file; copy its content to one");
+  std::filesystem::remove(scratch.path("run/.zarray"));
+  std::filesystem::create_symlink("/dev/null", scratch.path("run/zarr.json"));
+  EXPECT_EQ(refusal(), scratch.path("run/zarr.json") + ": is a device and not a regular file; copy its content to one");
+  std::filesystem::remove(scratch.path("run/zarr.json"));
+  std::filesystem::create_symlink("gone", scratch.path("run/.zgroup"));
+  EXPECT_EQ(refusal(), scratch.path("run/.zgroup") +
+                           ": is a link to a file that is not there; fetch that file, or remove the link");
 }
 
 TEST(SourceRegistry, LevelAndUpsample_AreForFormatsThatHaveLevels) {

@@ -29,7 +29,9 @@
 #include "format/sidecar/sidecar.h"
 #include "format/sidecar/valid_voxels.h"
 #include "ingest/plan/staging.h"
+#include "ingest/source/source_view.h"
 #include "ingest/source_registry.h"
+#include "ingest/values/axis_placement.h"
 #include "tools/command.h"
 #include "tools/options/run_options.h"
 #include "tools/options/table_options.h"
@@ -37,6 +39,7 @@
 #include "tools/report/derived_report.h"
 #include "tools/report/error_text.h"
 #include "tools/report/foreign_file.h"
+#include "tools/report/json_loss.h"
 #include "tools/report/recorded_input.h"
 #include "tools/report/vector_report.h"
 #include "tools/spectrum/power_spectrum.h"
@@ -62,6 +65,9 @@ struct CompareArguments {
   bool derived = false;
   std::string spectrum;             ///< a file; empty: not asked for
   std::vector<std::string> vector;  ///< source and file of the second and the third component; empty: not asked for
+
+  /// Whether the length of a voxel counts.
+  bool asks_for_lengths() const { return derived || !spectrum.empty() || !vector.empty(); }
 };
 
 /// Of the source two blocks are held at a time. For derived errors and spectra also one of decoded values, and each
@@ -87,17 +93,30 @@ struct ComparedPair {
   std::unique_ptr<VolumeSource> source;
 };
 
-ComparedPair open_pair(const std::string& input, const std::string& volume, const GivenOptions& given) {
+/// `source` with the voxel size of `file`, where no option gave another: lengths are then those of the conversion,
+/// whether or not the source names any, and with or without a sidecar.
+std::unique_ptr<VolumeSource> with_voxel_size(std::unique_ptr<VolumeSource> source, const NvdbFile& file,
+                                              const SourceOptions& options) {
+  SourceOptions place;
+  place.spacing = file.grid().voxel_size();
+  if (options.spacing || source->info().spacing == *place.spacing) return source;
+  spdlog::info("{}: taken with --spacing {}, the voxel size of {}", source->info().path, vector_text(*place.spacing),
+               file.path());
+  return place_source(std::move(source), place);
+}
+
+ComparedPair open_pair(const std::string& input, const std::string& volume, const CompareArguments& arguments) {
   if (is_foreign_file(volume)) {
     throw input_error(volume, "is no NanoVDB file; give the source first, then the .nvdb file made of it");
   }
   NvdbFile file(volume);
   file.mapping().release_pages();  // what its validation looked at
-  SourceOptions options = read_conversion_request(given).source;
-  if (const std::string taken = take_recorded_input(input, file, given, options); !taken.empty()) {
+  SourceOptions options = read_conversion_request(arguments.options).source;
+  if (const std::string taken = take_recorded_input(input, file, arguments.options, options); !taken.empty()) {
     spdlog::info("{}: read with {}, as {} records", input, taken, find_sidecar(volume));
   }
   std::unique_ptr<VolumeSource> source = open_source(input, options);
+  if (arguments.asks_for_lengths()) source = with_voxel_size(std::move(source), file, options);
   if (const std::string other = other_input_note(file, source->info()); !other.empty()) {
     spdlog::warn("{}: {}", volume, other);
   }
@@ -110,9 +129,9 @@ ComparedPair open_pair(const std::string& input, const std::string& volume, cons
 /// That of INPUT and OUT.nvdb, and behind it those of --vector.
 std::vector<ComparedPair> open_pairs(const CompareArguments& a) {
   std::vector<ComparedPair> pairs;
-  pairs.push_back(open_pair(a.input, a.volume, a.options));
+  pairs.push_back(open_pair(a.input, a.volume, a));
   for (std::size_t i = 0; i < a.vector.size(); i += 2) {
-    pairs.push_back(open_pair(a.vector[i], a.vector[i + 1], a.options));
+    pairs.push_back(open_pair(a.vector[i], a.vector[i + 1], a));
   }
   return pairs;
 }
@@ -154,6 +173,7 @@ nlohmann::ordered_json to_json(const CompareArguments& arguments, const Comparis
   report["missing"] = c.missing + c.loss.unmarked;  // left out of the error, or compared as data: the sidecar's count
   report["zeros"] = c.zeros;
   report["zeros_lost"] = c.zeros_lost;
+  report["conversion_loss"] = loss_json(c.loss);
   report["value_range"] = c.range ? Json{c.range->min, c.range->max} : Json();
   if (besides.derived) report["derived"] = derived_json(*besides.derived);
   if (besides.spectrum) report["spectrum"] = spectrum_json(*besides.spectrum);
@@ -193,7 +213,8 @@ void print_text(const Comparison& c, const std::string& units) {
                      c.nonfinite_different - c.missing_different, " of them read differently\n");
   }
   if (c.nonfinite_decoded > 0) {
-    std::cout << cat("not finite ", c.nonfinite_decoded, " voxels of the file where the source is finite\n");
+    std::cout << cat("not finite ", c.nonfinite_decoded,
+                     " voxels of the file where the source is finite, left out of the error\n");
   }
 }
 
@@ -249,6 +270,10 @@ void compare(const CompareArguments& arguments) {
     spdlog::warn("{}: {} values are not representable in float32 and count as rounded, by up to {}", arguments.input,
                  comparison.loss.inexact, short_number(comparison.loss.max_abs_error));
   }
+  if (comparison.loss.overflow > 0) {
+    spdlog::warn("{}: {} values are finite but beyond float32, and count as infinite", arguments.input,
+                 comparison.loss.overflow);
+  }
   const double total_s = seconds_since(start);
   if (arguments.json) {
     std::cout << to_json(arguments, comparison, besides, total_s)
@@ -293,7 +318,8 @@ void add_compare(CLI::App& app) {
   command->footer(
       "Where the sidecar lies beside the volume, the dataset, index, component, region, spacing and treatment of "
       "missing\n"
-      "values of the conversion are taken from it, unless they are given.");
+      "values of the conversion are taken from it, unless they are given. What is derived is per world unit of the\n"
+      "volume's own voxel size, unless --spacing is given.");
   command->callback([arguments] { compare(*arguments); });
 }
 

@@ -312,7 +312,7 @@ void convert(const CLI::App& command, const ConvertArguments& a) {
 
 void add_convert(CLI::App& app) {
   CLI::App* command =
-      app.add_subcommand("convert", "Convert a volume to a NanoVDB file of exactly the size you ask for");
+      app.add_subcommand("convert", "Converts a volume to a NanoVDB file of exactly the size you ask for");
   const auto a = std::make_shared<ConvertArguments>();
   command
       ->add_option("input", a->inputs,

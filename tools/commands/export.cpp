@@ -29,6 +29,7 @@
 #include "tools/command.h"
 #include "tools/export/vdb_writer.h"
 #include "tools/options/run_options.h"
+#include "tools/report/foreign_file.h"
 #include "tools/report/printable.h"
 #include "tools/report/read_sidecar.h"
 
@@ -135,6 +136,7 @@ void export_volume(const ExportArguments& arguments) {
   const ConversionOptions run = read_conversion_request(arguments.options).conversion;
   const auto threads = limit_threads(run.threads);
   if (const auto id = file_id(arguments.volume)) require_not_input({&*id, 1}, arguments.output);
+  refuse_foreign_file(arguments.volume);
   const NvdbFile file(arguments.volume);
   file.mapping().release_pages();  // what its validation looked at
   require_memory(file.grid(), run.memory);

@@ -4,12 +4,14 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "compressor/options/conversion_request.h"
@@ -26,20 +28,24 @@
 #include "format/sidecar/is_of.h"
 #include "format/sidecar/valid_voxels.h"
 #include "gpu/image/image_output.h"
+#include "gpu/volume/macrocell_grid.h"
 #include "ingest/drivers/driver.h"
 #include "tools/command.h"
+#include "tools/options/finite_range.h"
 #include "tools/options/run_options.h"
 #include "tools/options/table_options.h"
 #include "tools/options/volume_series.h"
 #include "tools/report/error_text.h"
 #include "tools/report/histogram_plot.h"
 #include "tools/report/input_listing.h"
+#include "tools/report/map_warning.h"
 #include "tools/report/printable.h"
 #include "tools/report/progress.h"
 #include "tools/report/quantity_title.h"
 #include "tools/report/read_sidecar.h"
 #include "tools/report/volume_title.h"
 #include "tools/verify/packed_census.h"
+#include "tools/verify/packed_report.h"
 #include "tools/verify/tree_census.h"
 
 namespace weir {
@@ -61,20 +67,22 @@ struct Inspection {
   const NvdbGrid& grid;
   std::optional<Sidecar> sidecar;
   bool sidecar_matches = false;  ///< size and head checksum are those of the volume
+  std::string sidecar_error{};   ///< why that which is there cannot be read; empty: it can, or there is none
   Sidecar::Histogram histogram;
   std::optional<PackedCensus> packed;  ///< where the grid is packed
+  MinMax values{};                     ///< least and largest; NaN where none is finite
 };
 
 std::string shown_text(const Index3& i) { return cat(i.x, " x ", i.y, " x ", i.z); }
 std::string shown_text(const std::array<double, 3>& v) { return cat(v[0], ", ", v[1], ", ", v[2]); }
 // With the digits that tell the ends apart.
 std::string range_text(const std::array<double, 2>& range) {
+  if (std::isnan(range[0]) && std::isnan(range[1])) return "none finite";
   const std::string low = short_number(range[0]);
   const std::string high = short_number(range[1]);
   if (low != high || range[0] == range[1]) return cat(low, " .. ", high);
   return cat(range[0], " .. ", range[1]);
 }
-double two_decimals(double bits) { return std::round(100 * bits) / 100; }
 Json json_of(const Index3& i) { return {i.x, i.y, i.z}; }
 
 const char* checksum_state(const NvdbGrid& grid) {
@@ -82,9 +90,15 @@ const char* checksum_state(const NvdbGrid& grid) {
   return grid.head_checksum() == computed_head_checksum(grid) ? "ok" : "wrong";
 }
 
-Sidecar::Histogram counted_histogram(const NvdbGrid& grid, const ProgressOptions& shown) {
-  const float lo = grid.value_min();
-  const float hi = grid.value_max();
+// As the root says, or where its writer left that out, of all blocks.
+MinMax range_of_values(const NvdbGrid& grid) {
+  const MinMax stored{grid.value_min(), grid.value_max()};
+  if (!std::isnan(stored.min) || !std::isnan(stored.max)) return stored;
+  return finite_range(MacrocellGrid(grid, kMacrocell)).value_or(stored);
+}
+
+Sidecar::Histogram counted_histogram(const NvdbGrid& grid, const MinMax& range, const ProgressOptions& shown) {
+  const auto [lo, hi] = range;
   Sidecar::Histogram histogram{lo, hi, {}};
   if (!std::isfinite(lo) || !std::isfinite(hi) || !(lo < hi)) return histogram;
   Progress progress(shown);
@@ -98,15 +112,20 @@ Sidecar::Histogram counted_histogram(const NvdbGrid& grid, const ProgressOptions
 }
 
 Inspection look_at(const NvdbFile& file, const ProgressOptions& progress) {
-  Inspection result{file.grid(), std::nullopt, false, {}, std::nullopt};
+  Inspection result{file.grid(), std::nullopt, false, {}, {}, std::nullopt, {}};
   if (const PackedData* packed = file.grid().packed()) result.packed = take_packed_census(*packed);
   const std::string path = find_sidecar(file.path());
   if (is_there(path)) {
-    result.sidecar = read_sidecar(path);
-    result.sidecar_matches = is_of(*result.sidecar, file.grid());
+    try {
+      result.sidecar = read_sidecar(path);
+      result.sidecar_matches = is_of(*result.sidecar, file.grid());
+    } catch (const Error& error) {  // the volume may be sound all the same
+      result.sidecar_error = error.what();
+    }
   }
-  result.histogram =
-      result.sidecar && result.sidecar_matches ? result.sidecar->histogram : counted_histogram(file.grid(), progress);
+  result.values = range_of_values(file.grid());
+  result.histogram = result.sidecar && result.sidecar_matches ? result.sidecar->histogram
+                                                              : counted_histogram(file.grid(), result.values, progress);
   return result;
 }
 
@@ -121,7 +140,7 @@ HistogramLabels labels_of(const NvdbFile& file, const Inspection& found) {
 // Names and units are a foreign file's.
 void line(const char* key, const std::string& value) { std::cout << cat(key, one_line(value), '\n'); }
 
-void print_grid(const NvdbFile& file) {
+void print_grid(const NvdbFile& file, const MinMax& values) {
   const NvdbGrid& g = file.grid();
   const Box box = g.index_bbox();
   line("file        ", file.path());
@@ -132,7 +151,8 @@ void print_grid(const NvdbFile& file) {
   line("grid        ", cat('"', g.name(), "\" ", grid_type_name(g.type()), g.packed() != nullptr ? " packed, " : ", ",
                            shown_text(box.extent()), " voxels from (", box.lo.x, ", ", box.lo.y, ", ", box.lo.z, ")"));
   line("transform   ", cat("voxel size ", shown_text(g.voxel_size()), ", origin ", shown_text(g.world_origin())));
-  const std::string range = g.value_min() <= g.value_max() ? range_text({g.value_min(), g.value_max()}) : "none finite";
+  if (const std::string turned = map_warning(g); !turned.empty()) line("            ", turned);
+  const std::string range = values.min <= values.max ? range_text({values.min, values.max}) : "none finite";
   line("values      ", cat(range, ", background ", short_number(static_cast<double>(g.background()))));
   const auto nodes = g.node_counts();
   const auto tiles = g.tile_counts();
@@ -143,39 +163,6 @@ void print_grid(const NvdbFile& file) {
   line("macrocells  ", cells.cells.empty() ? "none"
                                            : cat(shown_text(cells.lattice.count), " of ", cells.cell,
                                                  "^3 voxels, apron ", cells.apron));
-}
-
-constexpr std::array kKinds{PackedKind::mean, PackedKind::transform, PackedKind::lattice, PackedKind::raw};
-
-void print_packed(const PackedData& packed, const PackedCensus& census) {
-  std::string kinds;
-  for (const PackedKind kind : kKinds) {
-    const std::uint64_t blocks = census.blocks[static_cast<std::size_t>(kind)];
-    kinds += cat(blocks, ' ', packed_kind_name(kind));
-    if (blocks != 0) kinds += cat(" (", two_decimals(census.bits_a_voxel(kind)), " bits a voxel)");
-    kinds += ", ";
-  }
-  std::cout << cat("packed      ", packed_block_count(packed), " blocks of 8^3: ", kinds, census.none, " none; ",
-                   format_bytes(packed.bytes().size()), ", of which directories and tables ",
-                   format_bytes(census.directory_bytes), '\n');
-  std::cout << (packed.header().preview
-                    ? "            Other readers of NanoVDB files see the mean of each block of 8^3.\n"
-                    : "            Other readers of NanoVDB files see next to nothing: the file has no preview.\n");
-}
-
-Json packed_json(const PackedData& packed, const PackedCensus& census) {
-  Json blocks;
-  Json bits;
-  for (const PackedKind kind : kKinds) {
-    blocks[packed_kind_name(kind)] = census.blocks[static_cast<std::size_t>(kind)];
-    bits[packed_kind_name(kind)] = census.bits_a_voxel(kind);
-  }
-  blocks["none"] = census.none;
-  return {{"bytes", packed.bytes().size()},
-          {"directory_bytes", census.directory_bytes},
-          {"preview", packed.header().preview},
-          {"blocks", blocks},
-          {"bits_a_voxel", bits}};
 }
 
 std::string certificate_text(const Sidecar& s, const Sidecar::CertifiedError& error) {
@@ -224,9 +211,11 @@ void print_sidecar(const Sidecar& s) {
 }
 
 void print_text(const NvdbFile& file, const Inspection& found) {
-  print_grid(file);
-  if (found.packed) print_packed(*file.grid().packed(), *found.packed);
-  if (!found.sidecar) {
+  print_grid(file, found.values);
+  if (found.packed) std::cout << packed_text(*file.grid().packed(), *found.packed);
+  if (!found.sidecar_error.empty()) {
+    line("sidecar     ", cat("unreadable: ", found.sidecar_error));
+  } else if (!found.sidecar) {
     std::cout << "sidecar     none\n";
   } else if (!found.sidecar_matches) {
     std::cout << "sidecar     belongs to another volume (size or head checksum differ)\n";
@@ -256,7 +245,7 @@ Json to_json(const NvdbFile& file, const Inspection& found) {
         {"voxel_size", g.voxel_size()},
         {"origin", g.world_origin()},
         {"background", g.background()},
-        {"value_range", {g.value_min(), g.value_max()}}}},
+        {"value_range", {found.values.min, found.values.max}}}},
       {"tree",
        {{"root_entries", g.root_tiles()},
         {"upper", g.node_counts()[2]},
@@ -270,11 +259,18 @@ Json to_json(const NvdbFile& file, const Inspection& found) {
                          : Json{{"cell", cells.cell}, {"dims", json_of(cells.lattice.count)}, {"apron", cells.apron}}},
       {"histogram", {{"min", found.histogram.min}, {"max", found.histogram.max}, {"counts", found.histogram.counts}}},
       {"sidecar_matches", found.sidecar ? Json(found.sidecar_matches) : Json()},
+      {"sidecar_error", found.sidecar_error.empty() ? Json() : Json(found.sidecar_error)},
       {"sidecar", found.sidecar ? Json::parse(to_json_text(*found.sidecar)) : Json()}};
 }
 
-/// Prints what is found, or returns it as JSON.
-Json inspect(const std::string& path, const InspectArguments& arguments) {
+/// What came of one file.
+struct Inspected {
+  Json report{};          ///< with --json
+  std::string problem{};  ///< what is wrong beside a volume that could be read; empty: nothing
+};
+
+/// Prints what is found, `apart` after an empty line, or returns it as JSON.
+Inspected inspect(const std::string& path, const InspectArguments& arguments, bool apart) {
   // A damaged .nvdb without its magic is still no raw file.
   if (!path.ends_with(".nvdb") && !is_nanovdb(path)) {
     if (!arguments.plot.empty()) {
@@ -290,7 +286,8 @@ Json inspect(const std::string& path, const InspectArguments& arguments) {
     const SourceOptions options = read_conversion_request(arguments.source).source;
     InputListing listing = list_input(path, options);
     if (!options.dataset.empty()) keep_named(listing, options.dataset);
-    if (arguments.json) return to_json(listing);
+    if (arguments.json) return {to_json(listing)};
+    if (apart) std::cout << '\n';
     print_text(listing);
     return {};
   }
@@ -302,7 +299,7 @@ Json inspect(const std::string& path, const InspectArguments& arguments) {
   std::optional<PlotFormat> format;
   std::optional<PartialFile> chart;
   if (!arguments.plot.empty()) {
-    format = plot_format(arguments.plot);
+    format = plot_format(arguments.plot, "plot");
     load_driver("plot", arguments.plot + ": is to be a chart");
     chart.emplace(*files, arguments.plot, true);
   }
@@ -315,9 +312,10 @@ Json inspect(const std::string& path, const InspectArguments& arguments) {
     chart->file().write_at(0, std::as_bytes(std::span(bytes)));
     chart->commit();
   }
-  if (arguments.json) return to_json(file, found);
+  if (arguments.json) return {to_json(file, found), found.sidecar_error};
+  if (apart) std::cout << '\n';
   print_text(file, found);
-  return {};
+  return {{}, found.sidecar_error};
 }
 
 void run(const InspectArguments& arguments) {
@@ -325,14 +323,33 @@ void run(const InspectArguments& arguments) {
   if (paths.size() > 1 && !arguments.plot.empty()) {
     throw usage_error(cat("--plot draws one histogram, and ", paths.size(), " files are given; give one of them"));
   }
+  const bool several = paths.size() > 1;
   Json reports = Json::array();
+  bool printed = false;
+  int status = 0;
+  const auto say = [&](const std::string& problem, ErrorKind kind) {
+    std::cout.flush();
+    std::fprintf(stderr, "weir: %s\n", one_line(problem).c_str());
+    if (status == 0) status = static_cast<int>(kind);
+  };
   for (const std::string& path : paths) {
-    if (!arguments.json && &path != &paths.front()) std::cout << '\n';
-    reports.push_back(inspect(path, arguments));
+    try {
+      Inspected found = inspect(path, arguments, printed);
+      printed = true;
+      reports.push_back(std::move(found.report));
+      if (!found.problem.empty()) say(found.problem, ErrorKind::input);
+    } catch (const Error& error) {
+      const bool of_file = error.kind() == ErrorKind::input || error.kind() == ErrorKind::io;
+      if (!several || !of_file) throw;
+      say(error.what(), error.kind());
+      reports.push_back({{"path", path}, {"error", error.what()}});
+    }
   }
-  if (!arguments.json) return;
-  const Json report = reports.size() == 1 ? reports.front() : Json{{"files", reports}};
-  std::cout << report.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
+  if (arguments.json) {
+    const Json report = several ? Json{{"files", reports}} : reports.front();
+    std::cout << report.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
+  }
+  if (status != 0) throw ExitStatus{status};
 }
 
 }  // namespace

@@ -92,6 +92,12 @@ void fix_look(PictureRequest& request, std::span<const std::string> files) {
       spdlog::warn("{}", line);
     }
   }
+  if (!request.scene.volume.range && !series.without_range.empty()) {
+    spdlog::warn("{}: names no finite range of its values, and has no certificate that does; {}; give --range LOW,HIGH",
+                 series.without_range,
+                 series.range ? "the colours of all frames are made without it" : "each frame has colours of its own");
+  }
+  if (!series.turned.empty()) spdlog::warn("{}", series.turned);
   if (!series.difference.empty()) spdlog::warn("{}; the camera frames each step's own box", series.difference);
   if (!request.scene.volume.range && series.range) {
     request.scene.volume.range = {series.range->min, series.range->max};
@@ -195,7 +201,7 @@ void play_series(const PlayArguments& arguments) {
 
 void add_play(CLI::App& app) {
   auto arguments = std::make_shared<PlayArguments>();
-  CLI::App* command = app.add_subcommand("play", "Renders a series of NanoVDB files, a frame of each.");
+  CLI::App* command = app.add_subcommand("play", "Renders a series of NanoVDB files, a frame of each");
   command
       ->add_option(
           "input", arguments->inputs,

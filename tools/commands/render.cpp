@@ -22,11 +22,13 @@
 #include "tools/command.h"
 #include "tools/export/dense_input.h"
 #include "tools/options/backend_choice.h"
+#include "tools/options/finite_range.h"
 #include "tools/options/picture_options.h"
 #include "tools/options/run_options.h"
 #include "tools/options/table_options.h"
 #include "tools/plot/color_bar.h"
 #include "tools/report/foreign_file.h"
+#include "tools/report/map_warning.h"
 #include "tools/report/progress.h"
 #include "tools/report/quantity_title.h"
 #include "tools/report/surface_warning.h"
@@ -46,13 +48,13 @@ struct RenderArguments {
   bool json = false;
 };
 
-/// A volume and what its values are.
-struct TitledVolume {
+struct LoadedInput {
   std::unique_ptr<LoadedVolume> volume;
-  std::string title;
+  std::string title;            ///< what its values are
+  std::optional<MinMax> range;  ///< of its finite values, where it is known
 };
 
-TitledVolume load_file(Backend& backend, const RenderArguments& arguments) {
+LoadedInput load_file(Backend& backend, const RenderArguments& arguments) {
   if (const std::string key = given_input_option(arguments.source); !key.empty()) {
     throw Error(ErrorKind::usage,
                 compose(option(key), " says how to read a source; give ", option("volume", "dense"), " with it"));
@@ -63,11 +65,14 @@ TitledVolume load_file(Backend& backend, const RenderArguments& arguments) {
                               ", or draw its own values with ", option("volume", "dense")));
   }
   const auto file = std::make_shared<const NvdbFile>(arguments.input);
-  return {backend.load(file, 0, nullptr), quantity_title(*file)};
+  if (const std::string warning = map_warning(file->grid()); !warning.empty()) {
+    spdlog::warn("{}: {}", arguments.input, warning);
+  }
+  return {backend.load(file, 0, nullptr), quantity_title(*file), known_range(*file)};
 }
 
-TitledVolume load_dense(Backend& backend, const RenderArguments& arguments, std::optional<std::uint64_t> ceiling,
-                        Progress& progress) {
+LoadedInput load_dense(Backend& backend, const RenderArguments& arguments, std::optional<std::uint64_t> ceiling,
+                       Progress& progress) {
   const auto source = open_source(arguments.input, read_conversion_request(arguments.source).source);
   progress.start("read", static_cast<std::uint64_t>(source->info().domain().voxels()) * sizeof(float));
   StreamOptions options;
@@ -75,7 +80,9 @@ TitledVolume load_dense(Backend& backend, const RenderArguments& arguments, std:
   options.progress = [&](std::int64_t done, std::int64_t) {
     progress.update(static_cast<std::uint64_t>(done) * sizeof(float));
   };
-  return {backend.load_dense(read_dense(*source, options, ceiling), 0), quantity_title(source->info())};
+  std::unique_ptr<LoadedVolume> volume = backend.load_dense(read_dense(*source, options, ceiling), 0);
+  const MinMax range = volume->info().range;
+  return {std::move(volume), quantity_title(source->info()), range};
 }
 
 // Null where nothing was looked up in a cache.
@@ -97,15 +104,16 @@ void render(const RenderArguments& arguments) {
   const std::unique_ptr<Backend> backend = make_backend(request.backend);
   Progress progress(arguments.progress);
   const auto start = std::chrono::steady_clock::now();
-  const auto [volume, title] = arguments.volume == "dense"
-                                   ? load_dense(*backend, arguments, request.backend.memory.ceiling, progress)
-                                   : load_file(*backend, arguments);
+  const auto [volume, title, range] = arguments.volume == "dense"
+                                          ? load_dense(*backend, arguments, request.backend.memory.ceiling, progress)
+                                          : load_file(*backend, arguments);
   const double load_s = seconds_since(start);
   const LoadSummary& loaded = volume->load_summary();
   if (!arguments.json && loaded.way == "cached") spdlog::info("{}: {}", arguments.input, loaded.note);
 
-  if (const std::string line = surface_warning(request.scene, volume->info().range); !line.empty()) {
-    spdlog::warn("{}", line);
+  if (range) {
+    if (const std::string line = surface_warning(request.scene, *range); !line.empty()) spdlog::warn("{}", line);
+    if (!request.scene.volume.range) request.scene.volume.range = {range->min, range->max};
   }
 
   std::optional<Image> bar;
@@ -155,7 +163,7 @@ void render(const RenderArguments& arguments) {
 
 void add_render(CLI::App& app) {
   auto arguments = std::make_shared<RenderArguments>();
-  CLI::App* command = app.add_subcommand("render", "Renders a picture of a NanoVDB file, or of a source.");
+  CLI::App* command = app.add_subcommand("render", "Renders a picture of a NanoVDB file, or of a source");
   command->add_option("input", arguments->input, "NanoVDB file, OUT.nvdb; with --volume dense any input of convert")
       ->type_name("INPUT")
       ->required();

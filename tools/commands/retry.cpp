@@ -33,7 +33,8 @@ void retry_all(const RetryArguments& a) {
 }
 
 void run(const RetryArguments& a) {
-  if (a.ids.empty() != a.all_failed) {
+  if (!a.ids.empty() && a.all_failed) throw usage_error("give IDs or --all-failed, not both");
+  if (a.ids.empty() && !a.all_failed) {
     throw Error(ErrorKind::usage, "give the IDs of the jobs to try again, as weir jobs lists them, or --all-failed");
   }
   if (a.all_failed && a.force) throw Error(ErrorKind::usage, "--force is for jobs given by their IDs");

@@ -151,8 +151,8 @@ class SlabWriter {
 void sample(const SampleArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   const auto [given, run] = read_conversion_request(arguments.options);
-  const Shape shape = resolve_shape(arguments, given);
   const SyntheticKind& kind = find_synthetic_kind(arguments.kind);
+  const Shape shape = resolve_shape(arguments, given);
   const ValuePacker packer(kind, shape.type, shape.big_endian);
   const auto source = open_synthetic(kind.name, {shape.extent, arguments.seed});
   const std::int64_t voxels = volume(shape.extent);
@@ -221,7 +221,7 @@ std::string is_seed(const std::string& text) {
 
 void add_sample(CLI::App& app) {
   auto arguments = std::make_shared<SampleArguments>();
-  CLI::App* command = app.add_subcommand("sample", "Writes a synthetic volume as a raw file.");
+  CLI::App* command = app.add_subcommand("sample", "Writes a synthetic volume as a raw file");
   command->footer(kind_list);
   command->add_option("kind", arguments->kind, "which volume, see below")->required()->type_name("KIND");
   command->add_option("-o,--output", arguments->output, "raw file; NAME_XxYxZ_TYPE.raw says what is in it")

@@ -153,7 +153,8 @@ class Sweep {
       result.error = {made.error.mse,     made.error.rmse,    made.error.nmse,
                       made.error.psnr_db, made.error.max_abs, made.error.lossless};
       result.leaves_kept = made.selection.leaves_kept;
-      row.result = result;
+      result.loss = made.conversion_loss;
+      take_result(result, row);
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::budget) throw;
       const std::string line = error.what();
@@ -187,7 +188,19 @@ class Sweep {
                      : cat("what ZFP gives back overflows float32 in ", trial.nonfinite_decoded, " voxels");
       return;
     }
-    row.result = SweepResult{"zfp", trial.bytes, trial.error, trial.seconds, std::nullopt};
+    const ConversionLoss& loss = trial.loss;
+    take_result({"zfp",
+                 trial.bytes,
+                 trial.error,
+                 trial.seconds,
+                 std::nullopt,
+                 {loss.inexact, loss.overflow, loss.max_abs_error}},
+                row);
+  }
+
+  static void take_result(const SweepResult& result, SweepRow& row) {
+    row.result = result;
+    if (const std::string lost = loss_note(result); !lost.empty()) row.note += (row.note.empty() ? "" : "; ") + lost;
   }
 
   VolumeSource& source_;
@@ -214,11 +227,22 @@ void draw_charts(FileSystem& files, const ResultDirectory& directory, const Swee
     for (const char* ending : {".png", ".svg"}) {
       const std::string path = directory / cat(name, ending);
       if (can_draw) {
-        write_text(files, path, psnr_chart(report, axis, plot_format(path)), true);
+        write_text(files, path, psnr_chart(report, axis, plot_format(path, "output")), true);
       } else if (files.exists(path)) {
         files.remove(path);
       }
     }
+  }
+}
+
+// Without the driver for charts, which is said with its remedy, all else is done.
+bool can_draw_charts(const std::string& output) {
+  try {
+    load_driver("plot", output + ": no charts are drawn");
+    return true;
+  } catch (const Error& error) {
+    spdlog::warn("{}", error.what());
+    return false;
   }
 }
 
@@ -233,8 +257,7 @@ void sweep(const CLI::App& command, const SweepArguments& a) {
   const auto files = make_posix_file_system();
   const ResultDirectory directory(*files, a.output);
   check_outputs(directory, methods, rates, a);
-  const bool can_draw = has_driver("plot");
-  if (!can_draw) spdlog::warn("weir_plot.so cannot be loaded: no charts are drawn");
+  const bool can_draw = can_draw_charts(a.output);
   const std::unique_ptr<VolumeSource> source = open_source(a.input, source_options);
 
   std::map<std::string, std::string> given = given_options(command, a.options);

@@ -88,7 +88,7 @@ void set_forecasts(const ViewArguments& arguments, ViewSettings& settings) {
 
 ViewSettings settings_of(const ViewArguments& arguments) {
   ViewSettings settings;
-  settings.address = parse_listen_address(arguments.listen);
+  settings.address = parse_listen_address(arguments.listen, "--listen");
   if (settings.address.is_unix()) {
     throw Error(ErrorKind::usage, compose(option("listen", arguments.listen), " must be HOST:PORT, for a browser"));
   }
@@ -157,6 +157,7 @@ void view(const ViewArguments& arguments) {
   }
   choice.memory.volumes = volumes_held(files);
   const std::unique_ptr<Backend> backend = make_backend(choice);
+  if (const SeriesSummary& seen = files.heads.summary(); !seen.turned.empty()) spdlog::warn("{}", seen.turned);
   if (const std::string& difference = files.heads.summary().difference; !difference.empty()) {
     spdlog::warn("{}", difference);
   }
@@ -194,7 +195,7 @@ void view(const ViewArguments& arguments) {
 void add_view(CLI::App& app) {
   auto arguments = std::make_shared<ViewArguments>();
   CLI::App* command =
-      app.add_subcommand("view", "Serves a page that shows NanoVDB files, turned and coloured in a browser.");
+      app.add_subcommand("view", "Serves a page that shows NanoVDB files, turned and coloured in a browser");
   command
       ->add_option(
           "input", arguments->input,
@@ -218,8 +219,7 @@ void add_view(CLI::App& app) {
       ->type_name("N")
       ->check(CLI::Range(std::uint64_t{1}, kMostViewers))
       ->capture_default_str();
-  command
-      ->add_option("--pixels", arguments->pixels, "of a picture, at most; the sums of each page's take 12 bytes each")
+  command->add_option("--pixels", arguments->pixels, "largest picture, in pixels; each page needs 12 bytes per pixel")
       ->type_name("N")
       ->check(CLI::Range(kLeastViewPixels, kMostViewPixels))
       ->capture_default_str();
@@ -229,7 +229,7 @@ void add_view(CLI::App& app) {
   command->add_flag("--allow-convert", arguments->allow_convert,
                     "lets pages have the source converted for the scene they show, beside the file");
   command->add_flag("--private", arguments->for_program,
-                    "makes a token, told with the address to --progress-fd alone: for a program that stands before it");
+                    "make a token and print it with the address to --progress-fd only, for a proxy");
   command
       ->add_option(
           "--forecast-memory", arguments->forecast_memory,
@@ -242,7 +242,7 @@ void add_view(CLI::App& app) {
       ->type_name("SIZE");
   command
       ->add_option("--work-dir", arguments->work_dir,
-                   "where that of an input of convert is kept until the end, and forecasts keep what they need")
+                   "directory for the preview of an input and for forecasts; default: TMPDIR")
       ->type_name("DIR");
   add_backend_options(*command, arguments->backend);
   add_input_options(*command, arguments->source);

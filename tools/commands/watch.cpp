@@ -41,7 +41,7 @@ void watch_directories(const CLI::App& command, const WatchArguments& a) {
 }  // namespace
 
 void add_watch(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("watch", "Convert what appears in directories, as a configuration says");
+  CLI::App* command = app.add_subcommand("watch", "Converts what appears in directories, as a configuration says");
   const auto a = std::make_shared<WatchArguments>();
   command->add_option("config", a->config, "what to watch; docs/operations.md has its keys")
       ->type_name("CONFIG.toml")

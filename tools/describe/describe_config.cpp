@@ -30,7 +30,9 @@ void describe(std::ostream& out, const ServiceConfig& service) {
   say(out, "memory",
       cat(format_bytes(service.memory), ", ", format_bytes(job_memory(service)), " for each of ", service.jobs,
           service.jobs == 1 ? " job" : " jobs"));
-  say(out, "viewer", service.viewer_memory == 0 ? "none" : cat(format_bytes(service.viewer_memory), " of it"));
+  say(out, "viewer",
+      service.viewer_memory == 0 ? cat("none: ", no_viewer_reason(service))
+                                 : cat(format_bytes(service.viewer_memory), " of it"));
   say(out, "jobs",
       cat(service.threads == 0 ? "all" : std::to_string(service.threads), " threads each, nice ", service.nice,
           ", I/O class ", io_class_name(service.io_class)));
@@ -74,6 +76,7 @@ void describe(std::ostream& out, const WatchConfig& watch) {
   const bool deletes = watch.source == AfterDone::delete_after_verify;
   say(out, "source",
       cat(after_done_name(watch.source), deletes ? cat(", ", watch.delete_after_s, " s after its job") : ""));
+  if (const std::string unused = watch.unused_key(); !unused.empty()) say(out, "warning", unused);
   if (deletes && !says_when_done(watch.complete)) {
     say(out, "warning",
         "a writer that pauses may look like one that is done; complete = \"rename\" or \"marker\" tells");

@@ -87,8 +87,18 @@ std::string examples_of(const CommandDescription& command) {
 
 constexpr const char* kExitStatus =
     ".SH EXIT STATUS\n.TP\n0\ndone\n.TP\n1\ninternal fault\n.TP\n2\nusage: a wrong option or argument\n.TP\n3\n"
-    "bad or unreadable input\n.TP\n4\nthe budget cannot be met\n.TP\n5\ninput or output failed: disk full, permission\n"
-    ".TP\n129\ninterrupted: the terminal was closed (SIGHUP)\n.TP\n130\ninterrupted\n";
+    "bad or unreadable input\n.TP\n4\nthe budget cannot be met\n.TP\n5\n"
+    "cannot read, write or connect: disk full, permission, no such directory, no service at the address, a plug\\-in "
+    "of another build\n.TP\n129\ninterrupted: the terminal was closed (SIGHUP)\n"
+    ".TP\n130\ninterrupted: SIGINT or SIGTERM (weir watch and weir view end with 0)\n";
+
+constexpr const char* kEnvironment =
+    ".SH ENVIRONMENT\n.TP\nWEIR_TOKEN\ntoken of the service, for weir status, jobs, retry, cancel, pause and resume, "
+    "where neither \\-\\-token\\-file nor the file of \\-\\-config has one\n"
+    ".TP\nWEIR_DRIVERS\nfolder of the plug\\-ins (weir_hdf5.so and others) instead of lib/weir, an absolute path\n"
+    ".TP\nTMPDIR\ndirectory for temporary files of weir view and of weir render \\-\\-volume dense; default: /tmp\n"
+    ".TP\nHDF5_PLUGIN_PATH\ndirectories with the plug\\-ins of HDF5's filters, which the HDF5 library reads\n"
+    ".TP\nSTATE_DIRECTORY\ndirectory of weir watch's state file, where its configuration names none; systemd sets it\n";
 
 }  // namespace
 
@@ -116,6 +126,7 @@ std::string man_page(const CommandDescription& command, const std::vector<Comman
   if (!command.footer.empty()) page += cat(".SH NOTES\n.nf\n", man_escaped(command.footer), "\n.fi\n");
   page += examples_of(command);
   page += kExitStatus;
+  if (is_root) page += kEnvironment;
   page += ".SH SEE ALSO\n";
   std::string others;
   for (const CommandDescription& c : all) {

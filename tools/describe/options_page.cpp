@@ -37,17 +37,17 @@ std::string options_page() {
       "`[[watch]]` table and this page are made from it, the keywords of `weir.convert` in Python are checked against "
       "it.\nC has most of them as members of `weir_convert_options` and `weir_input_options`; `weir.h` describes "
       "those.\n"
-      "`weir man --options` prints this page.\n",
+      "`weir man --options` prints this page. `weir man DIRECTORY`, which `weir --help` does not list, writes the "
+      "manual\npages, for the installation.\n",
       table("Input: what a file does not say itself", "key, keyword", input_options()),
       table("Budget, method and policy", "key, keyword", method_options()),
       table("Use of the machine", "keyword of Python", run_options()),
       "\nOf `--size`, `--rate`, `--psnr`, `--max-error` and `--lossless` one can be given "
       "([budget.md](budget.md)). A `[[watch]]`\ntable takes the keys of the first two tables but `stack`, and "
       "`backend`; memory, threads and the like are the\nservice's ([operations.md](operations.md)).\n"
-      "\n`--overwrite` is of results: without it an existing one is refused. What a command writes besides is "
-      "replaced: "
-      "the chart\nor table of `weir compare --spectrum`, the chart of `weir inspect --plot`, and a trace; `--trace` "
-      "refuses any other file.\n");
+      "\n`--overwrite` is of results: without it an existing one is refused, but `weir play` replaces its frames. What "
+      "a command writes\nbesides is replaced: the chart or table of `weir compare --spectrum`, the chart of `weir "
+      "inspect --plot`, and a trace; `--trace`\nrefuses any other file.\n");
 }
 
 }  // namespace weir

@@ -2,16 +2,35 @@
 
 #include <CLI/CLI.hpp>
 
+#include <cerrno>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 namespace weir {
+namespace {
+
+// Whether `text` says that an input of `command`, given by a relative name, is not there.
+bool misses_an_input(const CLI::App& command, const std::string& text) {
+  if (!text.ends_with(": " + std::generic_category().message(ENOENT))) return false;
+  for (const CLI::Option* option : command.get_options()) {
+    if (!option->get_positional()) continue;
+    for (const std::string& word : option->results()) {
+      if (!word.starts_with('/') && text.starts_with(word + ": ")) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
 
 std::string command_message(const CLI::App& app, const Error& error) {
   std::string text = error.what();
   const Message remedy = disk_full_remedy();
   const std::vector<CLI::App*> parsed = app.get_subcommands();
-  if (!text.ends_with(remedy.text()) || parsed.empty()) return text;
+  if (parsed.empty()) return text;
+  if (misses_an_input(*parsed.front(), text)) return text + "; check the name and the current directory";
+  if (!text.ends_with(remedy.text())) return text;
   text.resize(text.size() - remedy.text().size());
   text += "; free space on that file system";
   std::string_view before = " or choose another with ";

@@ -12,7 +12,7 @@ class App;
 namespace weir {
 
 /// One line: error.what(), but that its remedy of a full disk names only options that the command has which `app`
-/// parsed.
+/// parsed; and with the remedy of an input that is not there, where its name is relative.
 std::string command_message(const CLI::App& app, const Error& error);
 
 }  // namespace weir

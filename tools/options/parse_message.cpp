@@ -42,7 +42,11 @@ std::string parse_message(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<std::string> left = app.remaining(true);
   if (error.get_exit_code() != static_cast<int>(CLI::ExitCodes::ExtrasError) || left.empty()) {
     const std::string text = error.what();
-    return cat(parser_wording(text.substr(0, text.find('\n'))), "; see ", help);
+    const auto values_of = [&](const std::string& name) {
+      const CLI::Option* const option = command.get_option_no_throw(name);
+      return option == nullptr ? std::string() : option->get_type_name();
+    };
+    return cat(parser_wording(text.substr(0, text.find('\n')), values_of), "; see ", help);
   }
   const auto option = std::ranges::find_if(left, [](const std::string& word) { return word.starts_with('-'); });
   if (option != left.end()) {

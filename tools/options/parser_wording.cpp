@@ -28,12 +28,18 @@ std::optional<std::smatch> match(const std::string& text, const char* pattern) {
 
 }  // namespace
 
-std::string parser_wording(const std::string& text) {
+std::string parser_wording(const std::string& text,
+                           const std::function<std::string(const std::string& option)>& values_of) {
   if (const auto m = match(text, "(\\S+): 1 required (.*) missing")) {
     return cat(m->str(1), " needs a value, ", m->str(2));
   }
   if (const auto m = match(text, "(\\S+): At Most 1 required but received ([0-9]+)")) {
     return cat(m->str(1), " is given ", m->str(2), " times; give it once");
+  }
+  if (const auto m = match(text, "(\\S+): At (?:least|Most) ([0-9]+) required but received ([0-9]+)")) {
+    const std::string values = values_of ? values_of(m->str(1)) : "";
+    return cat(m->str(1), " has ", m->str(3), m->str(3) == "1" ? " value" : " values", ", it takes ", m->str(2),
+               values.empty() ? "" : ": ", values);
   }
   if (const auto m = match(text, "Could not convert: (\\S+) = ([^]*)")) {
     return cat(m->str(1), " is \"", m->str(2), "\", it must be a number");

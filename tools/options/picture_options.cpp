@@ -236,7 +236,7 @@ constexpr ReadableOption<Request> kPictureOptions[] = {
       .standard = "35,20,1",
       .help = "where it stands, in degrees"},
      read_camera},
-    {{.key = "threads", .argument = "N", .standard = "0", .help = "0: all of the machine's"},
+    {{.key = "threads", .argument = "N", .standard = "0", .help = "number of threads; 0: one per core"},
      [](const OptionRow& row, const std::string& text, Request& r) {
        r.backend.threads = static_cast<int>(read_count(row, text, 0, kMaxThreads));
      }},

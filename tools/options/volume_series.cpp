@@ -15,6 +15,8 @@
 #include "format/nanovdb/nvdb_tree.h"
 #include "ingest/files/file_pattern.h"
 #include "ingest/headers/number_pattern.h"
+#include "tools/options/finite_range.h"
+#include "tools/report/map_warning.h"
 
 namespace weir {
 namespace {
@@ -23,6 +25,9 @@ struct VolumeHead {
   Box box;
   float background = 0;
   MinMax range;
+  std::array<double, 3> voxel_size;
+  std::array<double, 3> origin;
+  std::array<double, 9> matrix;
 };
 
 // Reads a few pages, however many nodes there are: of a series of thousands nobody waits for more. Those of the head
@@ -34,14 +39,50 @@ VolumeHead read_head(const std::string& path) {
   const NvdbHeader header = read_nvdb_header(file.bytes(), path, first_nvdb_segment(file.bytes(), path).front());
   const NvdbBytes grid(file.bytes().subspan(header.grid_offset, header.grid_bytes), header.grid_offset, path);
   const auto root = [&](std::uint64_t field) { return grid.get<float>(nvdb::kRootOffset + field); };
-  return {read_nvdb_tree_head(grid, header.type).bbox,
-          root(nvdb::root::kBackground),
-          {root(nvdb::root::kMin), root(nvdb::root::kMax)}};
+  VolumeHead result{read_nvdb_tree_head(grid, header.type).bbox,
+                    root(nvdb::root::kBackground),
+                    kNoBounds,
+                    header.voxel_size,
+                    header.world_origin,
+                    header.matrix};
+  if (header.has_min_max) result.range = {root(nvdb::root::kMin), root(nvdb::root::kMax)};
+  return result;
+}
+
+// Of a file whose head names no finite range. Cells that the file does not have would be made of all of its voxels.
+std::optional<MinMax> range_beside_head(const std::string& path) {
+  try {
+    const NvdbFile file(path);
+    if (const auto range = certified_range(file)) return range;
+    if (has_macrocells(file.grid())) return finite_range(MacrocellGrid(file.grid(), kMacrocell));
+  } catch (const Error&) {  // said when its turn comes
+  }
+  return std::nullopt;
 }
 
 std::string described(const std::string& path, const Box& box) {
   const Index3 e = box.extent();
   return cat(path, " has ", e.x, " x ", e.y, " x ", e.z, " voxels from ", box.lo.x, ",", box.lo.y, ",", box.lo.z);
+}
+
+std::string described(const std::string& path, const SeriesPlace& place) {
+  const auto& [size, origin] = place;
+  return cat(path, " has voxels of ", size[0], " x ", size[1], " x ", size[2], " from ", origin[0], ",", origin[1], ",",
+             origin[2]);
+}
+
+// Of what was seen first, and this file.
+void note_difference(SeriesSummary& summary, const std::string& path, const VolumeHead& head) {
+  const SeriesPlace place{head.voxel_size, head.origin};
+  if (!summary.box) {
+    summary.first = path;
+    summary.box = head.box;
+    summary.place = place;
+  } else if (summary.difference.empty() && !(head.box == *summary.box)) {
+    summary.difference = cat(described(summary.first, *summary.box), ", ", described(path, head.box));
+  } else if (summary.difference.empty() && !(place == summary.place)) {
+    summary.difference = cat(described(summary.first, summary.place), ", ", described(path, place));
+  }
 }
 
 }  // namespace
@@ -65,19 +106,19 @@ std::vector<std::string> expand_volumes(std::span<const std::string> inputs) {
 }
 
 void add_to_summary(SeriesSummary& summary, const std::string& path) {
-  const VolumeHead head = read_head(path);
-  if (!summary.box) {
-    summary.box = head.box;
-    summary.first = described(path, head.box);
-  } else if (summary.difference.empty() && !(head.box == *summary.box)) {
-    summary.difference = cat(summary.first, ", ", described(path, head.box));
+  VolumeHead head = read_head(path);
+  if (!has_finite_ends(head.range)) head.range = range_beside_head(path).value_or(kNoBounds);
+  note_difference(summary, path, head);
+  if (const std::string turned = map_warning(head.matrix, head.voxel_size); !turned.empty() && summary.turned.empty()) {
+    summary.turned = cat(path, ": ", turned);
   }
+  if (!has_finite_ends(head.range) && summary.without_range.empty()) summary.without_range = path;
   add_values(summary, head.background, head.range);
 }
 
 void add_values(SeriesSummary& summary, float background, const MinMax& range) {
   if (!summary.background && std::isfinite(background)) summary.background = background;
-  if (!std::isfinite(range.min) || !std::isfinite(range.max) || range.min > range.max) return;
+  if (!has_finite_ends(range)) return;
   const MinMax known = summary.range.value_or(range);
   summary.range = MinMax{std::min(known.min, range.min), std::max(known.max, range.max)};
 }

@@ -5,10 +5,10 @@
 
 namespace weir {
 
-PlotFormat plot_format(const std::string& path) {
+PlotFormat plot_format(const std::string& path, std::string_view key) {
   if (path.ends_with(".png")) return PlotFormat::png;
   if (path.ends_with(".svg")) return PlotFormat::svg;
-  throw usage_error(cat(path, ": a chart's name must end in .png or .svg"));
+  throw usage_error(compose(option(key, path), ": a chart's name must end in .png or .svg"));
 }
 
 std::unique_ptr<PlotCanvas> make_plot_canvas(std::int32_t width, std::int32_t height, PlotFormat format,

@@ -19,8 +19,8 @@ struct PlotPoint {
 };
 
 enum class PlotFormat { png, svg };
-/// Of a file's name. Throws Error(usage) where it ends in neither .png nor .svg.
-PlotFormat plot_format(const std::string& path);
+/// Of the file that the option `key` gives. Throws Error(usage) where its name ends in neither .png nor .svg.
+PlotFormat plot_format(const std::string& path, std::string_view key);
 
 /// Which point of a text, at the middle of its height, it is placed by.
 enum class TextAnchor { left, middle, right };

@@ -4,12 +4,36 @@
 #include "tools/report/error_text.h"
 
 namespace weir {
+namespace {
+
+// Whether no voxel is finite in both the source and the file.
+bool compares_nothing(const DerivedErrors& errors) {
+  return errors.octaves.zeros == 0 && errors.octaves.counts.empty();
+}
+
+const char* no_similarity_text(const DerivedErrors& errors) {
+  if (compares_nothing(errors)) return "not defined: no value is finite";
+  if (errors.similarity.left_out > 0) return "not defined: every window has a value that is not finite";
+  return "not defined for one value";
+}
+
+std::string quantiles_text(const DerivedErrors& errors, double range, const std::string& units) {
+  if (compares_nothing(errors)) return "|error|    not defined: no value is finite";
+  std::string text;
+  for (std::size_t i = 0; i < errors.quantiles.size(); ++i) {
+    text += cat(i == 0 ? "|error|    " : "\n           ", 100 * DerivedErrors::kShares[i], " % of voxels at most ",
+                largest_error_text(errors.quantiles[i], range, units));
+  }
+  return text;
+}
+
+}  // namespace
 
 nlohmann::ordered_json derived_json(const DerivedErrors& errors) {
   using Json = nlohmann::ordered_json;
   Json quantiles;
   for (std::size_t i = 0; i < errors.quantiles.size(); ++i) {
-    quantiles[cat(DerivedErrors::kShares[i])] = errors.quantiles[i];
+    quantiles[cat(DerivedErrors::kShares[i])] = compares_nothing(errors) ? Json() : Json(errors.quantiles[i]);
   }
   const ErrorHistogram::Octaves& octaves = errors.octaves;
   const GradientError& gradient = errors.gradient;
@@ -28,18 +52,10 @@ nlohmann::ordered_json derived_json(const DerivedErrors& errors) {
 }
 
 std::string derived_text(const DerivedErrors& errors, double range, const std::string& units) {
-  std::string text;
-  for (std::size_t i = 0; i < errors.quantiles.size(); ++i) {
-    text += cat(i == 0 ? "|error|    " : "\n           ", 100 * DerivedErrors::kShares[i], " % of voxels at most ",
-                largest_error_text(errors.quantiles[i], range, units));
-  }
+  std::string text = quantiles_text(errors, range, units);
   text += cat("\ngradient   ", gradient_text(errors.gradient, units), "\nssim       ");
   const Similarity& s = errors.similarity;
-  if (s.mean) {
-    text += short_number(*s.mean);
-  } else {
-    text += s.left_out > 0 ? "not defined: every window has a value that is not finite" : "not defined for one value";
-  }
+  text += s.mean ? short_number(*s.mean) : no_similarity_text(errors);
   if (s.mean && s.left_out > 0) {
     text += cat("; ", s.left_out, " of ", s.windows + s.left_out,
                 " windows left out, which have values that are not finite");

@@ -20,6 +20,7 @@ std::string error_text(const Sidecar& sidecar, const Sidecar::CertifiedError& er
 }
 
 std::string gradient_text(const Sidecar::GradientError& gradient, const std::string& units) {
+  if (gradient.voxels == 0) return "not defined: every voxel is at or beside one that is not finite";
   std::string text = gradient.relative_rms ? cat("relative rms ", short_number(*gradient.relative_rms), ", ") : "";
   text += cat("largest error ", short_number(gradient.max_abs), units.empty() ? "" : cat(" ", printable(units)),
               " per world unit");

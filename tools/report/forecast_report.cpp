@@ -8,6 +8,9 @@
 #include "format/base/share_text.h"
 #include "format/base/text.h"
 #include "ingest/source/extent.h"
+#include "tools/report/error_text.h"
+#include "tools/report/json_loss.h"
+#include "tools/report/printable.h"
 
 namespace weir {
 namespace {
@@ -20,11 +23,12 @@ bool has_spread(const Expected& expected) { return expected.low < expected.high;
 
 std::string seconds_text(double seconds) { return cat(fixed(seconds, seconds < 10 ? 1 : 0), " s"); }
 
+// Names are a foreign file's.
 std::string line(const std::string& what, const std::string& text) {
   constexpr std::size_t kColumn = 10;
   std::string head = cat("  ", what);
   head.resize(kColumn + 2, ' ');
-  return cat(head, text, "\n");
+  return cat(head, one_line(text), "\n");
 }
 
 std::string sample_text(const Forecast& f, const SourceInfo& source) {
@@ -64,6 +68,7 @@ std::string error_text(const ForecastError& e, bool whole, Asked asked) {
 }
 
 std::string error_line(const Forecast& f, const ConversionOptions& options) {
+  if (std::isnan(f.value_low)) return cat("none: no value of the ", f.whole ? "volume" : "sample", " is finite");
   const std::string of_sample = f.whole || f.error.lossless ? "" : ", range and background of the sample";
   return cat(error_text(f.error, f.whole, of_all(options)), ", values from ", short_number(f.value_low), " to ",
              short_number(f.value_high), of_sample);
@@ -73,6 +78,12 @@ std::string shown_line(const Forecast& f, const ConversionOptions& options) {
   if (!f.shown) return cat("nothing of the ", f.whole ? "volume" : "sample");
   return cat(error_text(*f.shown, f.whole, of_shown(options)), ", over ", share_text(f.shown_voxels, f.sampled_voxels),
              " of the voxels");
+}
+
+// What float32 loses, which the error does not count; empty where that is nothing.
+std::string rounded_line(const Forecast& f) {
+  const std::string text = rounded_text(f.loss);
+  return text.empty() ? "" : cat(text, f.whole ? "" : ", in the sample", "; the error does not count that");
 }
 
 // What takes the place of a budget that nobody gave; empty where one was.
@@ -109,8 +120,8 @@ nlohmann::ordered_json to_json(const ForecastError& error, bool whole, Asked ask
 }  // namespace
 
 std::string forecast_text(const Forecast& f, const SourceInfo& source, const ConversionOptions& options) {
-  std::string text = cat(source.path, ": ", extent_text(source.extent), " voxels of ", scalar_name(source.type), ", ",
-                         format_bytes(f.volume_bytes), "\n");
+  std::string text = cat(one_line(source.path), ": ", extent_text(source.extent), " voxels of ",
+                         scalar_name(source.type), ", ", format_bytes(f.volume_bytes), "\n");
   const bool sampled = f.not_sampled.empty();
   text += line("sample", sampled ? sample_text(f, source) : cat("none: ", f.not_sampled));
   if (sampled) text += line("reads", cat(format_bytes(f.read_bytes), " in ", fixed(f.passes, 1), " passes"));
@@ -121,6 +132,7 @@ std::string forecast_text(const Forecast& f, const SourceInfo& source, const Con
   if (const std::string budget = default_budget_text(f, options); !budget.empty()) text += line("budget", budget);
   text += line("encoding", f.encoding);
   text += line("error", error_line(f, options));
+  if (const std::string rounded = rounded_line(f); !rounded.empty()) text += line("rounded", rounded);
   if (options.scene) text += line("shown", shown_line(f, options));
   text += line("time", cat("about ", seconds_text(f.total_s()), ": survey ", seconds_text(f.survey_s), ", encoding ",
                            seconds_text(f.encode_s)));
@@ -148,6 +160,7 @@ nlohmann::ordered_json forecast_json(const Forecast& f, const SourceInfo& source
   json["budget"] = nullptr;
   json["encoding"] = nullptr;
   json["error"] = nullptr;
+  json["conversion_loss"] = nullptr;
   json["visible"] = nullptr;
   json["time"] = nullptr;
   if (!sampled) return json;
@@ -159,6 +172,7 @@ nlohmann::ordered_json forecast_json(const Forecast& f, const SourceInfo& source
   json["time"] = {{"survey_s", f.survey_s}, {"encode_s", f.encode_s}, {"total_s", f.total_s()}};
   json["error"] = to_json(f.error, f.whole, of_all(options));
   json["error"]["value_range"] = {f.value_low, f.value_high};
+  json["conversion_loss"] = loss_json(f.loss);
   if (!f.shown) return json;
   json["visible"] = {{"share", static_cast<double>(f.shown_voxels) / static_cast<double>(f.sampled_voxels)}};
   json["visible"].update(to_json(*f.shown, f.whole, of_shown(options)));

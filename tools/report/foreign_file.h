@@ -9,4 +9,7 @@ namespace weir {
 /// is none: what is wrong with it is said when it is opened.
 bool is_foreign_file(const std::string& path);
 
+/// Throws Error(input), which gives the command that converts it, where is_foreign_file().
+void refuse_foreign_file(const std::string& path);
+
 }  // namespace weir

@@ -25,6 +25,9 @@ std::string extents_text(const std::vector<std::int64_t>& extents) {
 
 InputListing list_input(const std::string& path, const SourceOptions& options) {
   const SourceFormat& format = format_of(path);
+  SourceOptions without_dataset = options;  // of which keep_named() says what there is
+  without_dataset.dataset.clear();
+  refuse_foreign_options(path, format, without_dataset);
   SourceOptions all = options;
   all.lists_damaged = true;
   return {path, std::string(format.name), format.container, format.list(path, all)};

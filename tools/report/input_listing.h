@@ -17,7 +17,8 @@ struct InputListing {
   std::vector<DatasetInfo> datasets;
 };
 
-/// Lists `path`; reads no values. Throws what open_source throws of the file itself.
+/// Lists `path`; reads no values. Throws what open_source throws of the file itself, and of options that are not for
+/// its format, but for the dataset.
 InputListing list_input(const std::string& path, const SourceOptions& options);
 
 /// Leaves the datasets that `dataset` names, with or without the slash before it, or as a pattern. Throws Error(usage)

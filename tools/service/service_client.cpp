@@ -34,7 +34,7 @@ constexpr std::uint64_t kMaxAnswer = std::uint64_t{64} << 20;  // bytes; a full 
 
 std::string first_word_of(const std::string& path) {
   std::ifstream file(path);
-  if (!file) throw io_error(path, "open", errno);
+  if (!file) throw Error(ErrorKind::input, io_error(path, "open", errno).message());
   std::string word;
   file >> word;
   return word;
@@ -155,7 +155,7 @@ void add_service_options(CLI::App& command, ServiceOptions& options) {
 }
 
 ServiceClient::ServiceClient(const ServiceOptions& options) : address_{"127.0.0.1", 8470} {
-  if (!options.address.empty()) address_ = parse_listen_address(options.address);
+  if (!options.address.empty()) address_ = parse_listen_address(options.address, "--address");
   if (!options.config.empty()) {
     const ServiceConfig service = load_config(options.config).service;
     token_ = service.token;

@@ -31,7 +31,7 @@ class ServiceClient {
       : address_(std::move(address)), control_(address_), token_(std::move(token)) {}
   /// As the options say: 127.0.0.1:8470 where they say nothing. Of a configuration with a control socket, what changes
   /// something is asked there, and all else at `listen`. Throws Error(usage) for an address that is none,
-  /// Error(input) or Error(io) for a file that cannot be read, or is no configuration.
+  /// Error(input) for a file that cannot be read, or is no configuration.
   explicit ServiceClient(const ServiceOptions& options);
 
   /// The JSON the service answers. Throws Error(io) where it does not answer, or not as weir does; Error(usage) with

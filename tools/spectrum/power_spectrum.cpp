@@ -10,6 +10,7 @@
 #include <span>
 
 #include "compressor/compare/pair_stream.h"
+#include "compressor/compare/window_begins.h"
 #include "compressor/leaf/exact_sum.h"
 #include "tools/spectrum/block_transform.h"
 #include "tools/spectrum/wave_shells.h"
@@ -19,10 +20,10 @@ namespace {
 
 using Frequencies = std::vector<std::complex<double>>;
 
-std::int64_t stride(std::int64_t block) { return std::max<std::int64_t>(block / 2, 1); }
-
-/// Begins of blocks along an axis.
-std::int64_t begins(std::int64_t extent, std::int64_t block) { return (extent - block) / stride(block) + 1; }
+WindowBegins blocks_along(std::int64_t extent) {
+  const std::int64_t block = std::min(extent, kSpectrumBlock);
+  return {extent, block, std::max<std::int64_t>(block / 2, 1)};
+}
 
 std::vector<double> hann(std::int64_t block) {
   std::vector<double> weights;
@@ -35,8 +36,8 @@ std::vector<double> hann(std::int64_t block) {
 
 /// What is the same for all blocks.
 struct Method {
-  Index3 block;
-  Index3 count;  ///< blocks along each axis
+  VolumeWindows windows;
+  Index3 block;  ///< voxels of each
   WaveShells shells;
   BlockTransform transform;
   std::vector<double> window;  ///< x fastest
@@ -44,8 +45,8 @@ struct Method {
   double window_squares = 0;
 
   Method(const Index3& extent, const std::array<double, 3>& spacing)
-      : block(min(extent, Index3{kSpectrumBlock, kSpectrumBlock, kSpectrumBlock})),
-        count{begins(extent.x, block.x), begins(extent.y, block.y), begins(extent.z, block.z)},
+      : windows{blocks_along(extent.x), blocks_along(extent.y), blocks_along(extent.z)},
+        block{windows.x.size, windows.y.size, windows.z.size},
         shells(block, spacing),
         transform(block) {
     const std::array<std::vector<double>, 3> axes{hann(block.x), hann(block.y), hann(block.z)};
@@ -56,15 +57,6 @@ struct Method {
       window_sum += weight;
       window_squares += weight * weight;
     });
-  }
-
-  /// Voxels of the lattice of begins in `part`.
-  Box begins_in(const Box& part, const Index3& lo) const {
-    const auto first = [](std::int64_t at, std::int64_t size) { return ceil_div(at, stride(size)); };
-    const auto corner = [&](const Index3& i) {
-      return Index3{first(i.x - lo.x, block.x), first(i.y - lo.y, block.y), first(i.z - lo.z, block.z)};
-    };
-    return {corner(part.lo), min(corner(part.hi), count)};
   }
 };
 
@@ -82,11 +74,9 @@ class SpectrumTally {
   /// The blocks that begin in `part`.
   void add(const ValuePair& values, const Box& part) {
     const Index3& lo = values.domain.lo;
-    const Index3& block = method_->block;
-    for_each_index(method_->begins_in(part, lo), [&](const Index3& begin) {
-      const Index3 corner =
-          lo + Index3{begin.x * stride(block.x), begin.y * stride(block.y), begin.z * stride(block.z)};
-      add_block(values, {corner, corner + block});
+    for_each_index(method_->windows.in({part.lo - lo, part.hi - lo}), [&](const Index3& number) {
+      const Index3 corner = lo + method_->windows.at(number);
+      add_block(values, {corner, corner + method_->block});
     });
   }
 
@@ -110,7 +100,8 @@ class SpectrumTally {
     for (std::size_t i = 0; i < sums_.size(); ++i) {
       if (method_->shells.modes(i) == 0) continue;
       all.shells.push_back({method_->shells.wave_number(i), method_->shells.modes(i), sums_[i].source.value() * scale,
-                            sums_[i].decoded.value() * scale, sums_[i].error.value() * scale});
+                            sums_[i].decoded.value() * scale, sums_[i].error.value() * scale,
+                            method_->shells.lowest(i)});
     }
     return all;
   }

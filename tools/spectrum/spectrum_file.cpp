@@ -17,7 +17,7 @@ SpectrumFile::SpectrumFile(FileSystem& files, const std::string& path) {
     if (!path.ends_with(".png") && !path.ends_with(".svg")) {
       throw usage_error(cat("--spectrum is \"", path, "\", it must be FILE.png, FILE.svg or FILE.csv"));
     }
-    chart_ = plot_format(path);
+    chart_ = plot_format(path, "spectrum");
     load_driver("plot", path + ": is to be a chart");
   }
   file_.emplace(files, path, true);

@@ -55,13 +55,13 @@ std::string spectrum_text(const PowerSpectrum& spectrum) {
   });
   if (large == shells.begin()) {
     return cat("spectrum   the error has more than 1 % of the source's power from the longest wavelength on, ",
-               short_number(1 / large->wave_number), " world units; ", blocks, '\n');
+               short_number(1 / large->lowest), " world units; ", blocks, '\n');
   }
   if (large == shells.end()) {
     return cat("spectrum   the error has at most 1 % of the source's power at every wavelength; ", blocks, '\n');
   }
   return cat("spectrum   the error has at most 1 % of the source's power at wavelengths above ",
-             short_number(1 / large->wave_number), " world units; ", blocks, '\n');
+             short_number(1 / large->lowest), " world units; ", blocks, '\n');
 }
 
 }  // namespace weir

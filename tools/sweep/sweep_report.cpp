@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "format/base/text.h"
+#include "tools/report/error_text.h"
+#include "tools/report/json_loss.h"
 
 namespace weir {
 namespace {
@@ -53,6 +55,11 @@ std::vector<std::string> table_fields(const SweepReport& report, const SweepRow&
 
 }  // namespace
 
+std::string loss_note(const SweepResult& result) {
+  const bool small = result.loss.max_abs_error <= 0.01 * result.error.max_abs;
+  return result.loss.overflow == 0 && small ? "" : rounded_text(result.loss);
+}
+
 std::string csv_text(const SweepReport& report) {
   std::string text =
       "method,encoding,rate,bytes_asked,bytes_got,bits_per_voxel,mse,nmse,psnr_db,max_abs,lossless,seconds,gb_per_s,"
@@ -92,9 +99,10 @@ std::string json_text(const SweepReport& report) {
       json["seconds"] = r.seconds;
       json["gb_per_s"] = report.gb_per_s(r);
       json["leaves_kept"] = optional(r.leaves_kept);
+      json["conversion_loss"] = loss_json(r.loss);
     } else {
       for (const char* key : {"encoding", "bytes_got", "bits_per_voxel", "mse", "nmse", "psnr_db", "max_abs",
-                              "lossless", "seconds", "gb_per_s", "leaves_kept"}) {
+                              "lossless", "seconds", "gb_per_s", "leaves_kept", "conversion_loss"}) {
         json[key] = nullptr;
       }
     }

@@ -9,6 +9,7 @@
 
 #include "compressor/leaf/certificate.h"
 #include "format/base/index.h"
+#include "format/sidecar/sidecar.h"
 
 namespace weir {
 
@@ -19,6 +20,7 @@ struct SweepResult {
   Certificate error;        ///< decoded values against the float32 source
   double seconds = 0;       ///< wall clock, from the first byte read to the last one on disk
   std::optional<std::uint64_t> leaves_kept;  ///< none for ZFP
+  Sidecar::ConversionLoss loss{};            ///< of the source's values to float32, which the error does not count
 };
 
 struct SweepRow {
@@ -44,6 +46,9 @@ struct SweepReport {
   /// Dense float32 bytes per second, 10^9.
   double gb_per_s(const SweepResult& result) const { return 4 * voxels() / result.seconds / 1e9; }
 };
+
+/// "512 values rounded to float32, by up to 0.5"; empty where that is nothing, or far less than the error.
+std::string loss_note(const SweepResult& result);
 
 /// A header line and one line a row (RFC 4180, lines end in a newline alone); doubles read back bit-exact, what
 /// a row has not is empty.

@@ -149,9 +149,10 @@ class Trial {
     return nonfinite.combine(std::plus<>());
   }
 
-  Tally compare() {
+  /// `loss` becomes that of reading the source.
+  Tally compare(ConversionLoss& loss) {
     tbb::enumerable_thread_specific<Tally> tallies;
-    run("compare", [&](ZfpCodec& codec, const ZfpField& field, std::uint64_t offset) {
+    loss = run("compare", [&](ZfpCodec& codec, const ZfpField& field, std::uint64_t offset) {
       stream_.read_at(offset, codec.stream_buffer(field.extent));
       const std::span<const float> decoded = codec.decompress(field.extent);
       Tally& tally = tallies.local();
@@ -180,10 +181,10 @@ class Trial {
     return std::min((options_.memory - fixed) / 2, kMostBlockTrialBytes);
   }
 
-  // Calls work(codec, piece's voxels, offset of its stream) for all pieces; those of a block run at once. The
-  // pieces' streams lie one after the other, each a whole number of words.
+  // Calls work(codec, piece's voxels, offset of its stream) for all pieces, and returns the loss of reading them; those
+  // of a block run at once. The pieces' streams lie one after the other, each a whole number of words.
   template <typename Work>
-  void run(const std::string& pass, const Work& work) {
+  ConversionLoss run(const std::string& pass, const Work& work) {
     const auto voxels = static_cast<std::uint64_t>(volume(source_.info().extent));
     if (control_.pass_started) control_.pass_started(pass, voxels * sizeof(float));
     StreamOptions stream;
@@ -193,7 +194,7 @@ class Trial {
     };
     tbb::enumerable_thread_specific<ZfpCodec> codecs(options_.block_bits);
     std::uint64_t offset = 0;
-    stream_blocks(source_, boxes_, stream, [&](const Block& block) {
+    return stream_blocks(source_, boxes_, stream, [&](const Block& block) {
       const std::vector<Box> pieces = pieces_of(block.voxels);
       std::vector<std::uint64_t> offsets;
       for (const Box& piece : pieces) {
@@ -225,7 +226,7 @@ ZfpTrial try_zfp(VolumeSource& source, const ZfpTrialOptions& options, const Con
   result.nonfinite = trial.compress();
   result.seconds = seconds_since(start);
   if (result.nonfinite > 0) return result;
-  const Tally total = trial.compare();
+  const Tally total = trial.compare(result.loss);
   result.nonfinite_decoded = total.nonfinite_decoded;
   const auto finite = static_cast<std::uint64_t>(volume(extent)) - total.nonfinite_decoded;
   result.error =

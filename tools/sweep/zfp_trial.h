@@ -24,6 +24,7 @@ struct ZfpTrial {
   std::uint64_t nonfinite = 0;          ///< voxels of the source; where there are any, nothing else is known
   std::uint64_t nonfinite_decoded = 0;  ///< voxels that come back so; in no sum of the error
   Certificate error;
+  ConversionLoss loss;  ///< of the source's values to float32
 };
 
 /// Compresses and writes `source` in one pass, then reads both again to compare. Results depend on neither

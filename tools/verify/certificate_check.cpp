@@ -47,9 +47,64 @@ void check_error(const std::string& name, const Sidecar::CertifiedError& error, 
                         : psnr_db.has_value() == error.psnr_db.has_value();
   checks.push_back(
       {name + ".psnr_db", shown(error.psnr_db), shown(psnr_db), same || !std::isfinite(range[1] - range[0])});
+  const bool no_ratio = !std::isfinite(error.nmse) && !std::isfinite(from_mse.nmse);  // of one value
+  checks.push_back({name + ".nmse", cat(error.nmse), cat(from_mse.nmse, ", (rmse / range)^2"),
+                    no_ratio || is_near(error.nmse, from_mse.nmse)});
   const bool exact = error.mse == 0 && error.max_abs == 0;
   checks.push_back({name + ".lossless", error.lossless ? "true" : "false", exact ? "true or false" : "false",
                     exact || !error.lossless});
+}
+
+// Figures that are not finite are null in the sidecar, and contradict nothing.
+void check_gradient(const Sidecar::GradientError& gradient, std::uint64_t voxels, std::vector<VolumeCheck>& checks) {
+  const std::string name = "sidecar error.gradient";
+  checks.push_back({name + ".rms", cat(gradient.rms), cat("0 to ", gradient.max_abs, ", max_abs"),
+                    !(gradient.rms < 0) && !(gradient.rms > gradient.max_abs * (1 + kRounding))});
+  checks.push_back({name + ".max_abs", cat(gradient.max_abs), "0 or more", !(gradient.max_abs < 0)});
+  const double relative = gradient.relative_rms.value_or(0);
+  checks.push_back({name + ".relative_rms", shown(gradient.relative_rms), "0 or more", !(relative < 0)});
+  const bool all = gradient.voxels <= voxels && gradient.left_out == voxels - gradient.voxels;
+  checks.push_back(
+      {name + ".voxels and left_out", cat(gradient.voxels, " and ", gradient.left_out), cat(voxels, " together"), all});
+}
+
+std::uint64_t leaves_of(const Box& box) {
+  if (box.empty()) return 0;
+  const Index3 count = make_lattice(box, kLeafDim).count;
+  return static_cast<std::uint64_t>(count.x) * static_cast<std::uint64_t>(count.y) *
+         static_cast<std::uint64_t>(count.z);
+}
+
+// The first bin holds the least value, the last one the largest.
+void check_histogram(const Sidecar& s, std::vector<VolumeCheck>& checks) {
+  const auto& [min, max, counts] = s.histogram;
+  const std::uint64_t counted = std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
+  checks.push_back({"sidecar histogram.counts", cat(counted, " in all"), cat(valid_voxels(s), ", the valid voxels"),
+                    counted == valid_voxels(s)});
+  if (counts.empty()) return;
+  const auto [lo, hi] = s.value_range;
+  const double bin = (max - min) / static_cast<double>(counts.size()) * (1 + kRounding);
+  const bool holds = min <= lo && lo <= min + bin && max - bin <= hi && hi <= max;
+  checks.push_back({"sidecar histogram.min and max", cat(min, " .. ", max),
+                    cat("at most a bin beyond ", lo, " .. ", hi, ", value_range"), holds});
+}
+
+void check_digest(const std::string& name, const std::string& digest, std::vector<VolumeCheck>& checks) {
+  const bool hex_digits = digest.find_first_not_of("0123456789abcdef") == std::string::npos;
+  checks.push_back({name, digest, "32 lower-case hex digits", hex_digits && digest.size() == 32});
+}
+
+void check_digests(const Sidecar& s, std::vector<VolumeCheck>& checks) {
+  check_digest("sidecar source.digest", s.source.digest, checks);
+  if (!s.source.files_digest.empty()) check_digest("sidecar source.files_digest", s.source.files_digest, checks);
+  if (s.visible && !s.visible->scene_digest.empty()) {
+    check_digest("sidecar visible.scene_digest", s.visible->scene_digest, checks);
+  }
+}
+
+void check_timing(const Sidecar::Timing& timing, std::vector<VolumeCheck>& checks) {
+  const double least = std::min({timing.survey_s, timing.encode_s, timing.total_s});
+  checks.push_back({"sidecar timing", cat(least, " s"), "0 s or more", !(least < 0)});
 }
 
 }  // namespace
@@ -67,6 +122,9 @@ std::vector<VolumeCheck> check_certificate(const Sidecar& s) {
                     s.budget.dense_float32_bytes == dense});
   const double rate = static_cast<double>(dense) / static_cast<double>(std::max<std::uint64_t>(s.budget.file_bytes, 1));
   checks.push_back({"sidecar budget.rate", cat(s.budget.rate), cat(rate), is_near(s.budget.rate, rate)});
+  const std::uint64_t leaves = leaves_of(s.grid.index_bbox);
+  checks.push_back({"sidecar selection.leaves_total", cat(s.selection.leaves_total),
+                    cat(leaves, ", the blocks of 8^3 that index_bbox touches"), s.selection.leaves_total == leaves});
   checks.push_back(
       at_most("sidecar selection.leaves_kept of leaves_total", s.selection.leaves_kept, s.selection.leaves_total));
   if (s.zeros) {
@@ -85,14 +143,14 @@ std::vector<VolumeCheck> check_certificate(const Sidecar& s) {
                     s.background.share >= 0 && s.background.share <= 1});
   checks.push_back(at_most("sidecar conversion_loss.inexact", s.conversion_loss.inexact, voxels));
   checks.push_back(at_most("sidecar conversion_loss.overflow", s.conversion_loss.overflow, voxels));
+  const double rounded = s.conversion_loss.max_abs_error;
+  checks.push_back({"sidecar conversion_loss.max_abs_error", cat(rounded), "0 or more", !(rounded < 0)});
   if (s.visible) checks.push_back(at_most("sidecar visible.voxels", s.visible->voxels, voxels));
   // Weir 0.1 did not say what became of missing voxels, and so which it counted.
-  if (!s.histogram.counts.empty() && !s.missing.policy.empty()) {
-    const std::uint64_t counted =
-        std::accumulate(s.histogram.counts.begin(), s.histogram.counts.end(), std::uint64_t{0});
-    checks.push_back({"sidecar histogram.counts", cat(counted, " in all"), cat(valid_voxels(s), ", the valid voxels"),
-                      counted == valid_voxels(s)});
-  }
+  if (!s.missing.policy.empty()) check_histogram(s, checks);
+  if (s.gradient) check_gradient(*s.gradient, voxels, checks);
+  check_digests(s, checks);
+  check_timing(s.timing, checks);
   return checks;
 }
 

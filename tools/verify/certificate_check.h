@@ -8,7 +8,8 @@
 
 namespace weir {
 
-/// Root, PSNR and largest value of each error, extents, rate, and counts of voxels and blocks.
+/// Root, share of the range, PSNR and largest value of each error, the gradient's, extents, rate, counts of voxels and
+/// blocks, the histogram's ends, and the form of digests.
 std::vector<VolumeCheck> check_certificate(const Sidecar& sidecar);
 
 }  // namespace weir

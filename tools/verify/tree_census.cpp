@@ -81,6 +81,7 @@ class CensusTally {
   CensusTally(const NvdbGrid& grid, bool of_tree)
       : grid_(&grid),
         of_tree_(of_tree),
+        background_(grid.background()),
         cells_(of_tree == (grid.packed() == nullptr) ? grid.macrocells() : MacrocellView{}) {}
 
   void add(const GridBlock& block, std::span<const float, 512> values) {
@@ -104,7 +105,9 @@ class CensusTally {
       include(census.active_bbox, box);
     }
     const Box inside = intersect(box, grid_->index_bbox());
-    if (cells_.cells.empty() || inside.empty()) return;
+    if (inside.empty()) return;
+    if (!tile.active && tile.value == background_) census.quiet_voxels += static_cast<std::uint64_t>(inside.voxels());
+    if (cells_.cells.empty()) return;
     const NodeLattice covered = make_lattice(inside, cells_.cell);
     for (std::int64_t i = 0; i < covered.size(); ++i) {
       check(tile.origin, cell_at(covered.first + covered.position(i) - cells_.lattice.first), tile.value);
@@ -117,6 +120,9 @@ class CensusTally {
     for (std::size_t i = 0; i < o.leaves_by_bits.size(); ++i) census.leaves_by_bits[i] += o.leaves_by_bits[i];
     census.active_voxels += o.active_voxels;
     census.nonfinite += o.nonfinite;
+    census.zeros += o.zeros;
+    census.backgrounds += o.backgrounds;
+    census.quiet_voxels += o.quiet_voxels;
     include(census.active_bbox, o.active_bbox);
     census.min = std::min(census.min, o.min);
     census.max = std::max(census.max, o.max);
@@ -136,13 +142,19 @@ class CensusTally {
     float lo = std::numeric_limits<float>::infinity();
     float hi = -lo;
     float not_finite = 0;  // x * 0 is 0 for a finite x, else NaN
+    unsigned zeros = 0;
+    unsigned backgrounds = 0;
     for (const float value : values) {
       lo = value < lo ? value : lo;
       hi = value > hi ? value : hi;
       not_finite += value * 0.0F;
+      zeros += value == 0.0F ? 1U : 0U;
+      backgrounds += value == background_ ? 1U : 0U;
     }
     if (std::isnan(not_finite)) return add_partial(leaf, box, values);
     census.active_voxels += values.size();
+    census.zeros += zeros;
+    census.backgrounds += backgrounds;
     census.min = std::min(census.min, lo);
     census.max = std::max(census.max, hi);
     include(census.active_bbox, box);
@@ -170,6 +182,8 @@ class CensusTally {
       census.nonfinite += voxels;
       return;
     }
+    if (value == 0.0F) census.zeros += voxels;
+    if (value == background_) census.backgrounds += voxels;
     census.min = std::min(census.min, value);
     census.max = std::max(census.max, value);
   }
@@ -190,6 +204,7 @@ class CensusTally {
 
   const NvdbGrid* grid_;
   bool of_tree_;
+  float background_;
   MacrocellView cells_;
 };
 
@@ -234,6 +249,9 @@ TreeCensus take_census(const NvdbGrid& grid, const CensusProgress& progress, Tra
   if (grid.packed() == nullptr) return census;
   const TreeCensus values = census_of(false);
   census.nonfinite = values.nonfinite;
+  census.zeros = values.zeros;
+  census.backgrounds = values.backgrounds;
+  census.quiet_voxels = values.quiet_voxels;
   census.valued_voxels = values.active_voxels;
   census.min = values.min;
   census.max = values.max;

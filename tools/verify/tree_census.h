@@ -18,13 +18,16 @@ namespace weir {
 
 struct TreeCensus {
   std::uint64_t leaves = 0;
-  std::array<std::uint64_t, 6> leaves_by_bits{};       ///< of 1, 2, 4, 8, 16 and 32 bits a voxel
-  std::array<std::uint64_t, 3> active_tiles{};         ///< of 8^3, 128^3, 4096^3 voxels
-  std::array<std::uint64_t, 3> inactive_tiles{};       ///< the same; background outside the domain included
-  std::uint64_t active_voxels = 0;                     ///< in leaves and active tiles
-  std::uint64_t valued_voxels = 0;                     ///< those that nonfinite, min and max are of: all, where packed
-  std::uint64_t nonfinite = 0;                         ///< of them, those that are NaN or infinite
-  Box active_bbox;                                     ///< half open; {} without active voxels
+  std::array<std::uint64_t, 6> leaves_by_bits{};  ///< of 1, 2, 4, 8, 16 and 32 bits a voxel
+  std::array<std::uint64_t, 3> active_tiles{};    ///< of 8^3, 128^3, 4096^3 voxels
+  std::array<std::uint64_t, 3> inactive_tiles{};  ///< the same; background outside the domain included
+  std::uint64_t active_voxels = 0;                ///< in leaves and active tiles
+  std::uint64_t valued_voxels = 0;                ///< those that the figures of values are of: all, where packed
+  std::uint64_t nonfinite = 0;                    ///< of them, those that are NaN or infinite
+  std::uint64_t zeros = 0;                        ///< of them, those that are 0
+  std::uint64_t backgrounds = 0;                  ///< of them, the finite ones that are the background
+  std::uint64_t quiet_voxels = 0;                 ///< in the index box, inactive tiles of the background: not valued
+  Box active_bbox;                                ///< half open; {} without active voxels
   float min = std::numeric_limits<float>::infinity();  ///< of the finite active values
   float max = -std::numeric_limits<float>::infinity();
   std::optional<Index3> outside_macrocell;  ///< a block in the domain with a value its macrocell does not hold

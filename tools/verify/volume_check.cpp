@@ -47,6 +47,9 @@ VolumeCheck head_checksum(const NvdbGrid& grid) {
 }
 
 VolumeCheck stored_range(const NvdbGrid& grid, const TreeCensus& census) {
+  if (std::isnan(grid.value_min()) && census.nonfinite == 0) {  // its writer left the statistics out
+    return {"stored range", "none stored", cat(census.min, " .. ", census.max), true};
+  }
   const bool none = census.valued_voxels == census.nonfinite;  // nothing to bound
   const bool exact = grid.value_min() == census.min && grid.value_max() == census.max;
   return {"stored range", cat(grid.value_min(), " .. ", grid.value_max()), cat(census.min, " .. ", census.max),

@@ -14,8 +14,10 @@
 #include "format/nanovdb/nvdb_file.h"
 #include "format/sidecar/find_sidecar.h"
 #include "format/sidecar/sidecar.h"
+#include "tools/report/foreign_file.h"
 #include "tools/report/read_sidecar.h"
 #include "tools/verify/certificate_check.h"
+#include "tools/verify/lossless_check.h"
 
 namespace weir {
 namespace {
@@ -75,6 +77,7 @@ std::vector<VolumeCheck> verify_volume(const std::string& path, const Verificati
   std::vector<VolumeCheck> checks;
   const auto file = checked("structure", checks, [&] {
     const TraceSpan span(watch.trace, "open");
+    refuse_foreign_file(path);
     return std::make_unique<NvdbFile>(path);
   });
   if (!file) return checks;  // of what is no volume a sidecar says nothing
@@ -88,6 +91,7 @@ std::vector<VolumeCheck> verify_volume(const std::string& path, const Verificati
   const std::string digest = parallel_digest(grid.bytes(), watch);
   for (VolumeCheck& check : check_sidecar(grid, *census, digest, *sidecar)) checks.push_back(std::move(check));
   for (VolumeCheck& check : check_certificate(*sidecar)) checks.push_back(std::move(check));
+  for (VolumeCheck& check : check_lossless(*census, grid.background(), *sidecar)) checks.push_back(std::move(check));
   return checks;
 }
 

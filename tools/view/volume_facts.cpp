@@ -16,7 +16,7 @@
 #include "tools/report/volume_title.h"
 #include "tools/verify/packed_census.h"
 #include "tools/verify/tree_census.h"
-#include "tools/view/base/finite_range.h"
+#include "tools/options/finite_range.h"
 
 namespace weir {
 namespace {

@@ -192,7 +192,7 @@ class Grid:
 
     @property
     def range(self) -> tuple[float, float]:
-        """Smallest and largest value there is, as the file says."""
+        """Smallest and largest value there is, as the file says; NaN where it says none."""
         return self._core.range
 
     @property

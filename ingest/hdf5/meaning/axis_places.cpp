@@ -1,6 +1,6 @@
 #include "ingest/hdf5/meaning/axis_places.h"
 
-#include "ingest/hdf5/meaning/component_axis.h"
+#include "ingest/axes/component_axis.h"
 #include "ingest/hdf5/meaning/dimension_scales.h"
 #include "ingest/hdf5/meaning/openpmd.h"
 #include "ingest/hdf5/meaning/plain_placement.h"

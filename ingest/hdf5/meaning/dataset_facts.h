@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "ingest/axes/component_axis.h"
 #include "ingest/hdf5/file/hdf5_object.h"
 #include "ingest/hdf5/file/hdf5_type.h"
 #include "ingest/hdf5/meaning/axis_places.h"
-#include "ingest/hdf5/meaning/component_axis.h"
 #include "ingest/hdf5/meaning/value_meaning.h"
 #include "ingest/hdf5/storage/storage.h"
 
@@ -23,6 +23,7 @@ struct DatasetFacts {
   std::optional<Storage> storage;  ///< of a dataset
   std::optional<double> constant;  ///< of an openPMD constant component: its value
   ValueMeaning meaning;            ///< where there is a type
+  std::string place_note;          ///< that the spacing is that of an attribute of no one meaning; else empty
   std::string obstacle;            ///< why it cannot be converted; empty where it can
   bool marks = false;              ///< an array of VTK's that is no field, and a volume only where it is named
   bool over_time = false;          ///< that is all: one of the three axes is a time, and no length

@@ -54,6 +54,8 @@ void place_by_openpmd(hid_t object, std::span<const Hdf5Handle> groups, std::spa
       continue;
     }
     axes[i].spacing = spacing[i] * metres[i];
+    axes[i].spacing_from = "attribute gridSpacing";
+    axes[i].origin_from = "attribute gridGlobalOffset";
     const double in_cell = position.empty() ? 0.0 : position[i];
     axes[i].origin = ((offset.empty() ? 0.0 : offset[i]) + in_cell * spacing[i]) * metres[i];
   }

@@ -7,44 +7,76 @@
 #include <string>
 #include <vector>
 
+#include "format/base/text.h"
 #include "ingest/hdf5/file/hdf5_attribute.h"
 
 namespace weir {
 namespace {
 
+using Triple = std::array<double, 3>;  // slowest axis first
+using PlacedMember = std::optional<double> AxisPlace::*;
+using SourceMember = std::string AxisPlace::*;
+
 struct PlainName {
   const char* name;
   bool slowest_first = false;
-  bool one_for_all = false;  ///< a single value counts
+  bool one_for_all = false;    ///< a single value counts
+  bool is_ambiguous = false;   ///< it may mean a number of cells: of the dataset alone, and never its extents
+  bool is_convention = false;  ///< of programs, and not of a format: said
 };
 
-constexpr std::array kSpacings{PlainName{"spacing", false, true},   PlainName{"Spacing", false, true},
-                               PlainName{"SPACING", false, true},   PlainName{"voxel_size", false, true},
-                               PlainName{"VoxelSize", false, true}, PlainName{"voxelsize", false, true},
-                               PlainName{"element_size_um", true},  PlainName{"resolution", true}};
+constexpr std::array kSpacings{PlainName{"spacing", false, true},
+                               PlainName{"Spacing", false, true},
+                               PlainName{"SPACING", false, true},
+                               PlainName{"voxel_size", false, true, false, true},
+                               PlainName{"VoxelSize", false, true, false, true},
+                               PlainName{"voxelsize", false, true, false, true},
+                               PlainName{"element_size_um", true, false, false, true},
+                               PlainName{"resolution", true, false, true, true}};
 constexpr std::array kOrigins{PlainName{"origin"}, PlainName{"Origin"}, PlainName{"ORIGIN"}, PlainName{"offset", true}};
 
-// Slowest first.
-std::optional<std::array<double, 3>> found_in(hid_t object, std::span<const PlainName> names) {
+struct FoundPlace {
+  Triple values;
+  const char* name;
+};
+
+bool are_extents(Triple values, std::span<const AxisPlace> axes) {
+  const auto is_extent = [](double value, const AxisPlace& axis) { return value == static_cast<double>(axis.extent); };
+  const bool in_order = std::equal(values.begin(), values.end(), axes.begin(), is_extent);
+  std::reverse(values.begin(), values.end());
+  return in_order || std::equal(values.begin(), values.end(), axes.begin(), is_extent);
+}
+
+std::optional<FoundPlace> found_in(hid_t object, bool is_dataset, std::span<const PlainName> names,
+                                   std::span<const AxisPlace> axes) {
   for (const PlainName& candidate : names) {
+    if (candidate.is_ambiguous && !is_dataset) continue;
     const std::vector<double> values = number_attribute(object, candidate.name);
-    if (values.size() == 1 && candidate.one_for_all) return std::array{values[0], values[0], values[0]};
+    if (values.size() == 1 && candidate.one_for_all)
+      return FoundPlace{{values[0], values[0], values[0]}, candidate.name};
     if (values.size() != 3) continue;
-    std::array<double, 3> ordered{values[0], values[1], values[2]};
+    Triple ordered{values[0], values[1], values[2]};
+    if (candidate.is_ambiguous && are_extents(ordered, axes)) continue;
     if (!candidate.slowest_first) std::reverse(ordered.begin(), ordered.end());
-    return ordered;
+    return FoundPlace{ordered, candidate.name};
   }
   return std::nullopt;
 }
 
-void fill(hid_t dataset, std::span<const Hdf5Handle> groups, std::span<const PlainName> names,
-          std::span<AxisPlace> axes, std::optional<double> AxisPlace::*member) {
-  auto values = found_in(dataset, names);
-  for (std::size_t i = 0; i < groups.size() && !values; ++i) values = found_in(groups[i].get(), names);
-  if (!values) return;
-  for (std::size_t i = 0; i < 3; ++i) {
-    auto& place = axes[i].*member;
-    if (!place && !axes[i].is_time) place = (*values)[i];
+void fill_places(hid_t dataset, std::span<const Hdf5Handle> groups, std::span<const PlainName> names,
+                 std::span<AxisPlace> axes, PlacedMember place, SourceMember from) {
+  auto found = found_in(dataset, true, names, axes);
+  std::string where;
+  for (std::size_t i = 0; i < groups.size() && !found; ++i) {
+    found = found_in(groups[i].get(), false, names, axes);
+    where = " of a group around it";
+  }
+  if (!found) return;
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    // A note says that the coordinates are others, or taken as indices.
+    if (axes[i].*place || axes[i].is_time || !axes[i].note.empty()) continue;
+    axes[i].*place = found->values.at(i);
+    axes[i].*from = cat("attribute ", found->name, where);
   }
 }
 
@@ -52,8 +84,19 @@ void fill(hid_t dataset, std::span<const Hdf5Handle> groups, std::span<const Pla
 
 void place_by_attributes(hid_t dataset, std::span<const Hdf5Handle> groups, std::span<AxisPlace> axes) {
   if (axes.size() < 3) return;
-  fill(dataset, groups, kSpacings, axes.last(3), &AxisPlace::spacing);
-  fill(dataset, groups, kOrigins, axes.last(3), &AxisPlace::origin);
+  fill_places(dataset, groups, kSpacings, axes.last(3), &AxisPlace::spacing, &AxisPlace::spacing_from);
+  fill_places(dataset, groups, kOrigins, axes.last(3), &AxisPlace::origin, &AxisPlace::origin_from);
+}
+
+std::string plain_spacing_note(std::span<const AxisPlace> axes) {
+  for (const AxisPlace& axis : axes) {
+    for (const PlainName& name : kSpacings) {
+      const std::string from = cat("attribute ", name.name);
+      if (!name.is_convention || (axis.spacing_from != from && !axis.spacing_from.starts_with(from + ' '))) continue;
+      return cat("its spacing is that of the ", axis.spacing_from, "; --spacing sets another");
+    }
+  }
+  return "";
 }
 
 }  // namespace weir

@@ -11,6 +11,7 @@
 #include "ingest/source/unit_text.h"
 #include "ingest/source/unsigned_meaning.h"
 #include "ingest/values/decode_values.h"
+#include "ingest/values/value_notes.h"
 
 namespace weir {
 namespace {
@@ -81,10 +82,8 @@ std::string missing_obstacle(hid_t object, const char* name, std::size_t values)
 }
 
 std::string unused_attribute(hid_t object) {
-  for (const char* name : {"valid_range", "valid_min", "valid_max"}) {
-    if (has_attribute(object, name)) {
-      return cat("its attribute ", name, " is not applied: values outside it count as data");
-    }
+  for (const char* name : kValidAttributes) {
+    if (has_attribute(object, name)) return not_applied_note(name);
   }
   return "";
 }
@@ -106,9 +105,12 @@ ValueMeaning value_meaning(hid_t object, const StoredType& type, std::span<const
   const bool meant_otherwise = !unsigned_text(object).empty();
   for (const char* name : {"_FillValue", "missing_value"}) {
     const std::vector<StoredValue> values = stored_value_attribute(object, name);
+    std::string unheld;
     for (const StoredValue& value : values) {
       meaning.mapping.missing.push_back(meant_otherwise ? as_meant(value, type.scalar) : value);
+      if (unheld.empty()) unheld = unheld_note(name, meaning.mapping.missing.back(), type.scalar);
     }
+    add_note(unheld, meaning.note);
     const std::string obstacle = missing_obstacle(object, name, values.size());
     if (!obstacle.empty()) meaning.obstacle = obstacle;
   }
@@ -127,7 +129,7 @@ ValueMeaning value_meaning(hid_t object, const StoredType& type, std::span<const
     if (meaning.units.empty() && !texts.empty()) meaning.units = unit_text(texts[0]);
   }
   meaning.unit_si = openpmd_unit_si(object);
-  meaning.note = unused_attribute(object);
+  add_note(unused_attribute(object), meaning.note);
   return meaning;
 }
 

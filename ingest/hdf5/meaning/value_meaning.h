@@ -20,7 +20,7 @@ struct ValueMeaning {
   std::optional<double> unit_si;  ///< of openPMD
   std::string obstacle;           ///< an attribute that makes the values unclear; else empty
   bool unpacks = true;            ///< scale and offset are clear
-  std::string note;               ///< an attribute that nothing is made of; else empty
+  std::string note;               ///< attributes that nothing is made of; else empty
 };
 
 /// `type`, or of integers whose attribute _Unsigned says that they are unsigned ones (NetCDF-3 had none), or not

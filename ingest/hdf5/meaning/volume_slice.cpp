@@ -1,11 +1,10 @@
 #include "ingest/hdf5/meaning/volume_slice.h"
 
 #include <algorithm>
-#include <string_view>
 
 #include "format/base/error.h"
 #include "format/base/text.h"
-#include "ingest/hdf5/meaning/component_axis.h"
+#include "ingest/axes/component_axis.h"
 
 namespace weir {
 namespace {
@@ -36,37 +35,6 @@ void place(std::span<const AxisPlace> axes, VolumeSlice& slice) {
   }
 }
 
-// "0 to 2, x, y, z or magnitude"
-std::string choices_text(std::int64_t count) {
-  const std::string_view names = count == 2 ? ", x, y" : count == 3 ? ", x, y, z" : "";
-  return cat("0 to ", count - 1, names, " or magnitude");
-}
-
-// Of the axes of `component`, or none. `positions` are those of --index.
-ComponentAxis chosen_axis(std::span<const AxisPlace> axes, std::size_t positions, const std::string& where,
-                          const std::optional<ComponentChoice>& component) {
-  const auto its_axes = [&] { return cat(where, ": its axes are ", axes_text(axes)); };
-  ComponentAxis vectors = component ? asked_component_axis(axes) : component_axis(axes);
-  if (vectors.leading && axis_roles(axes).interleaved()) vectors = {};
-  if (!component) {
-    if (!vectors.found() || positions == axes.size() - kVolumeRank) return {};
-    throw Error(ErrorKind::usage,
-                compose(its_axes(), ", the last of them of components (", vectors.evidence, "); give ",
-                        option("component"), ": ", choices_text(vectors.count), "; or ", option("index"), " with ",
-                        axes.size() - kVolumeRank, axes.size() == kVolumeRank + 1 ? " position" : " positions",
-                        " for volumes of ", axes.back().extent, " voxels along x"));
-  }
-  if (!vectors.found()) {
-    throw Error(ErrorKind::usage,
-                compose(its_axes(), ", none of them of components; leave ", option("component"), " out"));
-  }
-  if (!component->magnitude && component->position >= vectors.count) {
-    throw Error(ErrorKind::usage, compose(its_axes(), ", and ", option("component"), " is ", component->position,
-                                          "; give ", choices_text(vectors.count)));
-  }
-  return vectors;
-}
-
 }  // namespace
 
 std::size_t leading_axes(std::span<const AxisPlace> axes) {
@@ -79,7 +47,9 @@ std::size_t leading_axes(std::span<const AxisPlace> axes) {
 VolumeSlice volume_slice(std::span<const AxisPlace> all_axes, const std::vector<std::int64_t>& index,
                          const std::string& where, const std::optional<ComponentChoice>& component) {
   VolumeSlice slice;
-  const ComponentAxis vectors = chosen_axis(all_axes, index.size(), where, component);
+  const std::string said = cat(where, ": its axes are ", axes_text(all_axes));
+  const bool behind = !axis_roles(all_axes).interleaved();
+  const ComponentAxis vectors = chosen_component_axis(all_axes, index.size(), said, component, behind);
   const auto axes = all_axes.first(all_axes.size() - (vectors.found() && !vectors.leading ? 1 : 0));
   slice.roles = axis_roles(axes);
   std::vector<std::size_t>& others = slice.roles.others;
@@ -89,7 +59,7 @@ VolumeSlice volume_slice(std::span<const AxisPlace> all_axes, const std::vector<
         others.empty() ? compose("leave ", option("index"), " out")
                        : compose("give ", option("index"), " with ", others.size(),
                                  others.size() == 1 ? " position: " : " positions: ", ranges_text(axes, others));
-    return Error(ErrorKind::usage, compose(where, ": its axes are ", axes_text(all_axes), found, "; ", remedy));
+    return Error(ErrorKind::usage, compose(said, found, "; ", remedy));
   };
   const bool single = have_one_element_each(axes, others);
   slice.index = index.empty() && single ? std::vector<std::int64_t>(others.size(), 0) : index;

@@ -24,6 +24,8 @@ void place_by_level(const FoundLevel& found, ArrayAxes& axes) {
   for (std::size_t axis = 0; axis < rank; ++axis) {
     axes.places[axis].spacing = fits ? level.scale[axis] : 1.0;
     axes.places[axis].origin = fits ? level.translation[axis] : 0.0;
+    axes.places[axis].spacing_from = cat("coordinateTransformations in ", found.image.document);
+    axes.places[axis].origin_from = axes.places[axis].spacing_from;
   }
   if (!level.placed || (!fits && !level.scale.empty())) {
     axes.note = cat("its coordinateTransformations are others than scale and translation by ",

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <span>
 #include <utility>
 
 #include "format/base/error.h"
@@ -13,7 +14,9 @@ namespace weir {
 namespace {
 
 constexpr std::size_t kSpaceRank = 3;
-std::string shape_obstacle(const ZarrArray& array, const ArrayAxes& axes) {
+
+std::string shape_obstacle(const ZarrArray& array, const ArrayMeaning& meaning) {
+  const ArrayAxes& axes = meaning.axes;
   const std::size_t rank = array.shape.size();
   if (rank < kSpaceRank) {
     return rank == 0 ? "a single value; a volume has three axes"
@@ -21,48 +24,65 @@ std::string shape_obstacle(const ZarrArray& array, const ArrayAxes& axes) {
   }
   if (std::count(array.shape.begin(), array.shape.end(), 0) > 0) return cat("empty: ", axes.text());
   const auto is_other = [](const std::string& type) { return !type.empty() && type != "space" && type != "time"; };
-  const auto others = std::count_if(axes.types.end() - kSpaceRank, axes.types.end(), is_other);
+  const std::size_t end = meaning.end_of_space();
+  const auto types = std::span(axes.types).first(end).last(kSpaceRank);
+  const auto others = std::count_if(types.begin(), types.end(), is_other);
   if (others == 0) {
-    return extent_obstacle({array.shape[rank - 1], array.shape[rank - 2], array.shape[rank - 3]},
-                           scalar_bytes(array.type));
+    const std::size_t numbers = end == rank ? 1 : static_cast<std::size_t>(array.shape.back());
+    return extent_obstacle({array.shape[end - 1], array.shape[end - 2], array.shape[end - 3]},
+                           numbers * scalar_bytes(array.type));
   }
   return cat(static_cast<std::int64_t>(kSpaceRank) - others, " axes of space at its end (", axes.text(),
              "); a volume has three");
 }
 
 // A series of planes looks like a volume, and its steps of time like a spacing.
-std::string time_obstacle(const ArrayAxes& axes) {
-  const auto times = std::count_if(axes.places.end() - kSpaceRank, axes.places.end(),
-                                   [](const AxisPlace& axis) { return axis.is_time; });
+std::string time_obstacle(const ArrayMeaning& meaning) {
+  const VolumeAxes of_space = meaning.volume_axes();
+  const auto times =
+      std::count_if(of_space.begin(), of_space.end(), [](const AxisPlace* axis) { return axis->is_time; });
   if (times == 0) return {};
-  return cat(static_cast<std::int64_t>(kSpaceRank) - times, " axes of space and a time at its end (", axes.text(),
-             "); a volume has three of space");
+  return cat(static_cast<std::int64_t>(kSpaceRank) - times, " axes of space and a time at its end (",
+             meaning.axes.text(), "); a volume has three of space");
+}
+
+void find_obstacle(const ZarrArray& array, ArrayMeaning& meaning) {
+  meaning.over_time = false;
+  meaning.obstacle = shape_obstacle(array, meaning);
+  if (meaning.obstacle.empty()) meaning.obstacle = meaning.values.obstacle;
+  if (!meaning.obstacle.empty()) return;
+  meaning.obstacle = time_obstacle(meaning);
+  meaning.over_time = !meaning.obstacle.empty();
 }
 
 }  // namespace
 
 std::vector<LeadingAxis> ArrayMeaning::leading() const {
   std::vector<LeadingAxis> leading;
-  for (std::size_t axis = 0; axis + kSpaceRank < axes.places.size(); ++axis) {
+  const std::size_t behind = kSpaceRank + (components.leading ? 1 : 0);
+  for (std::size_t axis = 0; axis + behind < end_of_space(); ++axis) {
     leading.push_back({axes.places[axis].label, axes.places[axis].extent});
   }
   return leading;
 }
 
 VolumeAxes ArrayMeaning::volume_axes() const {
-  const std::size_t rank = axes.places.size();
-  return {&axes.places[rank - 1], &axes.places[rank - 2], &axes.places[rank - 3]};
+  const std::size_t end = end_of_space();
+  return {&axes.places[end - 1], &axes.places[end - 2], &axes.places[end - 3]};
 }
 
 ArrayMeaning array_meaning(const ZarrArray& array, ArrayAxes axes) {
-  ArrayMeaning meaning{std::move(axes), {}, array_values(array), {}, false};
-  meaning.obstacle = shape_obstacle(array, meaning.axes);
-  if (meaning.obstacle.empty()) meaning.obstacle = meaning.values.obstacle;
-  if (meaning.obstacle.empty()) {
-    meaning.obstacle = time_obstacle(meaning.axes);
-    meaning.over_time = !meaning.obstacle.empty();
-  }
+  ArrayMeaning meaning{std::move(axes), {}, array_values(array), {}, {}, false};
+  meaning.components = component_axis(meaning.axes.places);
+  find_obstacle(array, meaning);
   return meaning;
+}
+
+void choose_component(const ZarrArray& array, const std::optional<ComponentChoice>& choice, std::size_t positions,
+                      const std::string& where, ArrayMeaning& meaning) {
+  const std::string said = cat(where, ": its axes are ", meaning.axes.text());
+  meaning.components = chosen_component_axis(meaning.axes.places, positions, said, choice);
+  find_obstacle(array, meaning);
 }
 
 std::vector<std::int64_t> checked_index(const ArrayMeaning& meaning, const std::vector<std::int64_t>& index,
@@ -115,11 +135,14 @@ void describe_volume(const ZarrArray& array, const ArrayMeaning& meaning, const 
   info.mapping = meaning.values.mapping;
   info.units = meaning.values.units;
   info.details.long_name = meaning.values.long_name;
+  info.details.values_note = meaning.values.note;
   describe_axes(axes, info.details);
   for (std::size_t i = 0; i < kSpaceRank; ++i) {
     info.spacing.at(i) = axes.at(i)->spacing.value_or(1.0);
     info.origin.at(i) = axes.at(i)->origin.value_or(0.0);
     info.axis_labels.at(i) = axes.at(i)->label;
+    info.spacing_from.at(i) = axes.at(i)->spacing_from;
+    info.origin_from.at(i) = axes.at(i)->origin_from;
     if (!meaning.axes.note.empty()) info.details.axes.at(i).note = meaning.axes.note;
   }
   info.details.time = time_of(meaning, index);

@@ -9,6 +9,7 @@
 #include "format/base/text.h"
 #include "ingest/source/unit_text.h"
 #include "ingest/source/unsigned_meaning.h"
+#include "ingest/values/value_notes.h"
 #include "ingest/zarr/codecs/library_codecs.h"
 #include "ingest/zarr/meaning/zarr_nodes.h"
 #include "ingest/zarr/metadata/fill_value.h"
@@ -64,15 +65,23 @@ std::string not_numbers(const nlohmann::json& attributes, const char* name, cons
              ", so which voxels hold no data is unknown; correct or remove it");
 }
 
+std::string unused_attribute(const nlohmann::json& attributes) {
+  for (const char* const name : kValidAttributes) {
+    if (!json_member(attributes, name).is_null()) return not_applied_note(name);
+  }
+  return "";
+}
+
 // By the conventions of CF (8.1 and 2.5.1), as xarray writes them.
 void read_attributes(const ZarrArray& array, ArrayValues& read) {
   const nlohmann::json& attributes = array.attributes;
   const bool meant_otherwise = !unsigned_text(attributes).empty();
   read.mapping.scale = packing(attributes, "scale_factor", 1.0, read.obstacle);
   read.mapping.offset = packing(attributes, "add_offset", 0.0, read.obstacle);
-  const auto add_missing = [&](const StoredValue& stored) {
+  const auto add_missing = [&](const StoredValue& stored, const char* name) {
     const StoredValue value = meant_otherwise ? as_meant(stored, array.type) : stored;
     if (holds(array.type, value)) read.mapping.missing.push_back(value);
+    return unheld_note(name, value, array.type);
   };
   for (const char* const name : {"missing_value", "_FillValue"}) {
     std::vector<nlohmann::json> others;
@@ -83,9 +92,15 @@ void read_attributes(const ZarrArray& array, ArrayValues& read) {
       continue;
     }
     if (!others.empty()) read.obstacle = not_numbers(attributes, name, others.front());
-    for (const StoredValue& stored : values) add_missing(stored);
+    std::string unheld;
+    for (const StoredValue& stored : values) {
+      const std::string note = add_missing(stored, name);
+      if (unheld.empty()) unheld = note;
+    }
+    add_note(unheld, read.note);
   }
-  if (array.missing_fill) add_missing(*array.missing_fill);
+  if (array.missing_fill) add_missing(*array.missing_fill, "fill_value");
+  add_note(unused_attribute(attributes), read.note);
   read.units = unit_text(json_string(attributes, "units"));
   read.long_name = json_string(attributes, "long_name");
 }

@@ -12,6 +12,7 @@ struct ArrayValues {
   ValueMapping mapping;  ///< by the attributes scale_factor, add_offset, missing_value and _FillValue
   std::string units;     ///< by the attribute units
   std::string long_name;
+  std::string note;      ///< attributes that nothing is made of; else empty
   std::string obstacle;  ///< why they cannot be read, or what they mean is unknown; else empty
 };
 

@@ -91,7 +91,10 @@ const std::vector<Multiscale>& LevelFinder::images_of(const std::string& group) 
   const auto known = images_.find(group);
   if (known != images_.end()) return known->second;
   const auto node = zarr_node(store_, group);
-  return images_[group] = node && !node->array ? multiscales_in(node->attributes) : std::vector<Multiscale>();
+  std::vector<Multiscale>& images = images_[group];
+  if (node && !node->array) images = multiscales_in(node->attributes);
+  for (Multiscale& image : images) image.document = joined_key(group, node->version == 2 ? ".zattrs" : "zarr.json");
+  return images;
 }
 
 std::optional<FoundLevel> LevelFinder::find(const std::string& key) {

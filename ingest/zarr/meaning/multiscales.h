@@ -31,6 +31,7 @@ struct ScaleLevel {
 struct Multiscale {
   std::vector<ScaleAxis> axes;
   std::vector<ScaleLevel> levels;  ///< the finest first
+  std::string document = {};       ///< key of the document that says it, ".zattrs"
 };
 
 /// The images that the attributes of a group describe, transformations of all levels applied. What is no such list is

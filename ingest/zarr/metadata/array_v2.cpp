@@ -61,7 +61,11 @@ ZarrFilter read_shuffle(const nlohmann::json& filter, const std::string& where) 
 
 void read_filters(const nlohmann::json& filters, ZarrArray& array, const std::string& where) {
   constexpr std::size_t kMostFilters = 16;
-  if (!filters.is_array()) return;
+  if (filters.is_null()) return;
+  if (!filters.is_array()) {
+    throw input_error(where,
+                      cat("filters is ", json_text(filters), ", and must be null or a list; the file is damaged"));
+  }
   if (filters.size() > kMostFilters) {
     throw input_error(where,
                       cat("has ", filters.size(), " filters, more than ", kMostFilters, "; the file is damaged"));

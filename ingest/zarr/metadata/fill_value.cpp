@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <charconv>
-#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -13,31 +12,11 @@
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "ingest/source/stored_value.h"
+#include "ingest/values/half_values.h"
 #include "ingest/zarr/metadata/zarr_json.h"
 
 namespace weir {
 namespace {
-
-/// The IEEE half nearest to `value`, which one holds.
-std::uint16_t half_bits(double value) {
-  constexpr int kFractionBits = 10;
-  constexpr int kLeastExponent = -14;
-  const auto sign = static_cast<std::uint16_t>(std::signbit(value) ? 0x8000 : 0);
-  if (std::isnan(value)) return 0x7E00;
-  if (std::isinf(value)) return sign | 0x7C00;
-  const double size = std::fabs(value);
-  const int exponent = size == 0 ? kLeastExponent : std::max(std::ilogb(size), kLeastExponent);
-  // The leading bit of a normal number adds the one that is missing in the exponent.
-  const int fraction = static_cast<int>(std::nearbyint(std::ldexp(size, kFractionBits - exponent)));
-  return static_cast<std::uint16_t>(sign | (((exponent - kLeastExponent) << kFractionBits) + fraction));
-}
-
-/// The bfloat16 nearest to `value`, ties to even.
-std::uint16_t bfloat16_bits(double value) {
-  if (std::isnan(value)) return 0x7FC0;
-  const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(value));
-  return static_cast<std::uint16_t>((bits + 0x7FFFU + (bits >> 16U & 1U)) >> 16U);
-}
 
 template <typename T>
 std::vector<std::byte> bytes_of(T value) {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,19 +20,21 @@ struct ChunkPlace {
   std::vector<std::int64_t> corner;  ///< its first element
 };
 
-/// The three last axes of an array, at one position on each of those before.
+/// Three axes of an array, at one position on each of those before, and on the one behind, where there is one: the last
+/// three, or those before an axis of components.
 class ChunkGeometry {
  public:
-  /// `index` has a position for each axis before the last three, all inside. Throws Error(input), beginning with
-  /// `where`, where a chunk has more bytes than any should.
-  ChunkGeometry(const ZarrArray& array, const std::vector<std::int64_t>& index, const std::string& where);
+  /// `index` has a position for each axis before the three, `behind` that on the last axis of an array that has one
+  /// more, all inside. Throws Error(input), beginning with `where`, where a chunk has more bytes than any should.
+  ChunkGeometry(const ZarrArray& array, const std::vector<std::int64_t>& index, const std::string& where,
+                std::optional<std::int64_t> behind = {});
 
   const Index3& extent() const { return extent_; }
   /// Voxels of what is decoded alone.
   const Index3& unit() const { return unit_; }
   /// Of it, all axes.
   const ChunkShape& unit_shape() const { return unit_shape_; }
-  /// Byte of the volume's first voxel in a decoded chunk that is several thick along axes before the last three.
+  /// Byte of the volume's first voxel in a decoded chunk that is several thick along axes before the three.
   std::size_t first_byte() const { return first_byte_; }
   /// Stored objects that the volume touches, along x, y, z.
   const Index3& objects() const { return objects_; }
@@ -54,10 +57,15 @@ class ChunkGeometry {
   std::vector<std::int64_t> object_position(const Index3& object) const;
 
  private:
+  Index3 of_space(const std::vector<std::int64_t>& elements) const;
+  /// The first element, on all axes, of the chunk at `chunk`, with the positions on axes that are not of space.
+  std::vector<std::int64_t> element_of(const Index3& chunk) const;
+
   std::vector<std::int64_t> chunk_;               ///< elements of an object
   std::vector<std::int64_t> units_;               ///< elements of what is decoded alone
   std::vector<std::vector<std::int64_t>> inner_;  ///< elements of the chunks in shards of each level
   std::vector<std::int64_t> index_;
+  std::optional<std::int64_t> behind_;
   ChunkShape unit_shape_;
   Index3 extent_;
   Index3 unit_;

@@ -139,13 +139,18 @@ std::optional<std::size_t> ZarrChunks::fetch(const ChunkPlace& place, std::span<
 }
 
 std::span<const std::byte> ZarrChunks::decode(const Index3& chunk, ChunkScratch& scratch) {
+  const std::span<const std::byte> bytes = decode_whole(chunk, scratch);
+  return bytes.empty() ? bytes : bytes.subspan(geometry_.first_byte());
+}
+
+std::span<const std::byte> ZarrChunks::decode_whole(const Index3& chunk, ChunkScratch& scratch) {
   if (!scan_.has(geometry_, geometry_.object_of(chunk))) return {};
   const ChunkPlace place = geometry_.place_of(chunk);
   const auto bytes = fetch(place, scratch.buffer.bytes());
   if (!bytes) return {};
   bytes_read_ += *bytes;
   try {
-    return decode_chunk(array_.values(), geometry_.unit_shape(), *bytes, scratch).subspan(geometry_.first_byte());
+    return decode_chunk(array_.values(), geometry_.unit_shape(), *bytes, scratch);
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::input) throw;
     throw wrong_chunk(place, error.message());

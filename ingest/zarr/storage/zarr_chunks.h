@@ -36,6 +36,7 @@ class ZarrChunks final : public StoredChunks {
              const std::atomic<bool>* cancel);
 
   const ObjectScan& scan() const { return scan_; }
+  const ChunkGeometry& geometry() const { return geometry_; }
   std::string key_by_other_separator() const { return weir::key_by_other_separator(objects_, geometry_, scan_); }
   /// Counts those that `voxels` touch: reads the index of every shard with such. Throws what decode throws of an index.
   UnstoredChunks count_unstored(const Box& voxels);
@@ -45,6 +46,8 @@ class ZarrChunks final : public StoredChunks {
   /// Throws Error(input), naming the object and the chunk's first element, where it is larger than it can be, damaged,
   /// not there any more or was changed since the scan.
   std::span<const std::byte> decode(const Index3& chunk, ChunkScratch& scratch) override;
+  /// The same with what lies before the volume's first voxel in a chunk that is several thick along other axes.
+  std::span<const std::byte> decode_whole(const Index3& chunk, ChunkScratch& scratch);
 
  private:
   /// Throws where it was changed or is not there any more.

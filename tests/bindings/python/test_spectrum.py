@@ -16,11 +16,11 @@ def spectra(source, decoded, spacing):
     hann = [numpy.sin(numpy.pi * (numpy.arange(n) + 0.5) / n) ** 2 for n in shape]
     window = hann[0][:, None, None] * hann[1][None, :, None] * hann[2][None, None, :]
     numbers = numpy.meshgrid(*(numpy.fft.fftfreq(n, h) for n, h in zip(shape, steps)), indexing="ij")
-    width = max(1 / (n * h) for n, h in zip(shape, steps) if n > 1)
+    width = min(1 / (n * h) for n, h in zip(shape, steps) if n > 1)
     shell = numpy.maximum(numpy.rint(numpy.sqrt(sum(part**2 for part in numbers)) / width).astype(int), 1)
     powers = numpy.zeros((3, shell.max() + 1))
     count = 0
-    begins = [range(0, n - m + 1, max(m // 2, 1)) for n, m in zip(source.shape, shape)]
+    begins = [sorted({*range(0, n - m + 1, max(m // 2, 1)), n - m}) for n, m in zip(source.shape, shape)]
     for corner in numpy.array(numpy.meshgrid(*begins)).reshape(3, -1).T:
         box = tuple(slice(at, at + n) for at, n in zip(corner, shape))
         for number, values in enumerate((source[box], decoded[box], decoded[box] - source[box])):
@@ -29,7 +29,9 @@ def spectra(source, decoded, spacing):
             power[0, 0, 0] = 0
             powers[number] += numpy.bincount(shell.ravel(), power.ravel()) / (values.size * (window**2).sum())
         count += 1
-    return numpy.arange(powers.shape[1]) * width, powers / count, count
+    shell[0, 0, 0] = 0
+    taken = numpy.unique(shell)[1:]
+    return taken * width, powers[:, taken] / count, count
 
 
 class Spectrum(FolderTest):
@@ -39,19 +41,19 @@ class Spectrum(FolderTest):
         values = numpy.sin(x * 0.3 + y * 0.2) * 4 + random.standard_normal(x.shape) * 0.1 + 20
         name = self.folder / "a_98x41x70_float32.raw"
         values.astype("<f4").tofile(name)
-        spacing = (0.5, 0.45, 0.75)
+        spacing = (0.5173, 0.45, 0.75)  # no frequency lies between two shells
         weir.convert(name, self.folder / "a.nvdb", spacing=spacing, psnr=40, encoding="packed")
         table = self.folder / "a.csv"
-        compare = ("compare", name, self.folder / "a.nvdb", "--spacing", "0.5,0.45,0.75", "--json")
+        compare = ("compare", name, self.folder / "a.nvdb", "--spacing", "0.5173,0.45,0.75", "--json")
         said = json.loads(run_weir(*compare, "--spectrum", table))["spectrum"]
         source = values.astype(numpy.float32).astype(numpy.float64)
         decoded = weir.open(self.folder / "a.nvdb").to_numpy().astype(numpy.float64)
         numbers, powers, count = spectra(source, decoded, spacing)
         self.assertEqual(said["block"], [64, 41, 64])
         self.assertEqual((said["blocks"], said["left_out"]), (count, 0))
-        numpy.testing.assert_allclose(said["wave_number"], numbers[1:], rtol=1e-12)
+        numpy.testing.assert_allclose(said["wave_number"], numbers, rtol=1e-12)
         for key, power in zip(("source", "decoded", "error"), powers):
-            numpy.testing.assert_allclose(said[key], power[1:], rtol=1e-6, atol=1e-15)
+            numpy.testing.assert_allclose(said[key], power, rtol=1e-6, atol=1e-15)
         with open(table, encoding="utf-8") as lines:
             rows = list(csv.DictReader(lines))
         self.assertEqual(list(rows[0]), ["wave_number", "modes", "source", "decoded", "error"])

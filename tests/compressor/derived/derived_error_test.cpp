@@ -90,6 +90,22 @@ TEST_F(DerivedError, VoxelsBesideOnesThatAreNotFiniteAreLeftOut) {
   EXPECT_NEAR(*all.similarity.mean, 1, 1e-12);
 }
 
+// Begins at 0 and at 3 along each axis: 7 of the 8 windows have a voxel of index 8 or above.
+TEST_F(DerivedError, WindowsReachTheUpperFaces) {
+  for (const Index3& lo : {Index3{0, 0, 0}, Index3{-5, 3, 6}}) {
+    const Field kept = [&](const Index3& i) {
+      const Index3 at = i - lo;
+      return std::max({at.x, at.y, at.z}) >= 8 ? -wave(i) : wave(i);
+    };
+    const DerivedErrors all = of({lo, lo + Index3{11, 11, 11}}, wave, kept);
+    EXPECT_EQ(all.similarity.windows, 8U);
+    EXPECT_LT(*all.similarity.mean, 0.9);
+    EXPECT_GT(*all.similarity.mean, -0.75);  // that of the lowest one is 1
+  }
+  EXPECT_EQ(of({{0, 0, 0}, {8, 12, 5}}, wave, wave).similarity.windows, 2U);
+  EXPECT_EQ(of({{0, 0, 0}, {9, 13, 21}}, wave, wave).similarity.windows, 2U * 3 * 5);
+}
+
 TEST_F(DerivedError, DependsNeitherOnBlocksNorOnThreads) {
   const Box domain{{-3, 0, 5}, {140, 37, 60}};
   const Field kept = [](const Index3& i) { return wave(i) + 0.01F * static_cast<float>((i.x * 7 + i.y * i.z) % 11); };

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <span>
 #include <vector>
 
 #include "compressor/forecast/sampled_source.h"
@@ -41,6 +43,34 @@ TEST_F(SampleCopyTest, HoldsTheValuesOfTheSample) {
     EXPECT_EQ(values, expected);
   }
   EXPECT_TRUE(list_directory(directory_.path()).empty());
+}
+
+/// Says of each read that it rounded one value by an eighth.
+class RoundedVolume final : public VolumeSource {
+ public:
+  explicit RoundedVolume(VolumeSource& source) : source_(source) {}
+  const SourceInfo& info() const override { return source_.info(); }
+  AccessShape access() const override { return source_.access(); }
+  ConversionLoss read(const Box& box, std::span<float> values) override {
+    source_.read(box, values);
+    ++reads_;
+    return {1, 0, 0.125};
+  }
+  std::uint64_t bytes_read() const override { return source_.bytes_read(); }
+  std::uint64_t reads() const { return reads_; }
+
+ private:
+  VolumeSource& source_;
+  std::atomic<std::uint64_t> reads_{0};
+};
+
+TEST_F(SampleCopyTest, KnowsWhatItsValuesLost) {
+  RoundedVolume rounded(volume_);
+  SampledSource sample(rounded, plan_);
+  const SampleCopy copy(sample, file(), 1 << 20U, nullptr);
+  EXPECT_GT(rounded.reads(), 0U);
+  EXPECT_EQ(copy.copied_loss().inexact, rounded.reads());
+  EXPECT_EQ(copy.copied_loss().max_abs_error, 0.125);
 }
 
 TEST_F(SampleCopyTest, PartsOfTheSample_AreReadFromIt) {

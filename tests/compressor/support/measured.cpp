@@ -58,8 +58,12 @@ void expect_certificate(const Converted& converted, const Measured& measured) {
   }
   EXPECT_EQ(error.lossless, measured.lossless);
   const double range = static_cast<double>(measured.max) - static_cast<double>(measured.min);
-  EXPECT_EQ(sidecar.value_range[0], static_cast<double>(measured.min));
-  EXPECT_EQ(sidecar.value_range[1], static_cast<double>(measured.max));
+  if (measured.finite > 0) {
+    EXPECT_EQ(sidecar.value_range[0], static_cast<double>(measured.min));
+    EXPECT_EQ(sidecar.value_range[1], static_cast<double>(measured.max));
+  } else {
+    EXPECT_TRUE(std::isnan(sidecar.value_range[0]) && std::isnan(sidecar.value_range[1]));
+  }
   EXPECT_EQ(error.psnr_db.has_value(), measured.mse > 0 && range > 0);
   if (error.psnr_db) {
     EXPECT_NEAR(*error.psnr_db, 20 * std::log10(range) - 10 * std::log10(measured.mse), 1e-9);

@@ -110,7 +110,18 @@ TEST_F(CompareLossless, NonFiniteVoxels) {
   EXPECT_EQ(c.different, 2U);
   EXPECT_EQ(c.nonfinite_different, 1U);
   EXPECT_EQ(c.error.max_abs, 2.0);
-  EXPECT_EQ(c.error.mse, 4.0 / 727);
+  EXPECT_EQ(c.error.mse, 4.0 / 726);  // over those finite on both sides
+  EXPECT_FALSE(c.error.lossless);
+}
+
+TEST_F(CompareLossless, FileThatIsFiniteNowhere_HasNoErrorAndIsNotLossless) {
+  convert_domain({{0, 0, 0}, {9, 9, 9}}, [](const Index3&) { return kNaN; });
+  std::map<std::int64_t, float> changes;
+  for (std::int64_t i = 0; i < domain_.voxels(); ++i) changes[i] = static_cast<float>(i);
+  const Comparison c = compare_with(changes);
+  EXPECT_EQ(c.nonfinite_decoded, 729U);
+  EXPECT_EQ(c.error.mse, 0.0);
+  EXPECT_EQ(c.error.psnr_db, std::nullopt);
   EXPECT_FALSE(c.error.lossless);
 }
 

@@ -37,6 +37,20 @@ TEST(ListenAddress, RefusesMalformedAddresses) {
   }
 }
 
+TEST(ListenAddress, OfAnOption_IsRefusedWithItsName) {
+  const auto refusal = [](const std::string& text) {
+    try {
+      parse_listen_address(text, "--address");
+      return std::string();
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+  };
+  EXPECT_EQ(refusal("foo"), "--address: \"foo\" is no address; write HOST:PORT, as 127.0.0.1:8470 or [::1]:8470");
+  const std::string longest = "unix:/" + std::string(103, 'x');
+  EXPECT_EQ(refusal(longest), cat("--address: ", longest, ": a socket's path has 103 bytes at most"));
+}
+
 TEST(ListenAddress, RecognisesLoopbackHosts) {
   for (const char* host : {"localhost", "127.0.0.1", "127.255.255.255", "::1", "0:0:0:0:0:0:0:1"}) {
     EXPECT_TRUE(is_loopback(host)) << host;

@@ -204,16 +204,18 @@ TEST_F(Config, WrongValuesOfTheService) {
   EXPECT_EQ(service_refusal("port_file = 'a'\ncontrol_socket = 'a'"),
             "1:1: two of state, log, port_file and control_socket are one file, " + (directory_ / "a"));
   EXPECT_EQ(service_refusal("jobs = 0"), "2:8: jobs is 0, it must be from 1 to 1024");
-  EXPECT_EQ(service_refusal("jobs = 1.5"), "2:8: jobs must be a whole number");
+  EXPECT_EQ(service_refusal("jobs = 1.5"), "2:8: jobs is 1.5, it must be a whole number");
+  EXPECT_EQ(service_refusal("history = '90d'"), "2:11: history is \"90d\", it must be a number");
   EXPECT_EQ(service_refusal("nice = -1"), "2:8: nice is -1, it must be from 0 to 19");
   EXPECT_EQ(service_refusal("io_class = 'slow'"),
             "2:12: io_class is \"slow\", it must be one of none, best-effort, idle");
   EXPECT_EQ(service_refusal("log_level = 'loud'"),
             "2:13: log_level is \"loud\", it must be one of trace, debug, info, warn, error, off");
-  const std::string size = " must be a size such as 1073741824, \"64MiB\" or \"1.5GB\"";
-  EXPECT_EQ(service_refusal("memory = 'much'"), "2:10: memory" + size);
-  EXPECT_EQ(service_refusal("bandwidth = -1"), "2:13: bandwidth" + size);
-  EXPECT_EQ(service_refusal("log_size = 1.5"), "2:12: log_size" + size);
+  const std::string size = ", it must be a size such as 1073741824, \"64MiB\" or \"1.5GB\"";
+  EXPECT_EQ(service_refusal("memory = 'much'"), "2:10: memory is \"much\"" + size);
+  EXPECT_EQ(service_refusal("bandwidth = -1"), "2:13: bandwidth is -1" + size);
+  EXPECT_EQ(service_refusal("bandwidth = '10Mb'"), "2:13: bandwidth is \"10Mb\"" + size);
+  EXPECT_EQ(service_refusal("log_size = 1.5"), "2:12: log_size is 1.5" + size);
 }
 
 TEST_F(Config, MemoryTooLittleForAllJobs_IsRefused) {
@@ -245,6 +247,32 @@ TEST_F(Config, ViewerMemory_IsAnEighthWhereThatLeavesEnough) {
       service_refusal("memory = '512MiB'\nviewer_memory = '400MiB'"),
       "2:10: memory is 512.0 MiB, too little for the daemon, viewer_memory = 400.0 MiB and jobs = 1; it must be at "
       "least 528.0 MiB");
+}
+
+TEST_F(Config, NoViewer_HasTheReasonOfItsDefault) {
+  const auto of = [&](const std::string& keys) {
+    return no_viewer_reason(load("[service]\n" + keys + "\n[[watch]]\ndirectory = 'in'\noutput = 'out'\n").service);
+  };
+  EXPECT_EQ(of("memory = '256MiB'"),
+            "memory is 256.0 MiB, and below 1.0 GiB there is none by default; set viewer_memory = \"128MiB\" or give "
+            "more memory");
+  EXPECT_EQ(of("jobs = 14"),
+            "memory is 1.0 GiB, and with a viewer each of 14 jobs would get too little of it; give more memory, or "
+            "fewer jobs");
+  EXPECT_EQ(of("memory = '256MiB'\nviewer_memory = 0"), "viewer_memory is 0 in the configuration");
+}
+
+TEST_F(Config, DeleteAfter_HasNoEffectWhereNothingIsDeleted) {
+  const auto of = [&](const std::string& keys) {
+    return load("[[watch]]\ndirectory = 'in'\noutput = 'out'\n" + keys).watches.front().unused_key();
+  };
+  EXPECT_EQ(of(""), "");
+  EXPECT_EQ(of("source = 'delete-after-verify'\ndelete_after = 60\n"), "");
+  for (const char* given : {"delete_after = 60\n", "delete_after = '10min'\nsource = 'keep'\n"}) {
+    EXPECT_EQ(of(given),
+              "delete_after has no effect, since nothing is deleted; set source = \"delete-after-verify\", or leave it "
+              "out");
+  }
 }
 
 TEST_F(Config, ListeningBeyondLoopback_NeedsAToken) {
@@ -286,9 +314,11 @@ TEST_F(Config, WrongValuesOfAWatch) {
             "4:10: source is \"delete\", it must be one of keep, delete-after-verify");
   EXPECT_EQ(watch_refusal("settle = 0"), "4:10: settle is 0, it must be from 0.01 to 86400");
   EXPECT_EQ(watch_refusal("delete_after = '2y'"),
-            "4:16: delete_after must be a number of seconds or a text such as \"90s\", \"10min\", \"2h\" or \"3d\"");
+            "4:16: delete_after is \"2y\", it must be a number of seconds or a text such as \"90s\", \"10min\", \"2h\" "
+            "or \"3d\"");
   EXPECT_EQ(watch_refusal("delete_after = true"),
-            "4:16: delete_after must be a number of seconds or a text such as \"90s\", \"10min\", \"2h\" or \"3d\"");
+            "4:16: delete_after is true, it must be a number of seconds or a text such as \"90s\", \"10min\", \"2h\" "
+            "or \"3d\"");
   EXPECT_EQ(watch_refusal("settle = '2d'"), "4:10: settle is \"2d\", it must be from 0.01 to 86400 seconds");
   EXPECT_EQ(watch_refusal("recursive = 'yes'"), "4:13: recursive must be true or false");
   EXPECT_EQ(watch_refusal("include = '*.raw'"), "4:11: include must be an array of strings");

@@ -105,7 +105,7 @@ TEST(WatchOptions, SceneThatCannotBeUsed_IsReportedAtItsKeyWithItsOwnPlace) {
   const TemporaryDirectory directory;
   write_file(directory / "s.toml", "[volume]\niso = 'high'\n");
   EXPECT_EQ(refusal("scene = '" + (directory / "s.toml") + "'"),
-            cat("/etc/weir/c.toml:1:9: ", directory / "s.toml", ":2:7: iso must be a number"));
+            cat("/etc/weir/c.toml:1:9: ", directory / "s.toml", ":2:7: iso is \"high\", it must be a number"));
 }
 
 }  // namespace

@@ -334,6 +334,13 @@ TEST_F(JobViewerTest, NoMemory_IsOff_AndAnotherConfigurationEndsTheOldOne) {
   viewer.configure(service(0));
   EXPECT_EQ(viewer.view().state, ViewerState::off);
   EXPECT_EQ(viewer.view().reason, "viewers are off: viewer_memory is 0 in the configuration");
+  ServiceConfig small = service(0);
+  small.memory = std::uint64_t{256} << 20U;
+  small.is_standard_viewer = true;
+  viewer.configure(small);
+  EXPECT_EQ(viewer.view().reason,
+            "no viewer: memory is 256.0 MiB, and below 1.0 GiB there is none by default; set viewer_memory = "
+            "\"128MiB\" or give more memory");
   EXPECT_EQ(viewer.open("/out/s_1.nvdb", false), Opened::off);
   viewer.configure(service());
   viewer.end();

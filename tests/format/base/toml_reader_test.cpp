@@ -51,7 +51,11 @@ TEST(TomlReader, WrongTypeIsRefusedWithLineAndColumn) {
   EXPECT_EQ(refusal<std::vector<std::string>>("a = 'x'", "a"), "f.toml:1:5: a must be an array of strings");
   EXPECT_EQ(refusal<std::vector<std::string>>("a = ['x', 2]", "a"), "f.toml:1:11: a must be an array of strings");
   EXPECT_EQ(refusal<std::string>("a = true", "a"), "f.toml:1:5: a must be a string");
-  EXPECT_EQ(refusal<double>("a = 'x'", "a"), "f.toml:1:5: a must be a number");
+  EXPECT_EQ(refusal<double>("a = 'x'", "a"), "f.toml:1:5: a is \"x\", it must be a number");
+  EXPECT_EQ(refusal<double>("a = true", "a"), "f.toml:1:5: a is true, it must be a number");
+  EXPECT_EQ(refusal<double>("a = [1]", "a"), "f.toml:1:5: a is an array, it must be a number");
+  EXPECT_EQ(refusal<double>("a = {}", "a"), "f.toml:1:5: a is a table, it must be a number");
+  EXPECT_EQ(refusal<double>("a = 1979-05-27", "a"), "f.toml:1:5: a is a date or a time, it must be a number");
 }
 
 TEST(TomlReader, UnknownKeyIsRefusedByName) {

@@ -42,6 +42,20 @@ TEST(WrittenVolume, IsReadWhereItLies) {
   }
 }
 
+TEST(WrittenVolume, IsReadWhateverHasItsPath) {
+  const test::StockNvdb sample(GridType::fpn);
+  const TemporaryDirectory directory;
+  const auto disk = make_posix_file_system();
+  const auto file = disk->create(directory / "a.nvdb.partial");
+  file->write_at(0, sample.file());
+  disk->rename(directory / "a.nvdb.partial", directory / "b.nvdb");
+  EXPECT_EQ(WrittenVolume(*file).grid().value({1, 1, 1}), sample.value({1, 1, 1}));
+  disk->create(directory / "a.nvdb.partial")->write_at(0, std::vector<std::byte>(20));
+  EXPECT_EQ(WrittenVolume(*file).grid().value({1, 1, 1}), sample.value({1, 1, 1}));
+  EXPECT_FALSE(message_of(*disk->open(directory / "a.nvdb.partial")).empty());
+  file->write_at(0, sample.file());  // its descriptor is open still
+}
+
 TEST(WrittenVolume, WhatCannotBeReadBackIsAFaultOfTheDisk) {
   MemoryFileSystem memory;
   const auto file = memory.create("a.nvdb.partial");

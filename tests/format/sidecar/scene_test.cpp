@@ -150,11 +150,11 @@ TEST(Scene, WrongTypes) {
   EXPECT_EQ(message("mode = \"xray\""), "s.toml:1:8: mode is \"xray\", it must be path, dvr, iso or mip");
   EXPECT_EQ(message("camera = 1"), "s.toml:1:10: camera must be a table");
   EXPECT_EQ(message("light = 1"), "s.toml:1:9: light must be an array of tables, [[light]]");
-  EXPECT_EQ(message("[camera]\nfov = \"wide\""), "s.toml:2:7: fov must be a number");
+  EXPECT_EQ(message("[camera]\nfov = \"wide\""), "s.toml:2:7: fov is \"wide\", it must be a number");
   EXPECT_EQ(message("[camera]\nup = [0, 1]"), "s.toml:2:6: up must be an array of 3 numbers");
-  EXPECT_EQ(message("[camera]\nup = [0, 1, true]"), "s.toml:2:13: up must be a number");
+  EXPECT_EQ(message("[camera]\nup = [0, 1, true]"), "s.toml:2:13: up is true, it must be a number");
   EXPECT_EQ(message("[camera]\nframe = \"all\""), "s.toml:2:9: frame is \"all\", it must be content or volume");
-  EXPECT_EQ(message("[volume]\nmax_bounces = 1.5"), "s.toml:2:15: max_bounces must be a whole number");
+  EXPECT_EQ(message("[volume]\nmax_bounces = 1.5"), "s.toml:2:15: max_bounces is 1.5, it must be a whole number");
   EXPECT_EQ(message("[volume]\nopacity = [[0, 1]]"),
             "s.toml:2:11: opacity must be an array of at least two points, each an array of 2 numbers");
 }

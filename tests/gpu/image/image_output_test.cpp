@@ -130,8 +130,8 @@ TEST_F(ImageOutput, LongestNameLeavesNoOtherFile) {
 }
 
 TEST_F(ImageOutput, WrongNamesAreUsage) {
-  EXPECT_EQ(message("a.jpg", ErrorKind::usage), path("a.jpg") + ": an image's name must end in .png or .exr");
-  EXPECT_EQ(message("a", ErrorKind::usage), path("a") + ": an image's name must end in .png or .exr");
+  EXPECT_EQ(message("a.jpg", ErrorKind::usage), "-o " + path("a.jpg") + ": an image's name must end in .png or .exr");
+  EXPECT_EQ(message("a", ErrorKind::usage), "-o " + path("a") + ": an image's name must end in .png or .exr");
   fs::create_directory(path("d.png"));
   EXPECT_EQ(message("d.png", ErrorKind::usage), path("d.png") + ": is a directory; name a file in it");
 }

@@ -102,6 +102,28 @@ TEST_F(LevelsOfDetail, PixelsNarrowerThanVoxels_SeeVoxels) {
   }
 }
 
+// A step as long as the cubes of a coarse level would pass through it between two samples.
+TEST_F(LevelsOfDetail, ThinVolumes_AreAsOpaqueAsTheirVoxels) {
+  const auto backend = make_cpu_backend(2, {.levels = true});
+  for (const std::int64_t thickness : {1, 2, 5}) {
+    const test::TestGrid made({{0, 0, 0}, {256, 256, thickness}}, [](const Index3&) { return 1.0F; });
+    const auto volume = backend->load(file(made.file()), 0, nullptr);
+    for (const RenderMode mode : {RenderMode::dvr, RenderMode::mip}) {
+      Scene scene = scene_of(mode);
+      scene.volume.opacity = {{0, 1}, {1, 1}};
+      scene.camera.elevation = 80;
+      const Picture voxels = picture(*backend, *volume, scene, std::nullopt);
+      const Picture means = picture(*backend, *volume, scene, LevelOfDetail{3, 0});
+      EXPECT_GE(means.finest_level, 1);
+      const std::size_t centre = means.image.pixels.size() / 2 + 20;
+      const Float3 seen = means.image.pixels[centre];
+      const Float3 expected = voxels.image.pixels[centre];
+      EXPECT_GT(length(expected), 0.1F);
+      EXPECT_LT(length(seen - expected), 0.02F * length(expected)) << thickness << ' ' << render_mode_name(mode);
+    }
+  }
+}
+
 // Cells bound what levels reach: a picture does not depend on their size, and nothing behind their borders is lost.
 TEST_F(LevelsOfDetail, HardEdges_LookTheSameWithAnyMacrocells) {
   const test::TestGrid made({{0, 0, 0}, {96, 96, 96}}, [](const Index3& i) {

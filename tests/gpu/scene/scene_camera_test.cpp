@@ -61,6 +61,19 @@ TEST(MakeCamera, OtherUpVectorsGiveAnUprightCamera) {
   }
 }
 
+TEST(MakeCamera, UpOfAnyLengthIsADirection) {
+  SceneCamera scene;
+  scene.up = {0, 1, 0};
+  const Camera expected = orbit(scene, kCube);
+  for (const double length : {1e-320, 1e-300, 1e300}) {
+    scene.up = {0, length, 0};
+    const Camera camera = orbit(scene, kCube);
+    expect_near(camera.forward, expected.forward);
+    expect_near(camera.right, expected.right);
+    expect_near(camera.position, expected.position);
+  }
+}
+
 // All corners are in the picture and one touches the margin, for any shape and direction.
 TEST(MakeCamera, FramesTheBox) {
   const GridFrame plate{{{-5, 0, 0}, {300, 40, 3}}, {1, 2, 7}, {0, 0, 0}};

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "format/base/error.h"
 #include "gpu/image/colormap.h"
@@ -16,6 +17,35 @@ TEST(MakeTransferFunction, BackgroundIsTransparentByDefault) {
     EXPECT_EQ(transfer.at(background).a, 0.0F);
     EXPECT_EQ(transfer.at(background + (background > 200 ? -8.0F : 8.0F)).a, 0.0F) << "noise around it";
     EXPECT_NEAR(std::max(transfer.at(0).a, transfer.at(255).a), 1.0F, 1e-6F);
+  }
+}
+
+TEST(MakeTransferFunction, BackgroundBesideTheRange_IsTransparentToo) {
+  SceneVolume volume;
+  volume.range = {{0.5, 1}};
+  for (const float background : {0.0F, 0.4F, -1e30F, 0.5F}) {
+    const TransferFunction above = make_transfer_function(volume, {0, 1}, background, "gray");
+    EXPECT_EQ(above.at(background).a, 0.0F) << background;
+    EXPECT_EQ(above.at(0.5F).a, 0.0F) << "the end nearest to it";
+    EXPECT_EQ(above.max_opacity(background, background), 0.0F) << background;
+    EXPECT_NEAR(above.at(1).a, 1.0F, 1e-6F);
+  }
+  const TransferFunction below = make_transfer_function(volume, {0, 1}, 7, "gray");
+  EXPECT_EQ(below.at(7).a, 0.0F);
+  EXPECT_NEAR(below.at(0.5F).a, 1.0F, 1e-6F);
+  volume.range = {{0.4, 0.4}};
+  const TransferFunction one = make_transfer_function(volume, {0, 1}, 0, "gray");
+  EXPECT_EQ(one.at(0).a, 0.0F);
+  EXPECT_EQ(one.at(0.4F).a, 0.5F);
+  EXPECT_EQ(one.at(0.9F).a, 0.5F);
+}
+
+TEST(MakeTransferFunction, BackgroundThatIsNoNumber_IsTakenAsTheLowEnd) {
+  for (const float background : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    const TransferFunction transfer = make_transfer_function({}, {2, 4}, background, "gray");
+    EXPECT_EQ(transfer.at(background).a, 0.0F);
+    EXPECT_EQ(transfer.at(2).a, 0.0F);
+    EXPECT_NEAR(transfer.at(4).a, 1.0F, 1e-6F);
   }
 }
 

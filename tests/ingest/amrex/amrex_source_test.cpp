@@ -1,6 +1,9 @@
 // What a plotfile says of itself, how one is named, and what is refused of it.
 #include "ingest/amrex/amrex_source.h"
 
+#include <sys/stat.h>
+
+#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -194,6 +197,34 @@ TEST_F(AmrexSource, OffsetsBehindTheEnd_AreRefused) {
   EXPECT_EQ(refusal(), "Level_0/Cell_H: line 11: a FAB at offset -8 is impossible; the header is damaged");
 }
 
+TEST_F(AmrexSource, FabsWithoutHeadersThatShareBytes_AreRefused) {
+  for (const int version : {2, 3, 4}) {
+    PlotfilePlan plan = two_levels();
+    plan.version = version;
+    plan.fabs_per_file = 2;
+    path_ = scratch_.path("bare" + std::to_string(version));
+    test::write_plotfile(path_, plan);
+    EXPECT_EQ(open_source(path_, named("density"))->info().extent, (Index3{16, 16, 16}));
+    for (const std::string offset : {"0", "4", "4095"}) {
+      replace("Level_0/Cell_H", "Cell_D_00000 4096\n", "Cell_D_00000 " + offset + "\n");
+      EXPECT_EQ(refusal(), "Level_0/Cell_D_00000: the FABs at offsets 0 and " + offset +
+                               " have bytes in common: the first ends at 4096; " + file("Level_0/Cell_H") +
+                               " is damaged");
+      test::write_plotfile(path_, plan);
+    }
+  }
+}
+
+TEST_F(AmrexSource, FabsWithoutHeaders_LieInAnyOrderInTheirFile) {
+  PlotfilePlan plan = two_levels();
+  plan.version = 2;
+  plan.fabs_per_file = 2;
+  test::write_plotfile(path_, plan);
+  replace("Level_0/Cell_H", "Cell_D_00000 0\nFabOnDisk: Cell_D_00000 4096\n",
+          "Cell_D_00000 4096\nFabOnDisk: Cell_D_00000 0\n");
+  EXPECT_EQ(open_source(path_, named("density"))->info().extent, (Index3{16, 16, 16}));
+}
+
 TEST_F(AmrexSource, FabsOfAnotherBox_AreRefusedWhereTheyAreRead) {
   replace("Level_0/Cell_D_00000", "((0,0,0) (7,7,3) (0,0,0)) 2", "((0,0,0) (7,3,7) (0,0,0)) 2");
   EXPECT_EQ(refusal(),
@@ -227,6 +258,40 @@ TEST_F(AmrexSource, HeadersThatContradictEachOther_AreRefused) {
   EXPECT_EQ(refusal(),
             "Header: line 11: the ratio of level 1 to level 0 is said to be 4, and (2,2,2) by their domains; "
             "the header is damaged");
+}
+
+TEST_F(AmrexSource, SizesOfCellsThatDoNotFit_AreRefused) {
+  replace("Header", "\n0.25 0.125 1 \n", "\n0.5 0.25 2 \n");
+  EXPECT_EQ(refusal(),
+            "Header: line 14: the size of level 1's cells along x is 0.5, and must be 0.25, that of level 0, 0.5, by "
+            "the ratio 2; the header is damaged");
+}
+
+TEST_F(AmrexSource, TwoComponentsOfOneName_AreRefused) {
+  replace("Header", "\nTemp\n", "\ndensity\n");
+  EXPECT_EQ(refusal(),
+            " its components 1 and 2 of 2 both have the name 'density', which does not say which of them is meant; "
+            "give one of them another name in its Header");
+  for (const DatasetInfo& component : format_of(path_).list(path_, {})) {
+    EXPECT_EQ(component.obstacle, "another component has the same name");
+  }
+  EXPECT_EQ(refusal(ErrorKind::usage, {}),
+            " holds 2 components; choose one with --dataset: none has a name of its own (weir inspect lists them)");
+}
+
+TEST_F(AmrexSource, Header_ThatIsAPipe_IsNamed) {
+  std::filesystem::remove(file("Header"));
+  ASSERT_EQ(::mkfifo(file("Header").c_str(), 0600), 0);
+  const std::string message = refusal();
+  EXPECT_TRUE(message.starts_with("Header: is a pipe")) << message;
+}
+
+TEST_F(AmrexSource, Interruption_EndsOpening) {
+  const std::atomic<bool> interrupted{true};
+  SourceOptions options = named("density");
+  options.cancel = &interrupted;
+  EXPECT_EQ(message_of_error(ErrorKind::interrupted, [&] { open_source(path_, options); }), "interrupted");
+  EXPECT_EQ(message_of_error(ErrorKind::interrupted, [&] { format_of(path_).list(path_, options); }), "interrupted");
 }
 
 TEST_F(AmrexSource, UnwrittenPart_IsEmptyWhereAllIsThere) {

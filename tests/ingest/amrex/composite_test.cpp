@@ -245,6 +245,61 @@ TEST(AmrexComposite, LinearBesideAValueThatIsNotFinite_TakesTheCellsOwn) {
   EXPECT_EQ((std::vector<float>{values[5], values[6], values[7]}), (std::vector<float>{23.5F, 28.5F, 31.0F}));
 }
 
+/// Three levels along x with the value 7 in some cells of each, and values to be linear between elsewhere.
+PlotfilePlan plan_with_sevens() {
+  PlotfilePlan plan;
+  plan.domain = {{0, 0, 0}, {6, 2, 2}};
+  plan.ratios = {{2, 2, 2}, {2, 2, 2}};
+  plan.boxes = {{plan.domain}, {{{2, 0, 0}, {8, 4, 4}}}, {{{6, 0, 0}, {9, 3, 3}}}};
+  plan.value = [](std::size_t level, std::size_t, const Index3& cell) {
+    return cell.x % 4 == 0 ? 7 : 10 * static_cast<double>(cell.x + cell.y) + static_cast<double>(level);
+  };
+  return plan;
+}
+
+TEST(AmrexComposite, LinearBesideValuesOfNoDataThatAreKept_TakesTheCellsOwn) {
+  const Scratch scratch;
+  const std::string path = scratch.path("plt");
+  for (const bool single : {false, true}) {
+    PlotfilePlan plan = plan_with_sevens();
+    plan.single = single;
+    test::write_plotfile(path, plan);
+    SourceOptions options;
+    options.missing = StoredValue{std::int64_t{7}};
+    options.upsampling = Upsampling::linear;
+    const auto marked = open_source(path, options);
+    options.keeps_missing = true;
+    const auto kept = open_source(path, options);
+    options.upsampling = Upsampling::constant;
+    const auto constant = open_source(path, options);
+    const Box domain = kept->info().domain();
+    std::vector<float> expected = read_box(*marked, domain);
+    const auto count = static_cast<std::uint64_t>(std::count_if(expected.begin(), expected.end(), is_missing));
+    std::replace_if(expected.begin(), expected.end(), is_missing, 7.0F);
+    std::vector<float> values(expected.size());
+    const ConversionLoss loss = kept->read(domain, values);
+    EXPECT_EQ(values, expected);
+    EXPECT_EQ(loss.unmarked, count);
+    EXPECT_GT(count, 100U);
+    EXPECT_EQ(constant->read(domain, values).unmarked, count);
+  }
+}
+
+TEST(AmrexComposite, LinearValuesWithoutOnesOfNoData_AreTheSameWhereTheseAreKept) {
+  const Scratch scratch;
+  test::write_plotfile(scratch.path("plt"), plan_with_sevens());
+  SourceOptions options;
+  options.upsampling = Upsampling::linear;
+  const auto plain = open_source(scratch.path("plt"), options);
+  options.keeps_missing = true;
+  options.missing = StoredValue{-1.0};
+  const auto kept = open_source(scratch.path("plt"), options);
+  const Box domain = kept->info().domain();
+  std::vector<float> values(static_cast<std::size_t>(domain.voxels()));
+  EXPECT_EQ(kept->read(domain, values).unmarked, 0U);
+  EXPECT_EQ(values, read_box(*plain, domain));
+}
+
 TEST(AmrexComposite, LossIsCountedOfTheVoxelsThatAreWritten) {
   const Scratch scratch;
   PlotfilePlan plan;

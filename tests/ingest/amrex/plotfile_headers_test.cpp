@@ -67,6 +67,40 @@ TEST(AmrexHeader, WhatIsSaidOfLevelsThatAreNotThere_IsPassedOver) {
   EXPECT_EQ(header.levels[1].spacing, (std::array<double, 3>{0.125, 0.125, 0.25}));
 }
 
+TEST(AmrexHeader, NumbersOfSixDigits_FitEachOther) {
+  std::string text = with(kHeader, "-1 0 0\n1 2 4\n", "100000 0.333333 0\n100008 3.0 4\n");
+  text = with(text, "0.25 0.25 0.25 \n0.125 0.125 0.25 \n", "1 0.333333 0.25 \n0.5 0.166667 0.25 \n");
+  EXPECT_EQ(header_of(text).levels[1].spacing, (std::array<double, 3>{0.5, 0.166667, 0.25}));
+}
+
+TEST(AmrexHeader, LargeCorners_SayLittleOfTheSizeOfCells) {
+  // As float32 the corners are whole multiples of 64.
+  std::string text = with(kHeader, "-1 0 0\n1 2 4\n", "1000000000 0 0\n1000000064 2 4\n");
+  text = with(text, "0.25 0.25 0.25 \n0.125 0.125 0.25 \n", "5 0.25 0.25 \n2.5 0.125 0.25 \n");
+  EXPECT_EQ(header_of(text).levels[0].spacing[0], 5);
+}
+
+TEST(AmrexHeader, CornersAndSizesOfCellsThatDoNotFit_AreTold) {
+  const auto message = [](const std::string& what, const std::string& by) {
+    return message_of_error(ErrorKind::input, [&] { header_of(with(kHeader, what, by)); });
+  };
+  EXPECT_EQ(message("\n1 2 4\n", "\n1 -2 4\n"),
+            "H: line 9: the domain's upper corner has -2 along y, and must be above that of its lower corner, 0; the "
+            "header is damaged");
+  EXPECT_EQ(message("\n1 2 4\n", "\n-1 2 4\n"),
+            "H: line 9: the domain's upper corner has -1 along x, and must be above that of its lower corner, -1; the "
+            "header is damaged");
+  EXPECT_EQ(message("0.25 0.25 0.25 \n0", "0.35 0.25 0.25 \n0"),
+            "H: line 13: the size of level 0's cells along x is 0.35, and must be 0.25, as the domain reaches from -1 "
+            "to 1 and has 8 cells there; the header is damaged");
+  EXPECT_EQ(message("\n1 2 4\n", "\n1 2 4.001\n"),
+            "H: line 13: the size of level 0's cells along z is 0.25, and must be 0.2500625, as the domain reaches "
+            "from 0 to 4.001 and has 16 cells there; the header is damaged");
+  EXPECT_EQ(message("0.125 0.125 0.25 ", "0.125 0.125 0.125 "),
+            "H: line 14: the size of level 1's cells along z is 0.125, and must be 0.25, that of level 0, 0.25, by the "
+            "ratio 1; the header is damaged");
+}
+
 TEST(AmrexHeader, BeginsWithANameAndAVersion) {
   for (const char* text : {"HyperCLaw-V1.1\n2\n", "NavierStokes-V1.", "CartGrid-V2.0"}) {
     EXPECT_TRUE(begins_as_amrex_header(text)) << text;

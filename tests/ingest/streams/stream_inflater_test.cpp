@@ -69,10 +69,11 @@ TEST(StreamInflater, NamesTheOffsetOfDamage) {
   packed.back() ^= std::byte{1};
   EXPECT_EQ(message_of_error(ErrorKind::input, [&] { unpack(packed, 64); }),
             "data.gz: damaged compressed data (incorrect length check), at byte " + std::to_string(packed.size()) +
-                " of them, 40 unpacked");
+                " of them, 40 unpacked; copy the file again");
   const std::vector<std::byte> text(20, std::byte{'a'});
-  EXPECT_EQ(message_of_error(ErrorKind::input, [&] { unpack(text, 64); }),
-            "data.gz: damaged compressed data (incorrect header check), at byte 2 of them, 0 unpacked");
+  EXPECT_EQ(
+      message_of_error(ErrorKind::input, [&] { unpack(text, 64); }),
+      "data.gz: damaged compressed data (incorrect header check), at byte 2 of them, 0 unpacked; copy the file again");
 }
 
 TEST(StreamInflater, RefusesBytesAfterTheStream) {
@@ -81,7 +82,7 @@ TEST(StreamInflater, RefusesBytesAfterTheStream) {
   packed.push_back(std::byte{0});
   EXPECT_EQ(message_of_error(ErrorKind::input, [&] { unpack(packed, 64); }),
             "data.gz: bytes that belong to nothing after the compressed data, at byte " + std::to_string(size) +
-                " of them, 40 unpacked");
+                " of them, 40 unpacked; copy the file again");
 }
 
 TEST(StreamInflater, SinkErrorStopsADecompressionBomb) {

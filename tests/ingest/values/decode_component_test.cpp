@@ -47,6 +47,13 @@ TEST(DecodeComponent, MagnitudeOfDoublesIsComputedInDouble) {
   EXPECT_EQ(loss.inexact, 1U);
 }
 
+TEST(DecodeComponent, MagnitudeOfScaledIntegersOf64Bits_KeepsTheirLastBits) {
+  constexpr std::int64_t kBase = std::int64_t{1} << 53U;
+  EXPECT_EQ(
+      decoded(std::vector<std::int64_t>{kBase + 3, kBase + 4}, ScalarType::int64, {2, kMagnitude}, {1, -0x1p53, {}}),
+      std::vector<float>{5});
+}
+
 TEST(DecodeComponent, LossIsCountedForTheChosenComponentOnly) {
   ConversionLoss loss;
   decoded(std::vector<double>{0.5, 0.1, 0.25, 0.2}, ScalarType::float64, {2, {false, 0}}, {}, &loss);

@@ -186,5 +186,42 @@ TEST(DecodeValues, OfAVolumeWithGaps_NoStoredValueIsOne) {
   EXPECT_TRUE(is_missing(values[1]));
 }
 
+TEST(DecodeValues, ScaledIntegersOf64Bits_KeepTheirLastBits) {
+  constexpr std::int64_t kBase = std::int64_t{1} << 53U;
+  std::vector<std::int64_t> stored;
+  for (std::int64_t i = 0; i < 600; ++i) stored.push_back(kBase + 1 + i);
+  const Decoded shifted = decode(stored, ScalarType::int64, {1, -0x1p53, {}});
+  for (std::size_t i = 0; i < stored.size(); ++i) EXPECT_EQ(shifted.values[i], static_cast<float>(i + 1));
+  EXPECT_EQ(shifted.loss.inexact, 0U);
+  const Decoded high = decode(std::vector<std::uint64_t>{18446744073709551615U, 9223372036854775809U},
+                              ScalarType::uint64, {1, -0x1p63, {StoredValue{18446744073709551615U}}});
+  EXPECT_TRUE(is_missing(high.values[0]));
+  EXPECT_EQ(high.values[1], 1.0F);
+}
+
+TEST(DecodeValues, ScaledIntegersOf64Bits_CountWhatFloat32Loses) {
+  constexpr std::int64_t kBase = std::int64_t{1} << 53U;
+  const Decoded decoded =
+      decode(std::vector<std::int64_t>{kBase + 1, kBase + (1 << 25) + 1, 0}, ScalarType::int64, {1, -0x1p53, {}});
+  EXPECT_EQ(decoded.values, (std::vector<float>{1, 0x1p25F, -0x1p53F}));
+  EXPECT_EQ(decoded.loss.inexact, 1U);
+  EXPECT_EQ(decoded.loss.max_abs_error, 1.0);
+  const Decoded large = decode(std::vector<std::int64_t>{2, 1}, ScalarType::int64, {3e38, 0, {}});
+  EXPECT_TRUE(std::isinf(large.values[0]));
+  EXPECT_EQ(large.loss.overflow, 1U);
+  EXPECT_EQ(large.loss.inexact, 1U);
+}
+
+TEST(DecodeValues, AHalfsMissingValueIsComparedRounded) {
+  const ValueMapping mapping{1, 0, {StoredValue{-999.9}, StoredValue{1e6}}};  // float16 holds no 1e6
+  const Decoded half = decode(std::vector<std::uint16_t>{0xE3D0, 0x3E00, 0x7C00}, ScalarType::float16, mapping);
+  EXPECT_TRUE(is_missing(half.values[0])) << half.values[0] << ", -1000 in float16";
+  EXPECT_EQ(half.values[1], 1.5F);
+  EXPECT_TRUE(std::isinf(half.values[2]));
+  const Decoded brain = decode(std::vector<std::uint16_t>{0xC47A, 0x3FC0}, ScalarType::bfloat16, mapping);
+  EXPECT_TRUE(is_missing(brain.values[0])) << brain.values[0] << ", -1000 in bfloat16";
+  EXPECT_EQ(brain.values[1], 1.5F);
+}
+
 }  // namespace
 }  // namespace weir::decode_values_test

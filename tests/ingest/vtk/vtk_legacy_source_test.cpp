@@ -168,7 +168,9 @@ TEST(VtkLegacySource, WordsThatAreNoNumbersAreRefused) {
   text.replace(text.find("11"), 2, "x1");
   const std::string path =
       write_headed(scratch, "a.vtk", head("ASCII", "POINT_DATA 24\n") + scalars("a", "float", text));
-  EXPECT_EQ(refusal(path), path + ": array 'a': value 11 of its text is 'x1', no number of its type");
+  EXPECT_EQ(refusal(path), path +
+                               ": array 'a': value 11 of its text is 'x1', no number of its type; correct it, or the "
+                               "type in the header");
 }
 
 TEST(VtkLegacySource, AFileCutAtAnyByteIsRefused) {

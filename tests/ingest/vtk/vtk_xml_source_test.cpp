@@ -98,7 +98,7 @@ TEST(VtkXmlSource, ReadsText) {
   EXPECT_EQ(message_of_error(ErrorKind::input, [&] { open("UInt8", text + "1 2"); }),
             where + "has 23 values as text, and its header asks for 24; the file is cut or damaged");
   EXPECT_EQ(message_of_error(ErrorKind::input, [&] { open("UInt8", text + "1 256 2"); }),
-            where + "value 22 of its text is '256', no number of its type");
+            where + "value 22 of its text is '256', no number of its type; correct it, or the type in the header");
   EXPECT_EQ(message_of_error(ErrorKind::input, [&] { open("Int8", text + "1 2 3 4.5"); }),
             where + "'4.5' follows the 24 values that its header asks for; one of the two is damaged");
 }

@@ -148,6 +148,25 @@ TEST(OmeZarr, PlanesOverTime_AreNoVolume) {
             "run.zarr/0: 2 axes of space at its end (c 3, y 4, x 5); a volume has three");
 }
 
+TEST(OmeZarr, ScaleOfZero_IsRefusedByTheDocumentThatSaysIt) {
+  for (const bool v3 : {false, true}) {
+    const ZarrFiles files;
+    const std::string image = R"("multiscales":[{"axes":["z","y","x"],"datasets":[{"path":"0",)"
+                              R"("coordinateTransformations":[{"type":"scale","scale":[1,0,1]}]}]}])";
+    if (v3) {
+      files.write("zarr.json", cat(R"({"zarr_format":3,"node_type":"group","attributes":{"ome":{)", image, "}}}"));
+      files.write("0/zarr.json", zarr_json("[1,1,1]", "[1,1,1]"));
+    } else {
+      files.write(".zgroup", R"({"zarr_format":2})");
+      files.write(".zattrs", cat("{", image, "}"));
+      files.write("0/.zarray", zarray("[1,1,1]", "[1,1,1]"));
+    }
+    EXPECT_EQ(files.message(ErrorKind::input),
+              cat("run.zarr: 0: its spacing has 0 (coordinateTransformations in ", v3 ? "zarr.json" : ".zattrs",
+                  "), which is not finite and above 0; give --spacing x,y,z"));
+  }
+}
+
 TEST(OmeZarr, FinestLevelPlacedInAnotherWay_IsReadAndNotTheNextOne) {
   const std::string note =
       "its coordinateTransformations are others than scale and translation by numbers, taken as indices";

@@ -62,6 +62,40 @@ TEST(ZarrValues, ValuesThatHoldNoDataAndAreNoNumbers_AreRefused) {
             R"(its attribute _FillValue has "x", which is not a number)" + end);
 }
 
+TEST(ZarrValues, ValuesThatTheTypeDoesNotHave_AreSaidAndMarkNothing) {
+  const ZarrFiles files;
+  files.write_values("0.0.0", std::vector<std::uint8_t>{0, 255});
+  const auto note = [&](std::string_view type, std::string_view attributes) {
+    files.write(".zarray", zarray("[1,1,2]", type == "|u1" ? "[1,1,2]" : "[1,1,1]", type, "0"));
+    files.write(".zattrs", attributes);
+    const auto source = open_source(files.path(), {});
+    return source->info().details.values_note;
+  };
+  const auto said = [](std::string_view name, std::string_view value, std::string_view type) {
+    return cat("its attribute ", name, " is ", value, ", and no ", type,
+               " is, so it marks no voxel; --missing names the stored value that stands for no data");
+  };
+  EXPECT_EQ(note("|u1", R"({"_FillValue":-1})"), said("_FillValue", "-1", "uint8"));
+  EXPECT_EQ(note("|u1", R"({"missing_value":[255,300]})"), said("missing_value", "300", "uint8"));
+  EXPECT_EQ(note("|u1", R"({"_FillValue":255.5})"), said("_FillValue", "255.5", "uint8"));
+  EXPECT_EQ(files.read(), (std::vector<float>{0, 255}));
+  EXPECT_EQ(note("<i2", R"({"missing_value":-999999.0,"scale_factor":0.5})"),
+            said("missing_value", "-999999", "int16"));
+  EXPECT_EQ(note("|u1", R"({"_FillValue":-1,"_Unsigned":"true"})"), "") << "255 as it is stored";
+  EXPECT_EQ(note("|u1", R"({"_FillValue":255.0})"), "");
+}
+
+TEST(ZarrValues, ValidRange_IsSaidNotToBeApplied) {
+  const ZarrFiles files;
+  for (const std::string name : {"valid_range", "valid_min", "valid_max"}) {
+    write_floats(files, cat("{\"", name, R"(":0,"units":"K"})"));
+    const std::string said = cat("its attribute ", name, " is not applied: values outside it count as data");
+    EXPECT_EQ(open_source(files.path(), {})->info().details.values_note, said);
+    const std::vector<DatasetInfo> listed = list_zarr(files.path(), {});
+    EXPECT_EQ(listed[0].attributes.back(), std::pair(std::string("note"), said));
+  }
+}
+
 // As xarray writes _FillValue in version 2, and nothing where there is none.
 TEST(ZarrValues, FillValueOfXarrayInVersion2_HoldsNoData) {
   const ZarrFiles files;

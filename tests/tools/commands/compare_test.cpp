@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -50,7 +52,8 @@ TEST(Compare, LosslessFile) {
     report.erase(varies);
   EXPECT_EQ(report, nlohmann::json::parse(R"({"mse": 0.0, "rmse": 0.0, "nmse": 0.0, "psnr_db": null, "max_abs": 0.0,
       "lossless": true, "max_abs_at": null, "voxels": 116550, "finite": 116550, "nonfinite": 0,
-      "nonfinite_decoded": 0, "different": 0, "nonfinite_different": 0, "missing": 0, "zeros_lost": 0})"));
+      "nonfinite_decoded": 0, "different": 0, "nonfinite_different": 0, "missing": 0, "zeros_lost": 0,
+      "conversion_loss": {"inexact": 0, "overflow": 0, "max_abs_error": 0.0}})"));
   EXPECT_EQ(run_weir({"compare", volume.raw, volume.nvdb}).out,
             "lossless: all 116550 finite voxels read bit for bit\n");
 }
@@ -87,6 +90,52 @@ TEST(Compare, SaysOfTheGradientWhatTheConversionCertified) {
   EXPECT_TRUE(other.err.ends_with(cat(" warning ", nvdb, ": was converted with --spacing 1,1,2, as ", nvdb,
                                       ".json records, and is compared with --spacing 1,1,1\n")))
       << other.err;
+}
+
+TEST(Compare, VoxelSizeOfTheVolume_CountsWithoutASidecar) {
+  const Converted volume("turbulence", "30x25x17_float32", {"--psnr", "40", "--spacing", "0.5,0.5,2"});
+  const std::vector<std::string> words{"compare", volume.raw, volume.nvdb, "--derived", "--json"};
+  const auto derived = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), words.begin(), words.end());
+    return nlohmann::json::parse(run_weir(more).out)["derived"]["gradient"];
+  };
+  const auto recorded = derived({});
+  std::filesystem::remove(volume.nvdb + ".json");
+  EXPECT_EQ(derived({}), recorded);
+  EXPECT_EQ(derived({"--spacing", "0.5,0.5,2"}), recorded);
+  EXPECT_LT(derived({"--spacing", "1,1,4"})["rms"], recorded["rms"]) << "what is given counts";
+  const CommandResult said = run_weir(words);
+  EXPECT_TRUE(said.err.ends_with(
+      cat(" info ", volume.raw, ": taken with --spacing 0.5,0.5,2, the voxel size of ", volume.nvdb, '\n')))
+      << said.err;
+  EXPECT_EQ(run_weir({"compare", volume.raw, volume.nvdb}).err, "") << "no length counts";
+}
+
+// -Infinity in the file where the source is 2, and 1 in 100 voxels more: the error is over the other 1799.
+TEST(Compare, VoxelsThatTheFileReadsAsInfinite_AreLeftOutOfTheError) {
+  const TemporaryDirectory directory;
+  const std::string raw = directory / "a_20x10x9_float32.raw";
+  const std::string nvdb = directory / "a.nvdb";
+  std::vector<float> values(1800, 2.0F);
+  values[7] = -std::numeric_limits<float>::infinity();
+  const auto write = [&] { write_file(raw, {reinterpret_cast<const char*>(values.data()), 4 * values.size()}); };
+  write();
+  const CommandResult made = run_weir({"convert", raw, "-o", nvdb, "--lossless", "--nonfinite", "keep"});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  values[7] = 2;
+  for (std::size_t i = 100; i < 200; ++i) values[i] = 3;
+  write();
+  const CommandResult said = run_weir({"compare", raw, nvdb, "--json"});
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  const auto report = nlohmann::json::parse(said.out);
+  EXPECT_EQ(report["mse"], 100.0 / 1799);
+  EXPECT_EQ(report["nonfinite_decoded"], 1);
+  EXPECT_EQ(report["different"], 101);
+  EXPECT_EQ(report["lossless"], false);
+  EXPECT_NEAR(report["psnr_db"], 10 * std::log10(17.99), 1e-9);
+  const std::string text = run_weir({"compare", raw, nvdb}).out;
+  EXPECT_TRUE(text.ends_with("not finite 1 voxels of the file where the source is finite, left out of the error\n"))
+      << text;
 }
 
 TEST(Compare, SpectrumIsAskedForByTheEndingOfItsFile) {

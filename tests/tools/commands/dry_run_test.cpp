@@ -73,6 +73,25 @@ TEST_F(DryRunTest, Json_HasTheFiguresOfTheSidecar) {
   }
 }
 
+TEST_F(DryRunTest, CertifiedGradient_IsThatOfTheTrialItself) {
+  const std::vector<std::string> words{"-o", output_, "--json", "--psnr", "40", "--certify", "gradient"};
+  const std::string partial = output_ + ".partial";
+  for (const bool foreign : {false, true}) {
+    if (foreign) write_file(partial, "somebody's");
+    const auto said = dry_run(words);
+    ASSERT_EQ(said.exit_code, 0) << said.err;
+    EXPECT_EQ(list_directory(directory_.path()).size(), foreign ? 2U : 1U);
+    if (foreign) {
+      EXPECT_EQ(read_file(partial), "somebody's");
+      std::filesystem::remove(partial);
+    }
+    const auto made = convert(words);
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+    EXPECT_EQ(nlohmann::json::parse(said.out)["file"]["value"], nlohmann::json::parse(made.out)["file"]["bytes"]);
+    for (const char* name : {"t.nvdb", "t.nvdb.json"}) std::filesystem::remove(directory_ / name);
+  }
+}
+
 TEST_F(DryRunTest, Lines_SayWhatItComesTo) {
   const auto said = dry_run({"-o", output_, "--size", "400000", "--threads", "2"});
   ASSERT_EQ(said.exit_code, 0) << said.err;
@@ -87,6 +106,36 @@ TEST_F(DryRunTest, Lines_SayWhatItComesTo) {
   time      about [0-9.]+ s: survey [0-9.]+ s, encoding [0-9.]+ s
 )");
   EXPECT_TRUE(std::regex_match(said.out, form)) << said.out;
+}
+
+// 2^53 .. 2^53 + 4095: float32 has one value in 2^30 there.
+TEST_F(DryRunTest, WhatFloat32Rounds_IsSaidAsOfTheConversion) {
+  std::string bytes;
+  for (std::int64_t i = 0; i < 4096; ++i) {
+    const std::int64_t value = (std::int64_t{1} << 53) + i;
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+  }
+  const std::string raw = directory_ / "n_16x16x16_int64.raw";
+  write_file(raw, bytes);
+  for (const std::vector<std::string>& budget : {std::vector<std::string>{}, {"--lossless"}}) {
+    std::vector<std::string> words{"convert", raw, "-o", output_, "--dry-run"};
+    words.insert(words.end(), budget.begin(), budget.end());
+    const auto said = run_weir(words);
+    ASSERT_EQ(said.exit_code, 0) << said.err;
+    EXPECT_NE(said.out.find("\n  rounded   4095 values rounded to float32, by up to 4095; the error does not count "
+                            "that\n"),
+              std::string::npos)
+        << said.out;
+    EXPECT_NE(said.err.find(raw + ": 4095 values were rounded to float32"), std::string::npos) << said.err;
+    words.emplace_back("--json");
+    const auto forecast = nlohmann::json::parse(run_weir(words).out);
+    words.erase(words.begin() + 4);
+    const auto made = run_weir(words);
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+    EXPECT_EQ(forecast["conversion_loss"], nlohmann::json::parse(made.out)["conversion_loss"]);
+    EXPECT_EQ(forecast["conversion_loss"]["inexact"], 4095);
+    for (const char* name : {"t.nvdb", "t.nvdb.json"}) std::filesystem::remove(directory_ / name);
+  }
 }
 
 TEST_F(DryRunTest, Errors_AreTheConversions) {

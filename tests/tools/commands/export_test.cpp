@@ -248,6 +248,8 @@ TEST_F(ExportCommand, Refusals) {
                  "--memory is \"1MiB\", it must be a size of at least 64.0 MiB, like 512MiB");
   expect_refused({"export", directory_ / "none.nvdb", "-o", vdb_}, 3,
                  (directory_ / "none.nvdb") + ": cannot open: No such file or directory");
+  expect_refused({"export", raw_, "-o", vdb_}, 3,
+                 raw_ + ": is no NanoVDB file; convert it first: weir convert " + raw_);
   expect_refused({"export", nvdb_, "-o", directory_ / "no/v.vdb"}, 5,
                  (directory_ / "no/v.vdb") + ": the directory " + (directory_ / "no") +
                      " does not exist; make it or choose another output");

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "format/layout/nanovdb_layout.h"
 #include "tests/tools/support/converted_volume.h"
 
 namespace weir::inspect_test {
@@ -59,6 +60,22 @@ TEST_F(Inspect, WorksWithoutSidecar) {
   EXPECT_EQ(bad.exit_code, 2);
 }
 
+// As a writer leaves it that computes no statistics.
+TEST_F(Inspect, FileWithoutStatistics_HasTheRangeOfItsBlocks) {
+  fs::remove(sidecar_path(volume_));
+  const auto range = [&] {
+    const auto report = nlohmann::json::parse(run_weir({"inspect", volume_, "--json", "--progress", "never"}).out);
+    EXPECT_GT(report["histogram"]["counts"].size(), 1U);
+    return report["grid"]["value_range"];
+  };
+  const nlohmann::json stored = range();
+  std::string bytes = read_file(volume_);
+  const std::uint64_t at = open().grid().grid_offset() + nvdb::grid::kFlags;
+  bytes[at] = static_cast<char>(bytes[at] & ~static_cast<int>(nvdb::grid::kFlagMinMax));
+  write_file(volume_, bytes);
+  EXPECT_EQ(range(), stored);
+}
+
 TEST_F(Inspect, AFileOfAnotherSuffixIsTheGridThatItHolds) {
   const std::string copy = directory_ / "result.grid";
   fs::copy_file(volume_, copy);
@@ -87,6 +104,41 @@ TEST_F(Inspect, SeveralFilesAndPatterns_AreListedOneAfterTheOther) {
   EXPECT_EQ(plotted.err, "weir: --plot draws one histogram, and 3 files are given; give one of them\n");
 }
 
+TEST_F(Inspect, FileThatCannotBeRead_HidesNoOther) {
+  const std::string bad = directory_ / "a.nvdb";
+  write_file(bad, "no volume");
+  const CommandResult text = run_weir({"inspect", bad, volume_, directory_ / "v_40x30x20_float32.raw"});
+  EXPECT_EQ(text.exit_code, 3);
+  EXPECT_EQ(text.out.find("file        " + volume_ + '\n'), 0U) << text.out;
+  EXPECT_NE(text.out.find("\n\n" + (directory_ / "v_40x30x20_float32.raw")), std::string::npos) << text.out;
+  EXPECT_EQ(text.err.find("weir: " + bad + ": "), 0U) << text.err;
+  EXPECT_EQ(text.err.find('\n'), text.err.size() - 1) << text.err;
+  const CommandResult json = run_weir({"inspect", bad, volume_, "--json"});
+  EXPECT_EQ(json.exit_code, 3);
+  const auto files = nlohmann::json::parse(json.out)["files"];
+  ASSERT_EQ(files.size(), 2U);
+  EXPECT_EQ(files[0]["path"], bad);
+  EXPECT_EQ("weir: " + files[0]["error"].get<std::string>() + '\n', json.err);
+  EXPECT_EQ(files[1]["grid"]["type"], "float32");
+}
+
+TEST_F(Inspect, SidecarThatCannotBeRead_HidesNoVolume) {
+  write_file(sidecar_path(volume_), "{");
+  const std::string why = sidecar_path(volume_) + ": at byte ";
+  const CommandResult text = run_weir({"inspect", volume_});
+  EXPECT_EQ(text.exit_code, 3);
+  EXPECT_NE(text.out.find("\nsidecar     unreadable: " + why), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("grid        \"density\" float32, 40 x 30 x 20 voxels"), std::string::npos) << text.out;
+  EXPECT_EQ(text.err.find("weir: " + why), 0U) << text.err;
+  const CommandResult json = run_weir({"inspect", volume_, "--json", "--plot", directory_ / "h.svg"});
+  EXPECT_EQ(json.exit_code, 3);
+  const auto report = nlohmann::json::parse(json.out);
+  EXPECT_EQ(report["grid"]["type"], "float32");
+  EXPECT_EQ(report["sidecar"], nullptr);
+  EXPECT_EQ(report["sidecar_error"].get<std::string>().find(why), 0U);
+  EXPECT_TRUE(fs::exists(directory_ / "h.svg"));
+}
+
 TEST_F(Inspect, OptionsThatItCannotHonour_AreRefused) {
   const auto refusal = [](const std::vector<std::string>& words) {
     const CommandResult result = run_weir(words);
@@ -98,6 +150,12 @@ TEST_F(Inspect, OptionsThatItCannotHonour_AreRefused) {
             "weir: --dims says how to read a source, and " + volume_ + " is a .nvdb file; leave it out\n");
   EXPECT_EQ(refusal({"inspect", raw, "--roi", "0:8,0:8,0:900"}),
             "weir: --roi chooses a part for a conversion; leave it out: inspect lists all that " + raw + " holds\n");
+  EXPECT_EQ(refusal({"inspect", raw, "--component", "x"}),
+            "weir: " + raw +
+                ": --component is for arrays of vectors in HDF5, Zarr, VTK and OpenVDB files, and this is raw; leave "
+                "it out\n");
+  EXPECT_EQ(refusal({"inspect", raw, "--level", "3"}),
+            "weir: " + raw + ": --level is for AMReX plotfiles, and this is raw; leave it out\n");
   EXPECT_EQ(refusal({"inspect", raw, "--dataset", "rho"}),
             "weir: " + raw + ": lists no dataset for --dataset rho; it has one volume without a name\n");
 }

@@ -122,6 +122,32 @@ TEST_F(Play, StepsOfDifferentSizes_GiveAWarning) {
   EXPECT_EQ(list_directory(out_).size(), 2U);
 }
 
+TEST_F(Play, StepThatNamesNoRange_GivesAWarning) {
+  const std::string half = make("a.nvdb", "constant", 1, "9x8x7");
+  const std::string raw = directory_ / "holes_9x8x7_float32.raw";
+  const std::string holes = directory_ / "b.nvdb";
+  ASSERT_EQ(run_weir({"sample", "some-nan", "-o", raw}).exit_code, 0);
+  ASSERT_EQ(run_weir({"convert", raw, "--lossless", "--nonfinite", "keep", "-o", holes}).exit_code, 0);
+  const auto said = [&](const std::vector<std::string>& inputs, const std::vector<std::string>& more) {
+    std::vector<std::string> all{"play"};
+    all.insert(all.end(), inputs.begin(), inputs.end());
+    const CommandResult result = run_weir(with(with(all, {"-o", out_}), more));
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return result.err;
+  };
+  const std::string none = " names no finite range of its values, and has no certificate that does; ";
+  EXPECT_EQ(said({half, holes}, {}).find(none), std::string::npos) << "the certificate has one";
+  std::filesystem::remove(holes + ".json");
+  const std::string without = said({half, holes}, {});
+  EXPECT_NE(without.find("warning " + holes + ":" + none +
+                         "the colours of all frames are made without it; give --range LOW,HIGH\n"),
+            std::string::npos)
+      << without;
+  const std::string alone = said({holes}, {});
+  EXPECT_NE(alone.find("each frame has colours of its own; give --range LOW,HIGH\n"), std::string::npos) << alone;
+  EXPECT_EQ(said({half, holes}, {"--range", "0,1"}).find(none), std::string::npos);
+}
+
 TEST_F(Play, FramesLeftByALongerSeries_GiveAWarning) {
   const std::string volume = make("a.nvdb", "noise", 1);
   std::filesystem::create_directory(out_);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -71,6 +72,32 @@ TEST_F(Render, SameBytesForAnyThreadsAndOtherForAnotherSeed) {
   EXPECT_EQ(one, bytes({"--threads", "2", "--seed", "5", "--backend", "cpu"}));
   EXPECT_EQ(one, bytes({"--threads", "7", "--seed", "5", "--progress", "always"}));
   EXPECT_NE(one, bytes({"--seed", "6"}));
+}
+
+// Where the root names an infinity, the certificate's range is that of the colours, and of the warning.
+TEST_F(Render, KeptInfinity_LeavesTheRangeOfTheOtherValues) {
+  std::vector<float> values(20 * 20 * 20);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = 1000.0F + static_cast<float>(i % 20);
+  values[20 * 20 * 10] = 5000;
+  values[20 * 20 * 10 + 1] = std::numeric_limits<float>::infinity();
+  const auto* const bytes = reinterpret_cast<const char*>(values.data());
+  write_file(directory_ / "i_20x20x20_float32.raw", {bytes, values.size() * sizeof(float)});
+  const CommandResult converted = run_weir({"convert", directory_ / "i_20x20x20_float32.raw", "--lossless",
+                                            "--nonfinite", "keep", "-o", directory_ / "i.nvdb"});
+  ASSERT_EQ(converted.exit_code, 0) << converted.err;
+  const auto picture = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> all{
+        "render", directory_ / "i.nvdb", "-o",  out_ + "/i.png", "--overwrite", "--size", "40x30", "--spp",
+        "2",      "--backend",           "cpu", "--mode"};
+    all.insert(all.end(), more.begin(), more.end());
+    const CommandResult result = run_weir(all);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(result.err.find("the picture shows no surface"), std::string::npos) << result.err;
+    return read_file(out_ + "/i.png");
+  };
+  EXPECT_EQ(picture({"dvr"}), picture({"dvr", "--range", "1000,5000"}));
+  EXPECT_NE(picture({"dvr"}), picture({"dvr", "--range", "1000,1019"}));
+  picture({"iso", "--iso", "4500"});
 }
 
 TEST_F(Render, Json) {
@@ -155,7 +182,7 @@ TEST_F(Render, Refusals) {
   }
   expect_refused(arguments("no/a.png"), 5,
                  out_ + "/no/a.png: the directory " + out_ + "/no does not exist; make it or choose another name");
-  expect_refused(arguments("a.jpg"), 2, out_ + "/a.jpg: an image's name must end in .png or .exr");
+  expect_refused(arguments("a.jpg"), 2, "-o " + out_ + "/a.jpg: an image's name must end in .png or .exr");
   expect_refused(
       arguments("a.png", {"--colormap", "jet"}), 2,
       "--colormap is \"jet\", it must be gray, white, heat, cool-warm, dusk, ct, water, magma, viridis, plasma, "

@@ -64,6 +64,14 @@ TEST_F(Verify, FileThatIsNotThere_IsOneLine) {
   EXPECT_EQ(result.err, "weir: structure: " + none + ": cannot open: No such file or directory\n");
 }
 
+TEST_F(Verify, FileOfAnotherFormat_IsSaidWithTheCommandThatConvertsIt) {
+  const std::string raw = directory_ / "v_40x30x20_float32.raw";
+  const CommandResult result = run_weir({"verify", raw, "--progress", "never"});
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_EQ(result.err,
+            "weir: structure: " + raw + ": is no NanoVDB file; convert it first: weir convert " + raw + '\n');
+}
+
 TEST_F(Verify, SeveralFiles_AreAllCheckedAndOneThatFailsCounts) {
   for (const std::string name : {"step_0001.nvdb", "step_0010.nvdb"}) {
     fs::copy_file(volume_, directory_ / name);
@@ -86,7 +94,7 @@ TEST_F(Verify, SeveralFiles_AreAllCheckedAndOneThatFailsCounts) {
 TEST_F(Verify, IntactVolumeHoldsAllChecks) {
   const CommandResult result = verify();
   EXPECT_EQ(result.exit_code, 0);
-  EXPECT_EQ(result.out, volume_ + ": all 44 checks hold\n");
+  EXPECT_EQ(result.out, volume_ + ": all 55 checks hold\n");
   EXPECT_EQ(result.err, "");
   EXPECT_EQ(fs::file_size(volume_), 450001U);
 }
@@ -95,7 +103,7 @@ TEST_F(Verify, JsonListsEveryCheck) {
   const CommandResult result = run_weir({"verify", volume_, "--json", "--progress", "never"});
   const auto report = nlohmann::json::parse(result.out);
   EXPECT_EQ(report["ok"], true);
-  EXPECT_EQ(report["checks"].size(), 44U);
+  EXPECT_EQ(report["checks"].size(), 55U);
   write_file(sidecar_path(volume_), "{}");
   const CommandResult broken = run_weir({"verify", volume_, "--json", "--progress", "never"});
   EXPECT_EQ(broken.exit_code, 3);

@@ -104,6 +104,27 @@ TEST_F(WatchCheck, MissingDirectory_LeavesTheWatchMethodOpen) {
   EXPECT_NE(check(keys + "watch = 'inotify'\n").out.find("\n  watch       inotify\n"), std::string::npos);
 }
 
+TEST_F(WatchCheck, WithoutAViewer_SaysWhy) {
+  const auto viewer = [&](const std::string& keys) {
+    return check("[service]\n" + keys + "\n[[watch]]\ndirectory = 'in'\noutput = 'out'\n").out;
+  };
+  EXPECT_NE(viewer("memory = '256MiB'")
+                .find("\n  viewer      none: memory is 256.0 MiB, and below 1.0 GiB there is none by default; set "
+                      "viewer_memory = \"128MiB\" or give more memory\n"),
+            std::string::npos);
+  EXPECT_NE(viewer("viewer_memory = 0").find("\n  viewer      none: viewer_memory is 0 in the configuration\n"),
+            std::string::npos);
+}
+
+TEST_F(WatchCheck, DeleteAfterWithoutADeletion_IsWarnedOf) {
+  const std::string keys = "[[watch]]\ndirectory = 'in'\noutput = 'out'\n";
+  const std::string warning =
+      "\n  warning     delete_after has no effect, since nothing is deleted; set source = \"delete-after-verify\", or "
+      "leave it out\n";
+  EXPECT_NE(check(keys + "delete_after = '1h'\n").out.find(warning), std::string::npos);
+  EXPECT_EQ(check(keys).out.find("delete_after"), std::string::npos);
+}
+
 TEST_F(WatchCheck, AMistakeIsOneLineAndExitCode3) {
   const CommandResult result = check("[[watch]]\ndirectory = 'in'\noutput = 'out'\nrate = 'fast'\n");
   EXPECT_EQ(result.exit_code, 3);

@@ -13,8 +13,27 @@ namespace {
 
 const std::string kExitStatus =
     ".SH EXIT STATUS\n.TP\n0\ndone\n.TP\n1\ninternal fault\n.TP\n2\nusage: a wrong option or argument\n.TP\n3\nbad or "
-    "unreadable input\n.TP\n4\nthe budget cannot be met\n.TP\n5\ninput or output failed: disk full, "
-    "permission\n.TP\n129\ninterrupted: the terminal was closed (SIGHUP)\n.TP\n130\ninterrupted\n";
+    "unreadable input\n.TP\n4\nthe budget cannot be met\n.TP\n5\ncannot read, write or connect: disk full, permission, "
+    "no such directory, no service at the address, a plug\\-in of another build\n.TP\n129\ninterrupted: the terminal "
+    "was closed (SIGHUP)\n.TP\n130\ninterrupted: SIGINT or SIGTERM (weir watch and weir view end with 0)\n";
+
+const std::string kEnvironment = R"(.SH ENVIRONMENT
+.TP
+WEIR_TOKEN
+token of the service, for weir status, jobs, retry, cancel, pause and resume, where neither \-\-token\-file nor the file of \-\-config has one
+.TP
+WEIR_DRIVERS
+folder of the plug\-ins (weir_hdf5.so and others) instead of lib/weir, an absolute path
+.TP
+TMPDIR
+directory for temporary files of weir view and of weir render \-\-volume dense; default: /tmp
+.TP
+HDF5_PLUGIN_PATH
+directories with the plug\-ins of HDF5's filters, which the HDF5 library reads
+.TP
+STATE_DIRECTORY
+directory of weir watch's state file, where its configuration names none; systemd sets it
+)";
 
 TEST(ManPage, OfTheCommandItself) {
   test::DescribedApp described;
@@ -50,7 +69,7 @@ weir verify cloud.nvdb
 weir render cloud.nvdb \-o cloud.png
 .RE
 .fi
-)" + kExitStatus + R"(.SH SEE ALSO
+)" + kExitStatus + kEnvironment + R"(.SH SEE ALSO
 \fBweir\-open\fR(1),
 \fBweir\-measure\fR(1)
 )");

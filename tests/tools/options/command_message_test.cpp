@@ -29,6 +29,23 @@ TEST(CommandMessage, FullDisk_OffersOptionsOfTheCommandAlone) {
             "a: cannot write: Disk quota exceeded; free space on that file system or choose another with -o");
 }
 
+TEST(CommandMessage, InputThatIsNotThere_IsSaidWithARemedyWhereItsNameIsRelative) {
+  const auto missing = [](const std::string& option, const std::string& named, const std::string& path) {
+    CLI::App app;
+    std::string text;
+    app.add_subcommand("read")->add_option(option, text);
+    std::vector<std::string> words{named, "read"};  // the last one first, as parse takes them
+    if (option.starts_with("-")) words.insert(words.begin() + 1, option);
+    app.parse(std::move(words));
+    return command_message(app, io_error(path, "open", ENOENT));
+  };
+  const std::string absent = ": cannot open: No such file or directory";
+  EXPECT_EQ(missing("input", "a.nvdb", "a.nvdb"), "a.nvdb" + absent + "; check the name and the current directory");
+  EXPECT_EQ(missing("input", "/d/a.nvdb", "/d/a.nvdb"), "/d/a.nvdb" + absent);
+  EXPECT_EQ(missing("input", "a.nvdb", "b.nvdb"), "b.nvdb" + absent);
+  EXPECT_EQ(missing("--scene", "a.toml", "a.toml"), "a.toml" + absent);
+}
+
 TEST(CommandMessage, AnyOtherError_IsSaidAsItIs) { EXPECT_EQ(message({}, EIO), io_error("a", "write", EIO).what()); }
 
 }  // namespace

@@ -14,6 +14,12 @@ TEST(ParserWording, ATextOfAnotherForm_Stays) {
   EXPECT_EQ(parser_wording(""), "");
 }
 
+TEST(ParserWording, AnotherNumberOfValues_IsCounted) {
+  EXPECT_EQ(parser_wording("--a: At least 4 required but received 1"), "--a has 1 value, it takes 4");
+  EXPECT_EQ(parser_wording("--a: At Most 4 required but received 5", [](const std::string&) { return "B C D E"; }),
+            "--a has 5 values, it takes 4: B C D E");
+}
+
 TEST(ParserWording, ManyChoices_AreListedAsWeirDoes) {
   EXPECT_EQ(parser_wording("--progress: may be not in {auto,always,never}"),
             "--progress is \"may be\", it must be auto, always or never");
@@ -31,6 +37,8 @@ TEST(ParserWording, EveryWrongValue_IsNamedWithWhatItMustBe) {
   EXPECT_EQ(refused({"retry", "abc"}), "weir: id is \"abc\", it must be a number");
   EXPECT_EQ(refused({"flip", "a.png", "b.png", "--ppd", "many"}), "weir: --ppd is \"many\", it must be a number");
   EXPECT_EQ(refused({"render", "a.nvdb", "-o", "a.png", "--spp"}), "weir: --spp needs a value, N");
+  EXPECT_EQ(refused({"compare", "a.raw", "a.nvdb", "--vector", "b.raw", "b.nvdb"}),
+            "weir: --vector has 2 values, it takes 4: V V.nvdb W W.nvdb");
   EXPECT_EQ(refused({"convert", "a.raw", "--dataset"}), "weir: --dataset needs a value, NAME");
   EXPECT_EQ(refused({"convert", "a.raw", "--rate", "3", "--rate", "4"}), "weir: --rate is given 2 times; give it once");
   EXPECT_EQ(refused({"render", "a.nvdb", "-o", "a.png", "--volume", "both"}),

@@ -3,10 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "format/base/error.h"
+#include "format/layout/nanovdb_layout.h"
 #include "format/nanovdb/nvdb_file.h"
 #include "tests/support/run_command.h"
 
@@ -56,13 +62,61 @@ TEST(SummariseSeries, RangeBackgroundAndBoxes) {
   EXPECT_EQ(summary.background, 0.5F);
   EXPECT_EQ(summary.difference, "");
   summary = summarise_series(std::vector<std::string>{half, holes});
-  EXPECT_EQ(summary.range->min, 0.5F) << "a root with infinities names no range";
-  EXPECT_EQ(summary.range->max, 0.5F);
+  const auto certified = nlohmann::json::parse(read_file(holes + ".json"))["value_range"];
+  EXPECT_EQ(summary.range->min, std::min(0.5F, certified[0].get<float>())) << "where the root names infinities";
+  EXPECT_EQ(summary.range->max, std::max(0.5F, certified[1].get<float>()));
+  EXPECT_LT(summary.range->min, summary.range->max);
+  EXPECT_EQ(summary.without_range, "");
+  std::filesystem::remove(holes + ".json");
+  const SeriesSummary uncertified = summarise_series(std::vector<std::string>{half, holes});
+  EXPECT_EQ(uncertified.range->min, 0.5F) << "infinities in every macrocell";
+  EXPECT_EQ(uncertified.range->max, 0.5F);
+  EXPECT_EQ(uncertified.without_range, holes);
   EXPECT_EQ(summary.difference,
             half + " has 9 x 8 x 7 voxels from 0,0,0, " + holes + " has 9 x 8 x 8 voxels from 0,0,0");
   summary = summarise_series(std::vector<std::string>{broken});
   EXPECT_FALSE(summary.range);
   EXPECT_FALSE(summary.background);
+}
+
+TEST(SummariseSeries, OtherVoxelSizesAndOrigins) {
+  const TemporaryDirectory directory;
+  const std::string raw = directory / "v_9x8x7_float32.raw";
+  ASSERT_EQ(run_weir({"sample", "gradient", "-o", raw}).exit_code, 0);
+  const auto make = [&](const std::string& name, const std::string& spacing, const std::string& origin) {
+    EXPECT_EQ(run_weir({"convert", raw, "--lossless", "--spacing", spacing, "--origin", origin, "-o", directory / name})
+                  .exit_code,
+              0);
+    return directory / name;
+  };
+  const std::string a = make("a.nvdb", "1,1,1", "0,0,0");
+  const std::string b = make("b.nvdb", "1,1,6", "0,0,0");
+  const std::string c = make("c.nvdb", "1,1,1", "500,0,0");
+  EXPECT_EQ(summarise_series(std::vector<std::string>{a, a}).difference, "");
+  EXPECT_EQ(summarise_series(std::vector<std::string>{a, b, c}).difference,
+            a + " has voxels of 1 x 1 x 1 from 0,0,0, " + b + " has voxels of 1 x 1 x 6 from 0,0,0");
+  EXPECT_EQ(summarise_series(std::vector<std::string>{a, c}).difference,
+            a + " has voxels of 1 x 1 x 1 from 0,0,0, " + c + " has voxels of 1 x 1 x 1 from 500,0,0");
+}
+
+// As OpenVDB's tools leave them: the ends in the root are no values.
+TEST(SummariseSeries, FilesWithoutStatistics) {
+  const TemporaryDirectory directory;
+  const std::string raw = directory / "v_9x8x7_float32.raw";
+  const std::string path = directory / "v.nvdb";
+  ASSERT_EQ(run_weir({"sample", "gradient", "-o", raw}).exit_code, 0);
+  ASSERT_EQ(run_weir({"convert", raw, "--lossless", "-o", path}).exit_code, 0);
+  std::string bytes = read_file(path);
+  const std::uint64_t at = NvdbFile(path).grid().grid_offset() + nvdb::grid::kFlags;
+  bytes[at] = static_cast<char>(bytes[at] & ~static_cast<int>(nvdb::grid::kFlagMinMax));
+  write_file(path, bytes);
+  EXPECT_TRUE(std::isnan(NvdbFile(path).grid().value_min()));
+  EXPECT_TRUE(std::isnan(NvdbFile(path).grid().value_max()));
+  SeriesSummary summary = summarise_series(std::vector<std::string>{path});
+  ASSERT_TRUE(summary.range);
+  EXPECT_EQ(summary.range->min, 0) << "of the macrocells, since the sidecar is of other bytes";
+  EXPECT_EQ(summary.range->max, 1);
+  EXPECT_EQ(summary.without_range, "");
 }
 
 TEST(SummariseSeries, ReadsHeadsAlone) {

@@ -94,10 +94,10 @@ TEST(PlotCanvas, SvgHasTheSheetsSize) {
 }
 
 TEST(PlotCanvas, FormatIsTheNamesEnding) {
-  EXPECT_EQ(plot_format("a/b.svg"), PlotFormat::svg);
-  EXPECT_EQ(plot_format("a/b.png"), PlotFormat::png);
-  EXPECT_EQ(message_of_error(ErrorKind::usage, [] { plot_format("a.jpg"); }),
-            "a.jpg: a chart's name must end in .png or .svg");
+  EXPECT_EQ(plot_format("a/b.svg", "plot"), PlotFormat::svg);
+  EXPECT_EQ(plot_format("a/b.png", "plot"), PlotFormat::png);
+  EXPECT_EQ(message_of_error(ErrorKind::usage, [] { plot_format("a.jpg", "plot"); }),
+            "--plot a.jpg: a chart's name must end in .png or .svg");
 }
 
 }  // namespace

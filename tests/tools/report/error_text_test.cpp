@@ -28,6 +28,13 @@ TEST(ErrorText, WithoutARange_SaysTheErrorAlone) {
   EXPECT_EQ(error_text(sidecar(5, 5, "K"), error), "PSNR none, largest error 2 K");
 }
 
+TEST(ErrorText, GradientOfNoVoxel_IsNotDefined) {
+  EXPECT_EQ(gradient_text({0, std::nullopt, 0, 0, 512}, "K"),
+            "not defined: every voxel is at or beside one that is not finite");
+  EXPECT_EQ(gradient_text({0, std::nullopt, 0, 511, 1}, "K"),
+            "largest error 0 K per world unit; 1 voxel at or beside one that is not finite left out");
+}
+
 TEST(ErrorText, Lossless) {
   Sidecar::CertifiedError error;
   error.lossless = true;

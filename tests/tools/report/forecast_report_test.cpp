@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace weir::forecast_report_test {
 namespace {
 
@@ -84,6 +86,46 @@ TEST(ForecastReport, Lossless_IsSaidOfTheSampleAlone) {
   EXPECT_NE(forecast_text(f, source(), to_rate()).find("  error     lossless in the sample, values from 0 to 4000\n"),
             std::string::npos);
   EXPECT_EQ(forecast_json(f, source(), to_rate())["error"]["psnr_db"], nullptr);
+}
+
+TEST(ForecastReport, WhatFloat32Rounds_IsSaid) {
+  Forecast f = sampled();
+  EXPECT_EQ(forecast_text(f, source(), to_rate()).find("rounded"), std::string::npos);
+  EXPECT_EQ(forecast_json(f, source(), to_rate())["conversion_loss"].dump(),
+            R"({"inexact":0,"overflow":0,"max_abs_error":0.0})");
+  f.loss = {1000, 0, 1};
+  EXPECT_NE(forecast_text(f, source(), to_rate())
+                .find("  rounded   1000 values rounded to float32, by up to 1, in the sample; the error does not count "
+                      "that\n"),
+            std::string::npos)
+      << forecast_text(f, source(), to_rate());
+  f.whole = true;
+  EXPECT_NE(forecast_text(f, source(), to_rate())
+                .find("  rounded   1000 values rounded to float32, by up to 1; the error does not count that\n"),
+            std::string::npos);
+  EXPECT_EQ(forecast_json(f, source(), to_rate())["conversion_loss"].dump(),
+            R"({"inexact":1000,"overflow":0,"max_abs_error":1.0})");
+  f.not_sampled = "no";
+  EXPECT_EQ(forecast_json(f, source(), to_rate())["conversion_loss"], nullptr);
+}
+
+TEST(ForecastReport, WithoutAFiniteValue_HasNoRange) {
+  Forecast f = sampled();
+  f.value_low = f.value_high = std::nan("");
+  EXPECT_NE(forecast_text(f, source(), to_rate()).find("  error     none: no value of the sample is finite\n"),
+            std::string::npos);
+  EXPECT_EQ(nlohmann::json::parse(forecast_json(f, source(), to_rate())["error"]["value_range"].dump()),
+            (nlohmann::json{nullptr, nullptr}));
+}
+
+TEST(ForecastReport, NamesThatSteerATerminal_AreOneLine) {
+  SourceInfo info = source();
+  info.path = "a\nb\x1b[31m.raw";
+  ConversionOptions options = to_rate();
+  options.output = "o\nut.nvdb";
+  const std::string text = forecast_text(sampled(), info, options);
+  EXPECT_EQ(text.find("a\\nb\\x1b[31m.raw: 1024x1024x1024 voxels"), 0U) << text;
+  EXPECT_NE(text.find("\n  writes    o\\nut.nvdb: "), std::string::npos) << text;
 }
 
 TEST(ForecastReport, WithAScene_TellsTheErrorOfWhatItShows) {

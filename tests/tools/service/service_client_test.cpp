@@ -61,6 +61,21 @@ TEST_F(ServiceCommands, ListJobs) {
   EXPECT_EQ(weir(served, {"jobs", "--state", "done", "--offset", "5"}).out, "no jobs beyond 1\n");
 }
 
+TEST_F(ServiceCommands, JobsOfAnUnknownWatch_AreRefusedWithTheLabels) {
+  for (const char* label : {"/scratch/run 2", "all"}) {
+    control_.now.watches.emplace_back();
+    control_.now.watches.back().label = label;
+  }
+  const Served served(control_);
+  const CommandResult unknown = weir(served, {"jobs", "--watch", "nope"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_EQ(unknown.err, "weir: --watch is \"nope\", which no watch is called; there are /scratch/run 2, all\n");
+  EXPECT_EQ(unknown.out, "");
+  EXPECT_EQ(weir(served, {"jobs", "--watch", "all"}).out, "no such jobs\n") << "it has none yet";
+  const CommandResult former = weir(served, {"jobs", "--watch", "/scratch/run 1", "--state", "waiting"});
+  EXPECT_EQ(former.exit_code, 0) << "it has jobs, though the configuration names it no more; " << former.err;
+}
+
 TEST_F(ServiceCommands, ShowTheStatus) {
   const Served served(control_);
   const CommandResult text = weir(served, {"status"});
@@ -137,13 +152,12 @@ TEST_F(ServiceCommands, AskAtTheUnixSocket) {
 }
 
 TEST_F(ServiceCommands, RetryNeedsEitherJobIdsOrAllFailed) {
-  const std::string message = "weir: give the IDs of the jobs to try again, as weir jobs lists them, or --all-failed\n";
-  for (const std::vector<std::string>& arguments :
-       {std::vector<std::string>{"retry"}, std::vector<std::string>{"retry", "1", "--all-failed"}}) {
-    const CommandResult result = run_weir(arguments);
-    EXPECT_EQ(result.exit_code, 2);
-    EXPECT_EQ(result.err, message);
-  }
+  const CommandResult neither = run_weir({"retry"});
+  EXPECT_EQ(neither.exit_code, 2);
+  EXPECT_EQ(neither.err, "weir: give the IDs of the jobs to try again, as weir jobs lists them, or --all-failed\n");
+  const CommandResult both = run_weir({"retry", "1", "--all-failed"});
+  EXPECT_EQ(both.exit_code, 2);
+  EXPECT_EQ(both.err, "weir: give IDs or --all-failed, not both\n");
 }
 
 TEST_F(ServiceCommands, NoServiceAtTheAddress_IsReported) {
@@ -162,7 +176,7 @@ TEST_F(ServiceCommands, NoServiceAtTheAddress_IsReported) {
 TEST_F(ServiceCommands, RefuseAMalformedAddress) {
   const CommandResult result = run_weir({"jobs", "--address", "8470"});
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_EQ(result.err, "weir: \"8470\" is no address; write HOST:PORT, as 127.0.0.1:8470 or [::1]:8470\n");
+  EXPECT_EQ(result.err, "weir: --address: \"8470\" is no address; write HOST:PORT, as 127.0.0.1:8470 or [::1]:8470\n");
 }
 
 TEST_F(ServiceCommands, SendTheTokenFromFileOrEnvironment) {
@@ -173,6 +187,9 @@ TEST_F(ServiceCommands, SendTheTokenFromFileOrEnvironment) {
                              ": the service wants its token; give it with --token-file or WEIR_TOKEN\n"));
   write_file(directory_ / "token", "secret\n");
   EXPECT_EQ(weir(served, {"status", "--token-file", directory_ / "token"}).exit_code, 0);
+  const CommandResult missing = weir(served, {"status", "--token-file", directory_ / "nope"});
+  EXPECT_EQ(missing.exit_code, 3);
+  EXPECT_EQ(missing.err, "weir: " + (directory_ / "nope") + ": cannot open: No such file or directory\n");
   write_file(directory_ / "other", "other\n");
   for (const std::string& empty : {directory_ / "empty", directory_.path().string()}) {
     if (empty == directory_ / "empty") write_file(empty, " \n");

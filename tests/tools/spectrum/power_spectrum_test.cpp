@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -86,7 +87,7 @@ TEST_F(PowerSpectrumTest, AWaveIsInTheShellOfItsNumber) {
   const PowerSpectrum found =
       of([](const Index3& i) { return 3 + std::cos(2 * std::numbers::pi * 8 * static_cast<double>(i.x) / 64); });
   EXPECT_EQ(found.block, (Index3{64, 64, 64}));
-  EXPECT_EQ(found.blocks, 4U);
+  EXPECT_EQ(found.blocks, 8U);
   ASSERT_GT(found.shells.size(), 50U);
   EXPECT_NEAR(total(found), 0.5, 1e-5);
   for (const Shell& shell : found.shells) {
@@ -162,6 +163,46 @@ TEST_F(PowerSpectrumTest, WaveNumbersAreOfTheWorld) {
       EXPECT_NEAR(shell.source, 0, 1e-6) << shell.wave_number;
     }
   }
+}
+
+// Of the longest axis: two planes do not make one shell of all wave numbers.
+TEST_F(PowerSpectrumTest, ShellsOfAThinVolumeAreAsNarrowAsItsLongestAxisHasThem) {
+  extent_ = {128, 128, 2};
+  const PowerSpectrum found =
+      of([](const Index3& i) { return std::cos(2 * std::numbers::pi * 8 * static_cast<double>(i.x) / 64); });
+  EXPECT_EQ(found.block, (Index3{64, 64, 2}));
+  ASSERT_GT(found.shells.size(), 40U);
+  EXPECT_EQ(found.shells[0].wave_number, 1.0 / 64);
+  EXPECT_EQ(found.shells[0].lowest, 1.0 / 64);
+  EXPECT_NEAR(found.shells[7].source, 1.0 / 3, 1e-5);
+  EXPECT_NEAR(found.shells[20].source, 0, 1e-6);
+}
+
+TEST_F(PowerSpectrumTest, ShellsAreNotTooManyWhateverTheSpacing) {
+  spacing_ = {1, 1, 1e4};
+  const PowerSpectrum found = of(noise);
+  EXPECT_LE(found.shells.size(), 512U);
+  EXPECT_EQ(found.shells[0].lowest, 1 / 64e4);
+  EXPECT_NEAR(total(found), 1, 0.05);
+  for (std::size_t i = 0; i < found.shells.size(); ++i) {
+    const Shell& shell = found.shells[i];
+    EXPECT_GT(shell.modes, 0U);
+    EXPECT_LE(shell.lowest, shell.wave_number + 1 / 1024.0);
+    if (i > 0) {
+      EXPECT_GT(shell.lowest, found.shells[i - 1].wave_number);
+    }
+  }
+}
+
+TEST_F(PowerSpectrumTest, BlocksReachTheUpperFaces) {
+  extent_ = {95, 95, 95};
+  const PowerSpectrum found = of(noise, [](const Index3& i) {
+    return std::max({i.x, i.y, i.z}) >= 64 ? 0 : static_cast<double>(static_cast<float>(noise(i)));
+  });
+  EXPECT_EQ(found.blocks, 8U);
+  double error = 0;
+  for (const Shell& shell : found.shells) error += shell.error;
+  EXPECT_GT(error / total(found), 0.1);
 }
 
 TEST_F(PowerSpectrumTest, BlocksWithAValueThatIsNotFiniteAreLeftOut) {

@@ -5,13 +5,15 @@
 namespace weir::spectrum_report_test {
 namespace {
 
-/// Shells of 1, 2 and 3 cycles in four world units, of power 1, whose errors are `errors`.
+/// Shells of 1, 2 and 3 cycles in four world units, of power 1, whose errors are `errors`; the second and the third
+/// begin 0.05 below.
 PowerSpectrum spectrum_of(const std::vector<double>& errors) {
   PowerSpectrum spectrum;
   spectrum.block = {64, 64, 32};
   spectrum.blocks = 7;
   for (std::size_t i = 0; i < errors.size(); ++i) {
-    spectrum.shells.push_back({0.25 * static_cast<double>(i + 1), 6 * (i + 1), 1, 0.5, errors[i]});
+    const double number = 0.25 * static_cast<double>(i + 1);
+    spectrum.shells.push_back({number, 6 * (i + 1), 1, 0.5, errors[i], i == 0 ? number : number - 0.05});
   }
   return spectrum;
 }
@@ -20,7 +22,7 @@ TEST(SpectrumReport, SaysToWhichWavelengthTheErrorIsSmall) {
   const std::string blocks = "7 blocks of 64 x 64 x 32 voxels\n";
   EXPECT_EQ(
       spectrum_text(spectrum_of({0.001, 0.01, 0.02})),
-      "spectrum   the error has at most 1 % of the source's power at wavelengths above 1.333 world units; " + blocks);
+      "spectrum   the error has at most 1 % of the source's power at wavelengths above 1.429 world units; " + blocks);
   EXPECT_EQ(spectrum_text(spectrum_of({0.001, 0.01, 0.01})),
             "spectrum   the error has at most 1 % of the source's power at every wavelength; " + blocks);
   EXPECT_EQ(

@@ -18,7 +18,7 @@ SweepReport sample_report() {
   report.total_s = 3.5;
   report.peak_rss_bytes = 77;
   report.rows.push_back(
-      {"auto", 2.5, 1600, SweepResult{"fpn", 1600, {0.1, 0.3, 0.25, 12.75, 1.5, false}, 0.5, 12}, ""});
+      {"auto", 2.5, 1600, SweepResult{"fpn", 1600, {0.1, 0.3, 0.25, 12.75, 1.5, false}, 0.5, 12, {7, 0, 0.5}}, ""});
   report.rows.push_back(
       {"zfp", 8, 500, SweepResult{"zfp", 496, {0, 0, 0, std::nullopt, 0, true}, 0.25, std::nullopt}, ""});
   report.rows.push_back({"paper", 20, 200, std::nullopt, "no, not \"this\""});
@@ -40,13 +40,16 @@ TEST(SweepReport, Json) {
       "memory_bytes": 1048576, "total_s": 3.5, "peak_rss_bytes": 77, "rows": [
       {"method": "auto", "rate": 2.5, "bytes_asked": 1600, "encoding": "fpn", "bytes_got": 1600,
        "bits_per_voxel": 12.8, "mse": 0.1, "nmse": 0.25, "psnr_db": 12.75, "max_abs": 1.5, "lossless": false,
-       "seconds": 0.5, "gb_per_s": 8e-6, "leaves_kept": 12, "note": ""},
+       "seconds": 0.5, "gb_per_s": 8e-6, "leaves_kept": 12,
+       "conversion_loss": {"inexact": 7, "overflow": 0, "max_abs_error": 0.5}, "note": ""},
       {"method": "zfp", "rate": 8.0, "bytes_asked": 500, "encoding": "zfp", "bytes_got": 496,
        "bits_per_voxel": 3.968, "mse": 0.0, "nmse": 0.0, "psnr_db": null, "max_abs": 0.0, "lossless": true,
-       "seconds": 0.25, "gb_per_s": 1.6e-5, "leaves_kept": null, "note": ""},
+       "seconds": 0.25, "gb_per_s": 1.6e-5, "leaves_kept": null,
+       "conversion_loss": {"inexact": 0, "overflow": 0, "max_abs_error": 0.0}, "note": ""},
       {"method": "paper", "rate": 20.0, "bytes_asked": 200, "encoding": null, "bytes_got": null,
        "bits_per_voxel": null, "mse": null, "nmse": null, "psnr_db": null, "max_abs": null, "lossless": null,
-       "seconds": null, "gb_per_s": null, "leaves_kept": null, "note": "no, not \"this\""}]})"));
+       "seconds": null, "gb_per_s": null, "leaves_kept": null, "conversion_loss": null,
+       "note": "no, not \"this\""}]})"));
 }
 
 TEST(SweepReport, Table) {
@@ -58,6 +61,17 @@ TEST(SweepReport, Table) {
             "zfp        8          500        496       3.968        zfp  lossless    0          0     0.25  1.6e-05  "
             "     -\n"
             "paper     20          200  no, not \"this\"\n");
+}
+
+TEST(SweepReport, NoteOfWhatFloat32Loses_WhereThatCounts) {
+  SweepResult result = *sample_report().rows[0].result;
+  EXPECT_EQ(loss_note(result), "7 values rounded to float32, by up to 0.5");
+  result.loss.max_abs_error = 0.01 * result.error.max_abs;
+  EXPECT_EQ(loss_note(result), "") << "far less than the error";
+  result.loss.overflow = 1;
+  EXPECT_EQ(loss_note(result), "7 values rounded to float32, by up to 0.015, 1 value beyond float32 infinite");
+  result.loss = {};
+  EXPECT_EQ(loss_note(result), "");
 }
 
 // A volume of one value of which something was lost.

@@ -45,12 +45,15 @@ TEST_F(CertificateCheck, FigureThatContradictsAnother_Fails) {
   EXPECT_EQ(failed([](Sidecar& s) { s.error.psnr_db.reset(); }), "sidecar error.psnr_db\n");
   EXPECT_EQ(failed([](Sidecar& s) { s.error.lossless = true; }), "sidecar error.lossless\n");
   EXPECT_EQ(failed([](Sidecar& s) { s.error.mse = 0, s.error.max_abs = 0, s.error.psnr_db.reset(); }),
-            "sidecar error.rmse\nsidecar error.max_abs\n");
+            "sidecar error.rmse\nsidecar error.max_abs\nsidecar error.nmse\n");
+  EXPECT_EQ(failed([](Sidecar& s) { s.error.nmse *= 1.001; }), "sidecar error.nmse\n");
+  EXPECT_EQ(failed([](Sidecar& s) { s.error.nmse = -s.error.nmse; }), "sidecar error.nmse\n");
   EXPECT_EQ(failed([](Sidecar& s) { s.source.extent = {1, 2, 3}; }).substr(0, 21), "sidecar source.extent");
   EXPECT_EQ(failed([](Sidecar& s) { s.budget.rate = 99; }), "sidecar budget.rate\n");
   EXPECT_EQ(failed([](Sidecar& s) { s.budget.dense_float32_bytes = 8; }), "sidecar budget.dense_float32_bytes\n");
   EXPECT_EQ(failed([](Sidecar& s) { s.selection.leaves_total = 1; }),
-            "sidecar selection.leaves_kept of leaves_total\n");
+            "sidecar selection.leaves_total\nsidecar selection.leaves_kept of leaves_total\n");
+  EXPECT_EQ(failed([](Sidecar& s) { ++s.selection.leaves_total; }), "sidecar selection.leaves_total\n");
   EXPECT_EQ(failed([](Sidecar& s) { s.zeros->lost = s.zeros->count + 1; }), "sidecar zeros.lost\n");
   EXPECT_EQ(failed([](Sidecar& s) { s.source.type = "float32x"; }), "sidecar source.type\n");
   EXPECT_EQ(failed([](Sidecar& s) { s.nonfinite.policy = "never"; }), "sidecar nonfinite.policy\n");
@@ -58,10 +61,45 @@ TEST_F(CertificateCheck, FigureThatContradictsAnother_Fails) {
   EXPECT_EQ(failed([](Sidecar& s) { s.conversion_loss.overflow = 1U << 30U; }), "sidecar conversion_loss.overflow\n");
   EXPECT_EQ(failed([](Sidecar& s) { s.histogram.counts[0] += 5; }), "sidecar histogram.counts\n");
   EXPECT_EQ(failed([](Sidecar& s) { s.histogram.counts[0] += 5, s.missing.policy = ""; }), "") << "as of weir 0.1";
+  EXPECT_EQ(failed([](Sidecar& s) { s.histogram.max *= 2; }), "sidecar histogram.min and max\n");
+  EXPECT_EQ(failed([](Sidecar& s) { s.histogram.min = 1; }), "sidecar histogram.min and max\n");
+  EXPECT_EQ(failed([](Sidecar& s) { s.histogram.counts.clear(); }), "sidecar histogram.counts\n");
+  EXPECT_EQ(failed([](Sidecar& s) { s.source.digest = "0123"; }), "sidecar source.digest\n");
+  EXPECT_EQ(failed([](Sidecar& s) { s.source.files_digest = std::string(32, 'G'); }), "sidecar source.files_digest\n");
+  EXPECT_EQ(failed([](Sidecar& s) { s.timing.encode_s = -1; }), "sidecar timing\n");
+  EXPECT_EQ(failed([](Sidecar& s) { s.conversion_loss.max_abs_error = -1; }),
+            "sidecar conversion_loss.max_abs_error\n");
   EXPECT_EQ(failed([](Sidecar& s) {
               s.visible = Sidecar::Visible{"a.toml", 1, 1U << 30U, s.error, ""};
             }),
             "sidecar visible.voxels\n");
+}
+
+TEST_F(CertificateCheck, GradientThatCannotBe_Fails) {
+  Sidecar good = with_error(sidecar());
+  good.gradient = Sidecar::GradientError{0.5, 0.1, 2, 40 * 30 * 20 - 7, 7};
+  const auto failed = [&](const std::function<void(Sidecar::GradientError&)>& change) {
+    Sidecar changed = good;
+    change(*changed.gradient);
+    return failed_names(changed);
+  };
+  EXPECT_EQ(failed([](Sidecar::GradientError&) {}), "");
+  EXPECT_EQ(failed([](Sidecar::GradientError& g) { g.relative_rms.reset(); }), "");
+  EXPECT_EQ(failed([](Sidecar::GradientError& g) { g.max_abs = std::nan(""); }), "") << "not finite";
+  EXPECT_EQ(failed([](Sidecar::GradientError& g) { g.rms = 2.5; }), "sidecar error.gradient.rms\n");
+  EXPECT_EQ(failed([](Sidecar::GradientError& g) { g.rms = -0.5; }), "sidecar error.gradient.rms\n");
+  EXPECT_EQ(failed([](Sidecar::GradientError& g) { g.relative_rms = -1; }), "sidecar error.gradient.relative_rms\n");
+  EXPECT_EQ(failed([](Sidecar::GradientError& g) { g.left_out = 8; }), "sidecar error.gradient.voxels and left_out\n");
+}
+
+TEST_F(CertificateCheck, VolumeWithoutAFiniteValue_HasNoRange) {
+  Sidecar changed = sidecar();
+  for (const double none : {std::nan(""), 0.0}) {  // weir 0.2.0 wrote 0
+    changed.value_range = {none, none};
+    changed.nonfinite = {40 * 30 * 20, "keep"};
+    changed.histogram = {};
+    EXPECT_EQ(failed_names(changed), "");
+  }
 }
 
 // A sidecar has null, which is read as NaN, for what is not finite.

@@ -22,6 +22,12 @@ TEST_F(TreeCensusTest, CountsLeavesTilesAndVoxels) {
   EXPECT_EQ(census.min, 0.0F);
   EXPECT_EQ(census.max, file.grid().value_max());
   EXPECT_EQ(census.nonfinite, 0U);
+  std::uint64_t zeros = 0;
+  for (int i = 0; i < 40 * 30 * 20; ++i) zeros += i % 40 < 20 || i % 997 == 0 ? 1 : 0;
+  ASSERT_EQ(file.grid().background(), 0.0F);
+  EXPECT_EQ(census.valued_voxels + census.quiet_voxels, 40U * 30 * 20);
+  EXPECT_EQ(census.zeros + census.quiet_voxels, zeros);
+  EXPECT_EQ(census.backgrounds, census.zeros);
   const auto counts = count_values(file.grid(), census.min, census.max, 10, {});
   EXPECT_EQ(std::accumulate(counts.begin(), counts.end(), std::uint64_t{0}), census.active_voxels);
 }

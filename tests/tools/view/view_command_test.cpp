@@ -93,6 +93,8 @@ TEST_F(ViewCommandTest, WhatItCannotShow_IsRefused) {
       {"view", directory_ / "empty"}, 3,
       cat(directory_ / "empty", ": holds no .nvdb file; weir convert makes them of what it holds: weir convert '",
           directory_ / "empty", "/*' -o ", directory_ / "empty", "/"));
+  expect_refused({"view", volume_, "--listen", "foo"}, 2,
+                 "--listen: \"foo\" is no address; write HOST:PORT, as 127.0.0.1:8470 or [::1]:8470");
   expect_refused({"view", volume_, "--listen", "0.0.0.0:0"}, 2,
                  "--listen 0.0.0.0:0 can be reached from other machines, so it needs --token-file FILE; or listen on "
                  "127.0.0.1");

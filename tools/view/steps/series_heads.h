@@ -12,7 +12,7 @@ class SeriesHeads {
  public:
   /// Adds the head of the file that has the path now, unless it has been read: of a file that took another's place, or
   /// could not be read before, it is read again. Whether it has been read by now. What a file that is gone has added
-  /// stays. Of a file whose head names no finite range the certificate is read, too, or its macrocells.
+  /// stays.
   bool look_at(const std::string& path);
   const SeriesSummary& summary() const { return summary_; }
 

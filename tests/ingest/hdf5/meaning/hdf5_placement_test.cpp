@@ -261,29 +261,6 @@ with h5py.File("a.h5", "w") as f:
   for (std::size_t i = 0; i < 8; ++i) EXPECT_EQ(is_missing(values[i]), i == 3 || i == 5);
 }
 
-TEST_F(Hdf5Placement, PlainAttributesOfTheDatasetOrAGroupAroundIt) {
-  write_by_h5py(scratch_, R"(
-with h5py.File("a.h5", "w") as f:
-    f.attrs["spacing"] = [9.0, 9.0, 9.0]
-    f["root"] = values("f4")
-    g = f.create_group("VTKHDF/PointData"); g.parent.attrs.update({"Spacing": [1.0, 2.0, 3.0], "Origin": [-1.0, -2.0, -3.0]})
-    g["v"] = values("f4")
-    f.create_dataset("ilastik", data=values("u1")).attrs["element_size_um"] = [3.0, 2.0, 1.0]
-    f.create_dataset("cremi", data=values("u1")).attrs.update({"resolution": [40.0, 4.0, 4.0], "offset": [3, 2, 1]})
-    f.create_dataset("cube", data=values("u1")).attrs["voxel_size"] = 0.25
-    f.create_dataset("negative", data=values("u1")).attrs["spacing"] = [1.0, -1.0, 1.0]
-)");
-  EXPECT_EQ(info_of("a.h5", "root").spacing, (Triple{9, 9, 9}));
-  EXPECT_EQ(info_of("a.h5", "VTKHDF/PointData/v").spacing, (Triple{1, 2, 3}));
-  EXPECT_EQ(info_of("a.h5", "VTKHDF/PointData/v").origin, (Triple{-1, -2, -3}));
-  EXPECT_EQ(info_of("a.h5", "ilastik").spacing, (Triple{1, 2, 3}));
-  EXPECT_EQ(info_of("a.h5", "cremi").spacing, (Triple{4, 4, 40}));
-  EXPECT_EQ(info_of("a.h5", "cremi").origin, (Triple{1, 2, 3}));
-  EXPECT_EQ(info_of("a.h5", "cube").spacing, (Triple{0.25, 0.25, 0.25}));
-  EXPECT_EQ(message_of_error(ErrorKind::input, [&] { info_of("a.h5", "negative"); }),
-            scratch_.path("a.h5") + ": its spacing has -1, which is not finite and above 0; give --spacing x,y,z");
-}
-
 // "VTKHDF File Format", ImageData: the origin is that of point 0,0,0, at which WholeExtent need not begin; cells lie
 // between points. Direction's columns are the axes' directions.
 TEST_F(Hdf5Placement, VtkHdfPointsLieOnTheLatticeAndCellsHalfASpacingOn) {

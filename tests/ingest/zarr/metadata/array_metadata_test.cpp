@@ -61,6 +61,11 @@ TEST(ZarrMetadata, Version2_WhatIsNotReadIsNamed) {
   };
   EXPECT_EQ(filter(R"({"id":"fixedscaleoffset","scale":10})"),
             "a: has the filter 'fixedscaleoffset', and weir undoes delta and shuffle; write the array without it");
+  for (const auto& [filters, shown] :
+       {std::pair(R"({"id":"delta","dtype":"<f4"})", "an object of 2"), std::pair(R"("delta")", R"("delta")")}) {
+    EXPECT_EQ(refusal_v2(zarray("[1,1,1]", "[1,1,1]", "<f4", "0", cat("\"filters\":", filters))),
+              cat("a: filters is ", shown, ", and must be null or a list; the file is damaged"));
+  }
   EXPECT_EQ(filter(R"({"id":"delta","dtype":"<f4","astype":"<i2"})"),
             "a: has the filter 'delta' from <f4 to <i2, and it is undone of one type, an integer or float32 or float64 "
             "as wide as the array's; write the array without it");

@@ -1,19 +1,33 @@
-#include "tools/view/base/finite_range.h"
+#include "tools/options/finite_range.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include "format/base/error.h"
 #include "tools/report/read_sidecar.h"
 
 namespace weir {
 namespace {
 
 std::optional<MinMax> where_finite(const MinMax& range) {
-  const bool finite = std::isfinite(range.min) && std::isfinite(range.max) && range.min <= range.max;
-  return finite ? std::optional(range) : std::nullopt;
+  return has_finite_ends(range) ? std::optional(range) : std::nullopt;
 }
 
 }  // namespace
+
+bool has_finite_ends(const MinMax& range) {
+  return std::isfinite(range.min) && std::isfinite(range.max) && range.min <= range.max;
+}
+
+std::optional<MinMax> known_range(const NvdbFile& file) {
+  const MinMax stored{file.grid().value_min(), file.grid().value_max()};
+  if (has_finite_ends(stored)) return stored;
+  try {
+    return certified_range(file);
+  } catch (const Error&) {  // a sidecar that cannot be read certifies nothing
+    return std::nullopt;
+  }
+}
 
 std::optional<MinMax> certified_range(const NvdbFile& file) {
   const std::optional<Sidecar> sidecar = own_sidecar(file);

@@ -1,11 +1,14 @@
 // Arrays of vectors and tensors: the axis of their components.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 
 #include "ingest/axes/axis_place.h"
+#include "ingest/source/component_choice.h"
 
 namespace weir {
 
@@ -29,5 +32,11 @@ ComponentAxis component_axis(std::span<const AxisPlace> axes);
 /// nothing, of 2 to kMostComponents and shorter than the three beside it; else a last one of 2, 3, 4 or 9 whatever it
 /// is.
 ComponentAxis asked_component_axis(std::span<const AxisPlace> axes);
+
+/// The axis of `axes` that `component` chooses on: none without one, where `positions`, those of --index, make a volume
+/// of the last three whatever they are. `leading_counts`: one before the last three may be it. Throws Error(usage),
+/// beginning with `said`, "here: its axes are 4 x 5 x 6 x 3", where a choice is needed, is of none, or does not fit.
+ComponentAxis chosen_component_axis(std::span<const AxisPlace> axes, std::size_t positions, const std::string& said,
+                                    const std::optional<ComponentChoice>& component, bool leading_counts = true);
 
 }  // namespace weir

@@ -1,13 +1,13 @@
-#include "ingest/hdf5/meaning/component_axis.h"
+#include "ingest/axes/component_axis.h"
 
 #include <algorithm>
 #include <array>
 #include <string_view>
 
 #include "format/base/ascii.h"
+#include "format/base/error.h"
 #include "format/base/text.h"
 #include "ingest/axes/space_axis.h"
-#include "ingest/source/component_choice.h"
 
 namespace weir {
 namespace {
@@ -49,6 +49,20 @@ ComponentAxis by_extent(std::span<const AxisPlace> axes) {
   return {last.extent, "by its extent alone", false};
 }
 
+// "0 to 2, x, y, z or magnitude"
+std::string choices_text(std::int64_t count) {
+  const std::string_view names = count == 2 ? ", x, y" : count == 3 ? ", x, y, z" : "";
+  return cat("0 to ", count - 1, names, " or magnitude");
+}
+
+Error no_choice(std::span<const AxisPlace> axes, const ComponentAxis& vectors, const std::string& said) {
+  const std::size_t positions = axes.size() - kSpaceAxes;
+  return usage_error(compose(said, ", the last of them of components (", vectors.evidence, "); give ",
+                             option("component"), ": ", choices_text(vectors.count), "; or ", option("index"), " with ",
+                             positions, positions == 1 ? " position" : " positions", " for volumes of ",
+                             axes.back().extent, " voxels along x"));
+}
+
 }  // namespace
 
 ComponentAxis component_axis(std::span<const AxisPlace> axes) {
@@ -73,6 +87,24 @@ ComponentAxis asked_component_axis(std::span<const AxisPlace> axes) {
   if (may_be(last) && is_shorter(last, axes.last(kSpaceAxes + 1).first(kSpaceAxes))) return as_asked;
   if (may_be(leading) && is_shorter(leading, axes.last(kSpaceAxes))) return {leading.extent, "as asked for", true};
   return has_extent_of_components(last) ? as_asked : ComponentAxis{};
+}
+
+ComponentAxis chosen_component_axis(std::span<const AxisPlace> axes, std::size_t positions, const std::string& said,
+                                    const std::optional<ComponentChoice>& component, bool leading_counts) {
+  ComponentAxis vectors = component ? asked_component_axis(axes) : component_axis(axes);
+  if (vectors.leading && !leading_counts) vectors = {};
+  if (!component) {
+    if (!vectors.found() || positions == axes.size() - kSpaceAxes) return {};
+    throw no_choice(axes, vectors, said);
+  }
+  if (!vectors.found()) {
+    throw usage_error(compose(said, ", none of them of components; leave ", option("component"), " out"));
+  }
+  if (!component->magnitude && component->position >= vectors.count) {
+    throw usage_error(compose(said, ", and ", option("component"), " is ", component->position, "; give ",
+                              choices_text(vectors.count)));
+  }
+  return vectors;
 }
 
 }  // namespace weir

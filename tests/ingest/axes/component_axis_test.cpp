@@ -1,4 +1,4 @@
-#include "ingest/hdf5/meaning/component_axis.h"
+#include "ingest/axes/component_axis.h"
 
 #include <gtest/gtest.h>
 
