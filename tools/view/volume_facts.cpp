@@ -10,13 +10,13 @@
 #include "gpu/image/colormap.h"
 #include "gpu/scene/scene_transfer.h"
 #include "ingest/source/convert_command.h"
+#include "tools/options/finite_range.h"
 #include "tools/report/error_text.h"
 #include "tools/report/quantity_title.h"
 #include "tools/report/read_sidecar.h"
 #include "tools/report/volume_title.h"
 #include "tools/verify/packed_census.h"
 #include "tools/verify/tree_census.h"
-#include "tools/options/finite_range.h"
 
 namespace weir {
 namespace {
