@@ -6,7 +6,8 @@
 For each file a Markdown table: opening it, and then one block of 8^3, a region of 64^3 or a level of detail of the whole,
 with the file dropped from the page cache before it is opened (cold) and just read (warm, the best of three). Bytes are
 those that the kernel read from the disk for this process, its read-ahead included, which a mapped file has when it is
-opened. Medians of positions that are spread over the volume, the same at each run.
+opened. Median and worst of positions that are spread over the parts of the volume that hold more than one value, the same at
+each run.
 """
 
 import argparse
@@ -40,10 +41,16 @@ def timed(action):
     return time.perf_counter() - start
 
 
-def corners(shape, edge):
-    """Low corners (z, y, x) of regions of that edge, whose blocks are whole."""
+def corners(grid, edge):
+    """Low corners (z, y, x) of regions of that edge, whose blocks are whole, and which hold more than one value."""
     numbers = random.Random(1)
-    return [[8 * numbers.randrange(max(1, (n - edge) // 8 + 1)) for n in shape] for _ in range(READINGS)]
+    found = []
+    while len(found) < READINGS:
+        corner = [8 * numbers.randrange(max(1, (n - edge) // 8 + 1)) for n in grid.shape]
+        values = region(grid, corner, edge)
+        if values.min() < values.max():
+            found.append(corner)
+    return found
 
 
 def region(grid, corner, edge):
@@ -71,21 +78,24 @@ def warm(grid, action):
 def measure_file(path):
     with weir.open(path) as grid:
         shape, levels = grid.shape, grid.levels
-    level = min(3, levels - 1)
-    rows = [("a block of 8^3", [lambda grid, at=at: region(grid, at, 8) for at in corners(shape, 8)]),
-            ("a region of 64^3", [lambda grid, at=at: region(grid, at, 64) for at in corners(shape, 64)]),
-            (f"level {level} of all", [lambda grid: grid.to_numpy(level=level)])]
+        level = min(3, levels - 1)
+        rows = [(name, [lambda grid, at=at, edge=edge: region(grid, at, edge) for at in corners(grid, edge)])
+                for name, edge in (("a block of 8^3", 8), ("a region of 64^3", 64))]
+    rows.append((f"level {level} of all", [lambda grid: grid.to_numpy(level=level)]))
     print(f"`{os.path.basename(path)}`, {' x '.join(str(n) for n in reversed(shape))}, {os.path.getsize(path)} bytes:\n")
-    print("| | cold: ms | cold: bytes read | warm: ms |\n|---|---|---|---|")
+    print("| | cold: ms | worst | cold: bytes read | worst | warm: ms | worst |\n|---|---|---|---|---|---|---|")
     opening = None
     for name, actions in rows:
-        figures = numpy.median([once_cold(path, action) for action in actions], axis=0)
+        cold = numpy.array([once_cold(path, action) for action in actions])
+        figures, worst = numpy.median(cold, axis=0), cold.max(axis=0)
         with weir.open(path) as grid:
-            cached = numpy.median([warm(grid, action) for action in actions])
+            cached = [warm(grid, action) for action in actions]
             if opening is None:
                 opening = timed(lambda: weir.open(path).close())
-                print(f"| opening | {figures[0] * 1e3:.2f} | {figures[2]:.0f} | {opening * 1e3:.3f} |")
-        print(f"| {name} | {figures[1] * 1e3:.2f} | {figures[3]:.0f} | {cached * 1e3:.3f} |", flush=True)
+                print(f"| opening | {figures[0] * 1e3:.2f} | {worst[0] * 1e3:.2f} | {figures[2]:.0f} | {worst[2]:.0f} | "
+                      f"{opening * 1e3:.3f} | |")
+        print(f"| {name} | {figures[1] * 1e3:.2f} | {worst[1] * 1e3:.2f} | {figures[3]:.0f} | {worst[3]:.0f} | "
+              f"{numpy.median(cached) * 1e3:.3f} | {max(cached) * 1e3:.3f} |", flush=True)
     print()
 
 

@@ -5,9 +5,9 @@
 
 Of each volume, ten synthetic ones of EDGE^3 float32 voxels where none is given, it makes a dry run and the conversion, in
 turn, for each of RUNS, and prints two tables in Markdown: PSNR, size and time as expected and as they came out, and how far
-they were off. With --scenes each of SCENES decides what is kept, packed, and PSNR is that of what it shows. Files lie in DIRECTORY, where there must be room for two volumes, and are in the page cache. Exit code 1 where
-a PSNR is off by more than 1 dB or a size by more than 5 %; times are for the reader to judge, since another program may have
-run meanwhile.
+they were off. With --scenes each of SCENES decides what is kept, packed, and PSNR is that of what it shows. Files lie in
+DIRECTORY, where there must be room for two volumes, and are in the page cache. Exit code 1 where a PSNR is off by more than
+1 dB or a size by more than 5 %; times are for the reader to judge, since another program may have run meanwhile.
 """
 
 import argparse

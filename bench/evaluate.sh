@@ -4,7 +4,7 @@
 #
 #   bench/evaluate.sh [OPTION...] [DIR]       DIR: default build/evaluation, or build/evaluation-quick
 #
-#   --only NAME,...   these experiments only: sizes, worst_case, errors, few_bytes, lossless,
+#   --only NAME,...   these experiments only: sizes, worst_case, errors, few_bytes, lossless, derived,
 #                     metrics, zfp, peers, round_trip, pictures, speed, two_passes, stages, headline
 #   --again           measure anew what is there already
 #   --report          no measurement, only the report of those there are

@@ -8,6 +8,7 @@ import sys
 
 import programs
 from experiment import Bench
+from experiments.derived import Derived
 from experiments.errors import Errors
 from experiments.few_bytes import FewBytes
 from experiments.headline import Headline
@@ -28,7 +29,7 @@ from store import Store
 from volumes import VolumeFiles
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-EXPERIMENTS = (Sizes(), WorstCase(), Errors(), FewBytes(), Lossless(), Metrics(), Zfp(), Peers(), RoundTrip(), Pictures(),
+EXPERIMENTS = (Sizes(), WorstCase(), Errors(), FewBytes(), Lossless(), Derived(), Metrics(), Zfp(), Peers(), RoundTrip(), Pictures(),
                Speed(), TwoPasses(), Stages(), Headline())
 
 

@@ -2,13 +2,15 @@
 
 import math
 
+from experiment import size_text
 from experiments.few_bytes import gap_db
 from markdown import command, decibel, percent, table, whole
 from peer_tables import OTHERS, TITLES, by_volume
 
 OURS = ("auto", "packed")
 RIVALS = ("zfp", "auto")
-LARGE_BYTES = 1 << 24
+LARGE_BYTES = 1 << 24  # of dense; in less, starting is most of the time
+LARGE_EDGE = 512  # as LARGE_BYTES, where the file is read at the speed of memory
 
 
 def behind_text(measured):
@@ -65,7 +67,7 @@ def _peers_error(measured):
 
 
 def _peers_time(measured):
-    """Of volumes of which starting up is no part."""
+    """Of volumes of which starting up is no part, by all threads."""
     found = {}
     for ours, own, peer, theirs in _peers_pairs(measured):
         for key, way in (("compress_s", "there"), ("decompress_s", "back")):
@@ -205,11 +207,11 @@ def _reading(measured):
     """Of volumes from 512^3 on, where starting up is no part of it."""
     found = {}
     for row in measured.results("speed"):
-        if row["edge"] >= 512:
+        if row["edge"] >= LARGE_EDGE:
             where = f"cloud {row['edge']}^3 to an eighth, {row['threads']} threads"
             found.setdefault((row["encoding"], row["cache"]), []).append((row["seconds"] / row["read_twice_s"], where))
     for row in measured.results("two_passes"):
-        if row["edge"] >= 512:
+        if row["edge"] >= LARGE_EDGE:
             where = f"{row['kind']} {row['edge']}^3 at rate {row['rate']}, {row['threads']} threads"
             cache = {"disk": "warm", "memory": "in memory"}[row["place"]]
             found.setdefault((row["encoding"], cache), []).append((row["seconds"] / row["read_twice_s"], where))
@@ -218,9 +220,21 @@ def _reading(measured):
 
 
 def _time(measured):
-    seconds = {(row["kind"], row["edge"], row["encoding"]): row["seconds"] for row in measured.results("two_passes")
-               if row["place"] == "disk"}
-    found = [(packed / seconds[(kind, edge, "auto")],
-              f"{kind} {edge}^3 to a twentieth, {packed:.2f} s against {seconds[(kind, edge, 'auto')]:.2f} s")
-             for (kind, edge, encoding), packed in seconds.items() if encoding == "packed"]
-    return _times_line("packed", "auto, seconds of a conversion", found)
+    """Of packed files against leaves of the same volume and size."""
+    seconds = {}  # (where, encoding): of a conversion
+    for row in measured.results("two_passes"):
+        where = f"{row['kind']} {row['edge']}^3 at rate {row['rate']}, {row['threads']} threads"
+        cache = {"disk": "warm", "memory": "in memory"}[row["place"]]
+        seconds[(f"{where}, {cache}", row["encoding"])] = row["seconds"]
+    for row in measured.results("speed"):
+        if row["edge"] >= LARGE_EDGE:
+            where = f"cloud {row['edge']}^3 to an eighth, {row['threads']} threads, {row['cache']}"
+            seconds[(where, row["encoding"])] = row["seconds"]
+    for row in measured.results("headline"):
+        seconds[(f"{size_text(row['extent'])} to an eighth, cold", row["encoding"])] = row["seconds"]
+    lines = []
+    for leaves in ("auto", "fpn", "float"):
+        found = [(packed / seconds[(where, leaves)], f"{where}, {packed:.2f} s against {seconds[(where, leaves)]:.2f} s")
+                 for (where, encoding), packed in seconds.items() if encoding == "packed" and (where, leaves) in seconds]
+        lines += _times_line("packed", f"{leaves}, seconds of a conversion", found)
+    return lines

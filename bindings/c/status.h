@@ -5,6 +5,7 @@
 
 #include "bindings/c/weir.h"
 #include "format/base/error.h"
+#include "format/base/float_mode.h"
 
 namespace weir::c {
 
@@ -13,9 +14,10 @@ weir_status end_call(weir_error* error, weir_status status, const char* message)
 /// The same of the exception in flight.
 weir_status end_with_exception(weir_error* error) noexcept;
 
-/// Runs `call`; nothing that it throws leaves.
+/// Runs `call`, in weir's floating-point mode; nothing that it throws leaves.
 template <typename Call>
 weir_status guarded(weir_error* error, const Call& call) noexcept {
+  const FloatMode mode;
   try {
     call();
   } catch (...) {

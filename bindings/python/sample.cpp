@@ -5,6 +5,7 @@
 #include "bindings/python/grid.h"
 #include "bindings/python/sampled_blocks.h"
 #include "bindings/python/watch.h"
+#include "format/base/float_mode.h"
 #include "gpu/volume/volume_sampler.h"
 
 namespace weir::python {
@@ -55,6 +56,7 @@ py::array_t<float> Grid::sample(const py::array_t<float, py::array::c_style>& po
     return array;
   }
   const py::gil_scoped_release unlocked;
+  const FloatMode mode;
   std::call_once(file->table_made, [&] { file->table.emplace(file->grid()); });
   sample_all(VolumeSampler{file->table->view(), filter}, positions, values);
   return array;

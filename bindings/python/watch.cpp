@@ -6,6 +6,7 @@
 
 #include "bindings/python/errors.h"
 #include "format/base/error.h"
+#include "format/base/float_mode.h"
 
 namespace weir::python {
 
@@ -105,6 +106,7 @@ void run_watched(const py::object& progress, const std::function<void(Watch&)>& 
   std::exception_ptr failure;
   std::exception_ptr raised;
   std::thread worker([&] {
+    const FloatMode mode;
     try {
       work(watch);
     } catch (...) {

@@ -79,9 +79,11 @@ NvdbGrid NvdbGrid::of_heads(std::span<const std::byte> file, const std::string& 
   grid.name_ = header.name;
   grid.bbox_ = tree.bbox;
   grid.background_ = bytes.get<float>(nvdb::kRootOffset + nvdb::root::kBackground);
-  constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
-  grid.value_min_ = header.has_min_max ? bytes.get<float>(nvdb::kRootOffset + nvdb::root::kMin) : kUnknown;
-  grid.value_max_ = header.has_min_max ? bytes.get<float>(nvdb::kRootOffset + nvdb::root::kMax) : kUnknown;
+  grid.value_min_ = bytes.get<float>(nvdb::kRootOffset + nvdb::root::kMin);
+  grid.value_max_ = bytes.get<float>(nvdb::kRootOffset + nvdb::root::kMax);
+  if (!header.has_min_max || grid.value_min_ > grid.value_max_) {
+    grid.value_min_ = grid.value_max_ = std::numeric_limits<float>::quiet_NaN();
+  }
   grid.voxel_size_ = header.voxel_size;
   grid.matrix_ = header.matrix;
   grid.world_origin_ = header.world_origin;

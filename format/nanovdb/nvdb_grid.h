@@ -55,7 +55,7 @@ class NvdbGrid {
   Box index_bbox() const { return bbox_; }
   float background() const { return background_; }
   float value_min() const { return value_min_; }  ///< of the decoded active values, as stored in the root; NaN where
-  float value_max() const { return value_max_; }  ///< its writer left the statistics out
+  float value_max() const { return value_max_; }  ///< its writer left the statistics out, and where none is finite
   std::array<double, 3> voxel_size() const { return voxel_size_; }
   std::array<double, 9> matrix() const { return matrix_; }  ///< row-major: world = matrix * index + world_origin
   std::array<double, 3> world_origin() const { return world_origin_; }  ///< of index (0, 0, 0)

@@ -177,15 +177,15 @@ def raw(streams, _):
     return numpy.array([numpy.broadcast_to(stream.numbers, 512) for stream in streams]).reshape(-1, 8, 8, 8)
 
 
-def on_lattices(streams, _):
+def on_lattices(streams, constants):
     values = numpy.empty((len(streams), 8, 8, 8), numpy.float32)
     for way in {(stream.predictor, stream.lattice == ORDERED) for stream in streams}:
         chosen = [n for n, stream in enumerate(streams) if (stream.predictor, stream.lattice == ORDERED) == way]
-        values[chosen] = on_lattice([streams[n] for n in chosen], *way)
+        values[chosen] = on_lattice([streams[n] for n in chosen], *way, constants)
     return values
 
 
-def on_lattice(streams, predictor, ordered):
+def on_lattice(streams, predictor, ordered, constants):
     residuals = numpy.array([stream.numbers for stream in streams], numpy.int64).reshape(-1, 8, 8, 8)
     residuals[:, 0, 0, 0] = [stream.base for stream in streams]
     codes = undo_prediction(residuals, predictor, ordered)
@@ -194,7 +194,7 @@ def on_lattice(streams, predictor, ordered):
     if codes.max() >= 1 << 24:
         raise Invalid("a code on a lattice has more than 24 bits")
     scaled = codes.astype(numpy.float32) * column([stream.quantum for stream in streams])
-    return scaled + column([stream.minimum for stream in streams])
+    return clamped(scaled + column([stream.minimum for stream in streams]), constants)
 
 
 def wrapped(numbers, ordered):

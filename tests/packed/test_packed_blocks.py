@@ -105,7 +105,7 @@ class Means(unittest.TestCase):
 class Lattice(unittest.TestCase):
     def test_codes_come_back_by_every_predictor(self):
         rng = random.Random(3)
-        given = constants(uneven_tables(rng))
+        given = constants(uneven_tables(rng), minimum=F32(-1e9), maximum=F32(1e9))
         for predictor in range(4):
             for bits, lattice in ((0, 0), (3, 0), (12, 0), (24, 1)):
                 codes = [rng.getrandbits(bits) for _ in range(512)]
@@ -125,6 +125,21 @@ class Lattice(unittest.TestCase):
             codes = numpy.where(signed < 0, signed ^ 0x7fffffff, signed)
             stream = encoder.lattice_stream(predictor, codes, constants(), blocks.ORDERED)
             self.assertEqual(values_of(stream).tobytes(), pattern.tobytes())
+
+    def test_values_beyond_the_range_are_clamped_but_floats_are_not(self):
+        rng = random.Random(7)
+        given = constants(minimum=F32(-2.5), maximum=F32(3))
+        codes = [rng.getrandbits(12) for _ in range(512)]
+        for lattice, own, minimum, quantum in ((0, (0, 0), -3, 0.25), (1, (7, -0.5), 7, -0.5), (1, (0, 3e38), 0, 3e38)):
+            stream = encoder.lattice_stream(1, codes, given, lattice, own)
+            exact = numpy.array(codes) * quantum + minimum
+            with self.subTest(lattice=lattice, quantum=quantum):
+                self.assertTrue((exact > 3).any() and (exact < 3).any())
+                self.assertTrue((values_of(stream, given) == exact.clip(-2.5, 3).astype(numpy.float32)).all())
+        bits = numpy.array([1e9, -1e9] * 256, numpy.float32).view(numpy.int32).astype(numpy.int64)
+        ordered = numpy.where(bits < 0, bits ^ 0x7fffffff, bits)
+        floats = values_of(encoder.lattice_stream(1, ordered, given, blocks.ORDERED), given)
+        self.assertEqual(set(floats), {F32(1e9), F32(-1e9)})
 
     def test_one_code_needs_no_states(self):
         stream = encoder.lattice_stream(0, [77] * 512, constants())

@@ -13,7 +13,7 @@ from . import _core
 from .device import DeviceArray, array_of, is_array_elsewhere
 from .errors import UsageError
 from .labelled import is_data_array, take_apart
-from .options import box_text, given_options, is_url, path_bytes, shown_url, text_of
+from .options import box_text, given_options, input_bytes, is_url, path_bytes, shown_url, text_of
 
 if TYPE_CHECKING:
     import xarray
@@ -223,7 +223,7 @@ def convert(
         shown = shown_url(source)
         raise UsageError(f"source is {shown!r}: weir.convert reads files of this machine; copy it here first")
     if isinstance(source, (str, os.PathLike)):
-        texts = _core.convert_files(path_bytes(source), target, options, several, progress)
+        texts = _core.convert_files(input_bytes(source), target, options, several, progress)
     elif isinstance(source, numpy.ndarray) or is_array_elsewhere(source):
         if not target:
             raise UsageError("output is missing: an array has no name to make one from")

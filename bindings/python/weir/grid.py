@@ -14,7 +14,7 @@ from . import _core
 from .conversion import Numbers, Path, Progress
 from .errors import UsageError
 from .indexing import select
-from .options import LONGEST_BOX, described, given_options, is_url, path_bytes
+from .options import LONGEST_BOX, described, given_options, input_bytes, is_url, size_text
 
 if TYPE_CHECKING:
     import xarray
@@ -55,9 +55,10 @@ class Grid:
     _samples_decode_their_blocks = False
 
     def __init__(self, path: Path) -> None:
-        self._path = os.fspath(path)
+        name = input_bytes(path)
+        self._path = os.fsdecode(name)
         self._absolute = os.path.abspath(self._path)
-        self._core = _core.Grid(path_bytes(path))
+        self._core = _core.Grid(name)
 
     def __enter__(self) -> Grid:
         return self
@@ -87,7 +88,7 @@ class Grid:
 
     @property
     def path(self) -> str:
-        """As it was given; of a URL without the user, password and query."""
+        """As it was given, bytes as text; of a URL without the user, password and query."""
         return self._path
 
     @property
@@ -222,7 +223,8 @@ class Grid:
 
     def level_shape(self, level: int) -> tuple[int, int, int]:
         """Shape of to_numpy(level=level): voxels (z, y, x) halved `level` times, rounded up."""
-        if not isinstance(level, (int, numpy.integer)) or not 0 <= level < self.levels:
+        is_number = isinstance(level, (int, numpy.integer)) and not isinstance(level, bool)
+        if not is_number or not 0 <= level < self.levels:
             raise UsageError(f"level is {described(level)}, it must be a whole number from 0 to {self.levels - 1}")
         z, y, x = (-(-voxels >> int(level)) for voxels in self.shape)
         return z, y, x
@@ -294,7 +296,7 @@ class Grid:
         self,
         *,
         mode: Optional[str] = None,
-        size: Sequence[int] = (960, 720),
+        size: Union[str, Sequence[int]] = (960, 720),
         spp: Optional[int] = None,
         seed: Optional[int] = None,
         scene: Optional[Path] = None,
@@ -312,20 +314,20 @@ class Grid:
     ) -> NDArray[Any]:
         """The picture that `weir render` makes, [y, x, RGB] with rows from the top.
 
-        mode "path", "dvr", "iso" or "mip"; size (width, height); spp, samples a pixel; seed of their random numbers;
-        camera (azimuth, elevation) or (azimuth, elevation, zoom), in degrees; colormap, a name ("viridis" for instance);
-        colorbar, whether the colours with their values, name and units stand at the right of the picture, which is wider
-        by them; range (low, high) of colours and opacity; iso, the surface's value; scene, the path of a scene file,
-        which the others overrule; filter "trilinear", "stochastic" or "nearest"; backend "auto", "cpu" or "cuda";
-        threads, 0: all; memory, bytes or "512MiB", of the CPU: a packed file that decodes to more is rendered from a
-        cache. Returns uint8 sRGB or, where `linear`, float32 radiance
-        before tone mapping. progress is called with "render" and samples.
+        mode "path", "dvr", "iso" or "mip"; size (width, height), or "960x720"; spp, samples a pixel; seed of their
+        random numbers; camera (azimuth, elevation) or (azimuth, elevation, zoom), in degrees; colormap, a name
+        ("viridis" for instance); colorbar, whether the colours with their values, name and units stand at the right
+        of the picture, which is wider by them; range (low, high) of colours and opacity; iso, the surface's value;
+        scene, the path of a scene file, which the others overrule; filter "trilinear", "stochastic" or "nearest";
+        backend "auto", "cpu" or "cuda"; threads, 0: all; memory, bytes or "512MiB", of the CPU: a packed file that
+        decodes to more is rendered from a cache. Returns uint8 sRGB or, where `linear`, float32 radiance before tone
+        mapping. progress is called with "render" and samples.
         """
         if linear and colorbar:
             raise UsageError("linear asks for radiance, colorbar for colours as a screen shows them; give one of them")
         options = given_options(
             mode=mode,
-            size="x".join(map(str, size)),
+            size=size_text(size),
             spp=spp,
             seed=seed,
             scene=scene,
@@ -355,7 +357,7 @@ def open(path: Path, *, cache: Union[int, str] = "256MiB", storage_options: Opti
         "headers".
 
     Raises InputError where it is no valid one; where it is missing or may not be read, that is a FileNotFoundError or
-    PermissionError too.
+    PermissionError too. An empty path is a UsageError.
     """
     from .remote import RemoteGrid
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 import os
 import re
 from typing import Any, Sequence
@@ -50,6 +51,14 @@ def path_bytes(path: Any) -> bytes:
     return found
 
 
+def input_bytes(path: Any) -> bytes:
+    """path_bytes of a file to read. Raises UsageError where it is empty, too."""
+    found = path_bytes(path)
+    if not found:
+        raise UsageError("the path is empty; name a file")
+    return found
+
+
 def is_url(path: Any) -> bool:
     """Whether weir.open takes it for a URL."""
     return isinstance(path, str) and "://" in path
@@ -83,6 +92,25 @@ def box_text(box: Any) -> str:
     except (TypeError, ValueError):
         raise UsageError(
             f"roi is {described(box, LONGEST_BOX)}, it must be ((x0, y0, z0), (x1, y1, z1)), x0 inclusive, x1 exclusive"
+        ) from None
+
+
+def size_text(size: Any) -> str:
+    """(width, height) as "960x720"; a text stays."""
+    if isinstance(size, (str, bytes)):
+        return text_of(size)
+    try:
+        if not isinstance(size, (Sequence, numpy.ndarray)):
+            raise TypeError
+        width, height = (_alone(side) for side in size)
+        if any(isinstance(side, (bool, numpy.bool_)) for side in (width, height)):
+            raise TypeError
+        return f"{operator.index(width)}x{operator.index(height)}"
+    except UsageError:  # of a masked number; a ValueError too
+        raise
+    except (TypeError, ValueError):
+        raise UsageError(
+            f"size is {described(size)}, it must be (width, height), two whole numbers of pixels, or a text, '960x720'"
         ) from None
 
 

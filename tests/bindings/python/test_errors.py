@@ -79,6 +79,11 @@ class Errors(FolderTest):
         )
         self.assertEqual(self.names(), ["a.nvdb", "a.nvdb.json"])
 
+    def test_an_empty_path(self):
+        for call in (lambda: weir.open(""), lambda: weir.open(b""), lambda: weir.convert("", self.folder / "a.nvdb")):
+            self.assertEqual(self.refused(weir.UsageError, call), "the path is empty; name a file")
+        self.assertEqual(self.names(), [])
+
     def test_an_empty_array(self):
         self.assertIn("0x9x9", self.convert(weir.InputError, numpy.zeros((9, 9, 0), numpy.float32)))
 

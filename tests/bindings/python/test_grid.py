@@ -27,6 +27,13 @@ class Properties(FolderTest):
         self.assertEqual(grid.certificate, grid.sidecar["error"])
         self.assertTrue(grid.certificate["lossless"])
 
+    def test_a_path_of_bytes_is_a_text_in_path(self):
+        self.lossless(ramp(9, 9, 9), name="\udcff.nvdb")
+        name = os.fsencode(self.folder / "\udcff.nvdb")
+        with weir.open(name) as grid:
+            self.assertEqual(grid.path, os.fsdecode(name))
+            self.assertEqual(repr(grid), f"<weir.Grid {os.fsdecode(name)!r}, 9 x 9 x 9, float32>")
+
     def test_without_a_sidecar(self):
         grid = self.lossless(ramp(9, 9, 9))
         (self.folder / "a.nvdb.json").unlink()
@@ -177,7 +184,7 @@ class Levels(FolderTest):
 
     def test_levels_that_there_are_not(self):
         grid = self.lossless(ramp(12, 20, 28))
-        for level in (-1, 6, 1.0, None):
+        for level in (-1, 6, 1.0, None, True, False):
             message = self.refused(weir.UsageError, grid.to_numpy, None, level)
             self.assertEqual(message, f"level is {level!r}, it must be a whole number from 0 to 5")
 

@@ -1,13 +1,16 @@
 """Packed files: weir reads what the decoder of tests/packed reads, which was written from FORMAT.md alone."""
 
+import struct
 import sys
 import unittest
+from unittest import mock
 
 import numpy
 import weir
 from support import SOURCE, FolderTest
 
 sys.path.insert(0, str(SOURCE / "tests/packed"))
+import blocks  # noqa: E402
 import packed_decoder  # noqa: E402
 
 
@@ -39,6 +42,47 @@ class Packed(FolderTest):
     def test_blocks_of_whole_numbers(self):
         counts = self.same_by_both(numpy.round(waves((30, 20, 33)) * 100).astype(numpy.int16), lossless=True)
         self.assertGreater(counts["lattice"], 10)
+
+    def test_values_outside_of_the_range_are_clamped_by_both(self):
+        path = self.folder / "changed.nvdb"
+        integers = numpy.round(waves((30, 20, 33)) * 100).astype(numpy.int16)
+        for name, values, options, places in (
+            ("the file's lattice", integers, {"lossless": True}, self.quantum_of_the_file),
+            ("a lattice of each block", waves((30, 20, 33)), {"max_error": 1e-5}, self.quanta_of_streams),
+        ):
+            weir.convert(values, path, encoding="packed", overwrite=True, **options)
+            content = bytearray(path.read_bytes())
+            for at in places(path, content):
+                struct.pack_into("<f", content, at, 1.75 * struct.unpack_from("<f", content, at)[0])
+            path.write_bytes(content)
+            grid = packed_decoder.Grid(path)
+            with mock.patch.object(blocks, "clamped", lambda found, _: found):
+                unclamped, _ = grid.read(grid.low, grid.high)
+            theirs, counts = grid.read(grid.low, grid.high)
+            with self.subTest(name), weir.open(path) as ours:
+                self.assertEqual(set(+counts), {"lattice", packed_decoder.NO_STREAM})
+                self.assertEqual(ours.to_numpy().tobytes(), theirs.tobytes())
+                self.assertEqual(theirs.max(), grid.packed.constants.maximum)
+                self.assertGreater(unclamped.max(), theirs.max())
+
+    @staticmethod
+    def packed_at(content):
+        """Where the packed data of a file begin."""
+        record = content.index(packed_decoder.NAME.encode()) - 32
+        return record + struct.unpack_from("<q", content, record)[0]
+
+    def quantum_of_the_file(self, _, content):
+        return [self.packed_at(content) + 56]
+
+    def quanta_of_streams(self, path, content):
+        """Of all streams with a lattice of their own."""
+        begin = self.packed_at(content)
+        with mock.patch.object(blocks, "parse", side_effect=blocks.parse) as parse:
+            grid = packed_decoder.Grid(path)
+            grid.read(grid.low, grid.high)
+        streams = {call.args[0] for call in parse.call_args_list}
+        own = [s for s in streams if s[0] & 3 == blocks.LATTICE and s[0] >> 4 == blocks.OWN_LATTICE]
+        return [content.index(stream, begin) + 5 for stream in own]
 
     def test_floats_kept_bit_by_bit(self):
         rng = numpy.random.default_rng(3)

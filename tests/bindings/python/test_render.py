@@ -61,10 +61,29 @@ class Render(FolderTest):
         self.lossless(ball()).render(size=(30, 20), spp=3, progress=lambda *call: calls.append(call))
         self.assertEqual(calls[-1], ("render", 1800, 1800))
 
+    def test_a_size_is_a_pair_or_a_text(self):
+        grid = self.lossless(ball())
+        picture = grid.render(size=(16, 9), mode="mip")
+        for size in ("16x9", [16, 9], numpy.array([16, 9]), (numpy.uint8(16), numpy.array(9))):
+            with self.subTest(size):
+                numpy.testing.assert_array_equal(grid.render(size=size, mode="mip"), picture)
+
+    def test_a_size_that_is_none(self):
+        grid = self.lossless(ramp(9, 9, 9))
+        form = "it must be (width, height), two whole numbers of pixels, or a text, '960x720'"
+        for size in (5, None, (16,), (16, 9, 1), (16.0, 9), (True, 9), ("16", "9"), {16, 9}):
+            with self.subTest(size):
+                self.assertEqual(self.refused(weir.UsageError, grid.render, size=size), f"size is {size!r}, {form}")
+        self.assertEqual(
+            self.refused(weir.UsageError, grid.render, size=numpy.ones((2, 2))),
+            f"size is an array of float64 with the shape (2, 2), {form}",
+        )
+
     def test_what_cannot_be_rendered(self):
         grid = self.lossless(ramp(9, 9, 9))
         for message, keywords in {
             'size is "0x9", it must be WxH in pixels, each from 1 to 32768 and 268435456 together': {"size": (0, 9)},
+            'size is "16", it must be WxH in pixels, each from 1 to 32768 and 268435456 together': {"size": "16"},
             'camera is "1,99", it must be AZIMUTH,ELEVATION[,ZOOM] in degrees, elevation from -90 to 90, '
             "zoom from 0.01 to 100": {"camera": (1, 99)},
             'mode is "oil", it must be path, dvr, iso or mip': {"mode": "oil"},

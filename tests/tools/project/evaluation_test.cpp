@@ -63,6 +63,14 @@ TEST_F(Evaluation, QuickRun_WritesAllFiguresAndTheReport) {
   for (const Json& row : all["few_bytes"]) EXPECT_EQ(row["packed_bytes"], row["bytes_asked"]) << row;
   ASSERT_EQ(all["lossless"].size(), 1U);
   EXPECT_LT(all["lossless"][0]["packed_bytes"], all["lossless"][0]["auto_bytes"]);
+  EXPECT_GE(all["derived"].size(),
+            4 * 2 * 1U);  // volumes, shares, methods: leaves fit into neither, ZFP may be missing
+  for (const Json& row : all["derived"]) {
+    if (row["gradient_rms_certified"].is_null()) continue;
+    EXPECT_NEAR(row["gradient_rms_certified"].get<double>(), row["gradient_rms"].get<double>(),
+                1e-6 * row["gradient_rms"].get<double>())
+        << row;
+  }
   EXPECT_EQ(all["metrics"].size(), 2 * 2 * (4 * 2 + 1U));  // volumes, rates; metrics, fills; packed
   EXPECT_GE(all["speed"].size(), 3 * 2U);                  // encodings, caches; more where there are threads to compare
   const std::size_t places = std::filesystem::exists("/dev/shm") ? 2 : 1;
@@ -84,9 +92,9 @@ TEST_F(Evaluation, QuickRun_WritesAllFiguresAndTheReport) {
   }
 
   const std::string text = report();
-  for (const char* title :
-       {"# Evaluation", "## Bytes for an error", "## Actual size", "## Worst case", "## Error against size",
-        "## Few bytes", "## Lossless", "## ZFP", "## There and back", "## Pictures", "## Time and memory"}) {
+  for (const char* title : {"# Evaluation", "## Bytes for an error", "## Actual size", "## Worst case",
+                            "## Error against size", "## Few bytes", "## Lossless", "## What people derive", "## ZFP",
+                            "## There and back", "## Pictures", "## Time and memory"}) {
     EXPECT_NE(text.find(title), std::string::npos) << title;
   }
   EXPECT_NE(text.find("| 32^3 | auto | 131,072 | 446,752 | +240.84 % | +4.74 % | 447,752 |\n"), std::string::npos)
@@ -95,7 +103,7 @@ TEST_F(Evaluation, QuickRun_WritesAllFiguresAndTheReport) {
     EXPECT_EQ(text.find("@" + name + "@"), std::string::npos) << name << " is no place in report.md";
   }
   EXPECT_EQ(text.find("Promises that are not kept"), std::string::npos);
-  for (const char* name : {"wdas-like_124x84x153_psnr.png", "headline.png"}) {
+  for (const char* name : {"wdas-like_124x84x153_psnr.png", "headline.png", "turbulence_spectrum.png"}) {
     EXPECT_TRUE(fs::exists(directory_.path() / "images/evaluation" / name)) << name;
   }
   const std::string sheet = directory_ / "images/evaluation/cloud_path.png";
@@ -103,8 +111,8 @@ TEST_F(Evaluation, QuickRun_WritesAllFiguresAndTheReport) {
   ASSERT_EQ(flip.exit_code, 0) << flip.err;
   EXPECT_EQ(Json::parse(flip.out)["width"], 3 * 64 + 2 * 4);  // pictures and the gaps between them
   EXPECT_EQ(Json::parse(flip.out)["height"], 9 * 48 + 8 * 4);
-  for (const char* name : {"sizes", "worst_case", "errors", "few_bytes", "lossless", "metrics", "pictures", "speed",
-                           "two_passes", "stages", "headline"}) {
+  for (const char* name : {"sizes", "worst_case", "errors", "few_bytes", "lossless", "derived", "metrics", "pictures",
+                           "speed", "two_passes", "stages", "headline"}) {
     EXPECT_TRUE(fs::exists(directory_ / (std::string(name) + ".csv"))) << name;
   }
 }

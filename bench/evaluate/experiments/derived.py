@@ -1,0 +1,158 @@
+"""Errors of what people derive from a volume, of equal bytes: quantiles, gradient, similarity, spectrum, vorticity.
+
+Of ZFP what its command decompresses is packed without loss first, so that `weir compare` measures all methods.
+"""
+
+import math
+import shutil
+
+import volumes
+from experiment import Experiment, describe, method_options, remove_volume, size_text
+from experiments.zfp import zfp_statistics
+from markdown import command, decibel, scientific, table
+from programs import ProgramFailed
+
+SHARES = (5, 10)  # percent of dense float32
+METHODS = ("auto", "packed", "zfp")
+QUANTILES = ("0.5", "0.99", "0.999")
+SMALL_ERROR = 0.01  # of the source's power
+BUDGET_EXIT_CODE = 4
+SEEDS = (1, 2, 3)  # of the components of a vector field
+FIELD_RATE = 20
+CHARTED = "turbulence"
+EQUAL = 1e-6  # relative: the certificate's gradient against that of compare
+
+
+def smallest_good_wavelength(spectrum):
+    """In voxels: down to which the error has at most SMALL_ERROR of the source's power; None where it has everywhere."""
+    for wave_number, source, error in zip(spectrum["wave_number"], spectrum["source"], spectrum["error"]):
+        if error > SMALL_ERROR * source:
+            return 1 / wave_number
+    return None
+
+
+class Derived(Experiment):
+    name = "derived"
+
+    def measure(self, bench):
+        wanted = volumes.few_bytes_set(64) if bench.quick else [*volumes.real_set(), *volumes.few_bytes_set(256)]
+        for volume in wanted:
+            if bench.files.available(volume):
+                bench.store.measure(self.name, volume.file_name, lambda volume=volume: self._rows(bench, volume))
+        edge = 64 if bench.quick else 256
+        bench.store.measure(self.name, f"field {edge}", lambda: self._field(bench, edge))
+
+    def _rows(self, bench, volume):
+        rows = []
+        with bench.files.file(volume) as path:
+            for share in SHARES:
+                for method in METHODS:
+                    if method == "zfp" and shutil.which("zfp") is None:
+                        continue
+                    output = bench.scratch("derived.nvdb")
+                    certified = self._convert(bench, volume, path, method, share, output)
+                    if certified is None:
+                        continue
+                    rows.append({"share": share, "method": method, **self._errors(bench, path, output, certified)})
+                    if volume.name == CHARTED and share == SHARES[0] and method == "packed":
+                        chart = bench.directory / "derived" / f"{volume.name}_spectrum.png"
+                        chart.parent.mkdir(parents=True, exist_ok=True)
+                        bench.weir.run("compare", path, output, "--spectrum", chart)
+                    remove_volume(output)
+        return {**describe(volume), "rows": rows}
+
+    def _convert(self, bench, volume, path, method, share, output):
+        """What certifies the gradient of `output`, {} where nothing does; None: there is no file of that size."""
+        if method == "zfp":
+            decoded = bench.scratch(f"decoded_{volume.size_text}_float32.raw")
+            with bench.files.float32_file(volume) as wide:
+                zfp_statistics(["-i", wide, "-f", "-3", *volume.extent, "-r", repr(32 * share / 100), "-o", decoded])
+            bench.weir.run("convert", decoded, "-o", output, "--overwrite", "--encoding", "packed", "--lossless")
+            decoded.unlink()
+            return {}
+        try:
+            made = bench.weir.report("convert", path, "-o", output, "--overwrite", "--rate", repr(100 / share), "--certify",
+                                     "gradient", *method_options(method))
+        except ProgramFailed as failure:
+            if failure.code != BUDGET_EXIT_CODE:
+                raise
+            return None
+        return made["error"].get("gradient", {})
+
+    @staticmethod
+    def _errors(bench, path, output, certified):
+        spacing = ("--spacing", "1,1,1")  # in voxels
+        found = bench.weir.report("compare", path, output, "--derived", "--spectrum", bench.scratch("derived.csv"), *spacing)
+        derived = found["derived"]
+        low, high = found["value_range"]
+        return {"psnr_db": found["psnr_db"], "lossless": found["lossless"], "max_abs": found["max_abs"] / (high - low),
+                **{f"quantile_{q}": derived["quantiles"][q] / (high - low) for q in QUANTILES},
+                "gradient_relative_rms": derived["gradient"]["relative_rms"], "gradient_max_abs": derived["gradient"]["max_abs"],
+                "gradient_rms": derived["gradient"]["rms"], "gradient_rms_certified": certified.get("rms"),
+                "ssim": derived["ssim"], "wavelength": smallest_good_wavelength(found["spectrum"])}
+
+    @staticmethod
+    def _field(bench, edge):
+        """Vorticity and divergence of three components, each packed by itself."""
+        rows = []
+        for method in ("auto", "packed"):
+            files = []
+            for seed in SEEDS:
+                source = bench.scratch(f"u{seed}_{edge}x{edge}x{edge}_float32.raw")
+                output = bench.scratch(f"u{seed}.nvdb")
+                bench.weir.run("sample", "turbulence", "--seed", seed, "-o", source, "--overwrite")
+                made = bench.weir.report("convert", source, "-o", output, "--overwrite", *method_options(method),
+                                         *(("--lossless",) if bench.quick and method == "auto" else ("--rate", FIELD_RATE)))
+                files += [source, output]
+            found = bench.weir.report("compare", *files[:2], "--vector", *files[2:])["vector"]
+            rows.append({"method": method, "psnr_db": made["error"]["psnr_db"], "lossless": made["error"]["lossless"],
+                         **{f"{what}_relative_rms": found[what]["relative_rms"] for what in ("vorticity", "divergence")}})
+            for source, output in zip(files[::2], files[1::2]):
+                source.unlink()
+                remove_volume(output)
+        return {"edge": edge, "field": rows}
+
+    def rows(self, measured):
+        return [{"volume": result["volume"], "extent": size_text(result["extent"]), **row}
+                for result in measured.results(self.name) if "rows" in result for row in result["rows"]]
+
+    def text(self, measured):
+        lines = []
+        for result in measured.results(self.name):
+            for row in result.get("rows", []):
+                named = row is result["rows"][0]
+                lines.append([f"{result['volume']}, {size_text(result['extent'])}" if named else "", f"{row['share']} %",
+                              {"zfp": "ZFP"}.get(row["method"], row["method"]), decibel(row),
+                              *(scientific(100 * row[f"quantile_{q}"]) for q in QUANTILES), scientific(100 * row["max_abs"]),
+                              scientific(100 * row["gradient_relative_rms"]), f"{row['ssim']:.5f}",
+                              "all" if row["wavelength"] is None else f"{row['wavelength']:.1f}"])
+        header = ["volume", "of dense", "method", "PSNR, dB", "median", "99 %", "99.9 %", "largest", "gradient", "SSIM",
+                  "wavelengths above"]
+        parts = [table(header, lines), self._field_text(measured)]
+        return "\n\n".join(part for part in parts if part) + "\n\n" + command(
+            "bench/evaluate.sh --only derived",
+            "weir compare VOLUME.raw VOLUME.nvdb --derived --spectrum SPECTRUM.png --spacing 1,1,1      # one line")
+
+    def _field_text(self, measured):
+        for result in measured.results(self.name):
+            if "field" in result:
+                lines = [[row["method"], decibel(row), *(f"{100 * row[f'{what}_relative_rms']:.2g} %"
+                                                         for what in ("vorticity", "divergence"))] for row in result["field"]]
+                edge = result["edge"]
+                return (f"A vector field of {edge}^3: three components of turbulence, each converted at a rate of {FIELD_RATE}; relative\n"
+                        "RMS of what is derived of all three:\n\n"
+                        + table(["method", "PSNR of a component, dB", "vorticity", "divergence"], lines))
+        return ""
+
+    def broken_promises(self, measured):
+        broken = []
+        for row in self.rows(measured):
+            certified = row["gradient_rms_certified"]
+            if certified is not None and not math.isclose(certified, row["gradient_rms"], rel_tol=EQUAL, abs_tol=0):
+                broken.append(f"{row['volume']} at {row['share']} %, {row['method']}: the certificate has a gradient's error of "
+                              f"{certified}, compare {row['gradient_rms']}")
+        return broken
+
+    def pictures(self, measured, directory):
+        chart = directory / "derived" / f"{CHARTED}_spectrum.png"
+        return {chart.name: chart} if chart.exists() else {}
