@@ -8,6 +8,7 @@
 #include <fstream>
 #include <utility>
 
+#include "daemon/config/check_access.h"
 #include "daemon/config/watch_conflicts.h"
 #include "daemon/jobs/output_cleaning.h"
 #include "format/base/error.h"
@@ -59,7 +60,7 @@ Service::Service(Load load, std::string program, std::string version)
                 }
               }),
       viewer_(io_, log_, std::move(program)),
-      control_(io_, turns_, store_, runner_, trees_, viewer_, state_),
+      control_(io_, turns_, store_, runner_, trees_, viewer_, log_, state_),
       history_(io_, turns_, store_, log_),
       server_(
           io_, server_settings(config_.service), control_,
@@ -178,6 +179,7 @@ void Service::reload() {
   notifier_.send(cat("RELOADING=1\nMONOTONIC_USEC=", monotonic_usec()));
   try {
     DaemonConfig config = load_();
+    check_access(config);
     log_.reopen(config.service);
     if (needs_restart(config_.service, config.service)) {
       log_.warn("reload",

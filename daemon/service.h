@@ -1,7 +1,8 @@
 // The daemon: what `weir watch CONFIG.toml` is from its first line of log to its
 // last. Puts the parts together and answers signals:
 //   SIGTERM, SIGINT  starts nothing more, ends when what runs is done or the grace time is over; a second one at once
-//   SIGHUP           reads the configuration again and opens the log file anew; a bad configuration changes nothing
+//   SIGHUP           reads the configuration again and opens the log file anew; one that a start refuses changes
+//   nothing
 #pragma once
 
 #include <boost/asio/io_context.hpp>

@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "daemon/store/file_identity.h"
 #include "format/base/text.h"
 
 namespace weir {
@@ -46,12 +47,14 @@ JobView view_of(const Job& job) {
 }  // namespace
 
 ServiceControl::ServiceControl(boost::asio::io_context& io, DiskTurns& turns, JobStore& store, JobRunner& runner,
-                               const WatchedTrees& trees, JobViewer& viewer, const ServiceState& state)
+                               const WatchedTrees& trees, JobViewer& viewer, const EventLog& log,
+                               const ServiceState& state)
     : turns_(turns),
       store_(store),
       runner_(runner),
       trees_(trees),
       viewer_(viewer),
+      log_(log),
       state_(state),
       started_at_(seconds_of(JobStore::wall_clock_ms())),
       retry_timer_(io) {}
@@ -267,7 +270,7 @@ std::vector<DiskView> ServiceControl::disks() const {
 
 MetricsView ServiceControl::metrics() {
   return {runner_.figures().totals().seconds, runner_.figures().totals().errors, state_.reloads,
-          state_.rejected_reloads};
+          state_.rejected_reloads, log_.lines_lost()};
 }
 
 Readiness ServiceControl::readiness() {

@@ -12,6 +12,7 @@
 
 #include "daemon/http/control.h"
 #include "daemon/jobs/job_runner.h"
+#include "daemon/log/event_log.h"
 #include "daemon/store/disk_turns.h"
 #include "daemon/store/job_store.h"
 #include "daemon/viewer/job_viewer.h"
@@ -35,7 +36,7 @@ class ServiceControl final : public Control {
  public:
   /// All must outlive the object.
   ServiceControl(boost::asio::io_context& io, DiskTurns& turns, JobStore& store, JobRunner& runner,
-                 const WatchedTrees& trees, JobViewer& viewer, const ServiceState& state);
+                 const WatchedTrees& trees, JobViewer& viewer, const EventLog& log, const ServiceState& state);
 
   JobPage jobs(const JobQuery& query) override;
   ProblemPage problems(std::size_t limit) override;
@@ -66,6 +67,7 @@ class ServiceControl final : public Control {
   JobRunner& runner_;
   const WatchedTrees& trees_;
   JobViewer& viewer_;
+  const EventLog& log_;
   const ServiceState& state_;
   double started_at_;
   std::deque<JobStore::Problem> to_retry_;

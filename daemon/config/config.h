@@ -21,6 +21,7 @@ struct ServiceConfig {
   ListenAddress listen{"127.0.0.1", 8470};        ///< port 0: any free one, see port_file
   std::string control_socket;                     ///< Unix socket; empty: none. With it, `listen` only shows
   std::string port_file;                          ///< the port that was bound is written there; empty: nowhere
+  std::string token_file;                         ///< that `token` was read from; empty: it is in the configuration
   std::string token;                              ///< bearer token; never empty where others than loopback may connect
   std::uint64_t memory = std::uint64_t{1} << 30;  ///< bytes, the daemon, all jobs and the viewer together
   std::uint64_t viewer_memory = std::uint64_t{192} << 20;  ///< bytes of it for the viewer; 0: there is none
@@ -68,6 +69,13 @@ constexpr bool says_when_done(Completion completion) {
   return completion == Completion::rename || completion == Completion::marker;
 }
 
+/// BEFORE, a whole number, AFTER; where AFTER is empty, anything.
+struct NumberedFiles {
+  std::string before;  ///< absolute
+  std::string after;
+  bool operator==(const NumberedFiles&) const = default;
+};
+
 /// One [[watch]]. Directories are absolute and lexically normal, without a trailing slash.
 struct WatchConfig {
   std::string label;      ///< unique; names the watch in state, logs and metrics; default: its directory
@@ -80,6 +88,7 @@ struct WatchConfig {
   /// Absolute; these and all below them are never sources: outputs of every watch, work directory, the
   /// service's own files. Only what lies in `directory`.
   std::vector<std::string> excluded_paths;
+  std::vector<NumberedFiles> excluded_numbers;  ///< as excluded_paths: rotated logs, state files that were moved aside
   Completion complete = Completion::automatic;
   std::string marker = ".done";  ///< appended to a source's name
   double settle_s = 2;           ///< size and mtime unchanged for so long

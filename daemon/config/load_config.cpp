@@ -1,17 +1,16 @@
 #include "daemon/config/load_config.h"
 
-#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "compressor/options/conversion_request.h"
 #include "daemon/config/config_names.h"
 #include "daemon/config/duration.h"
+#include "daemon/config/own_files.h"
 #include "daemon/config/token_file.h"
 #include "daemon/config/watch_conflicts.h"
 #include "daemon/config/watch_options.h"
@@ -121,13 +120,12 @@ std::string token_of_file(ConfigReader& reader, const std::string& path) {
 }
 
 void read_token(ConfigReader& reader, ServiceConfig& service) {
-  std::string path;
-  const bool from_file = reader.read_path("token_file", path);
+  const bool from_file = reader.read_path("token_file", service.token_file);
   const char* key = from_file ? "token_file" : "token";
   if (reader.toml.read("token", service.token) && from_file) {
     reader.refuse("token_file", "token and token_file exclude each other; give one");
   }
-  if (from_file) service.token = token_of_file(reader, path);
+  if (from_file) service.token = token_of_file(reader, service.token_file);
   if (!from_file && reader.toml.find("token") == nullptr) return;
   if (const std::string fault = token_fault(service.token); !fault.empty()) reader.refuse(key, fault);
 }
@@ -212,12 +210,6 @@ ServiceConfig read_service(const toml::table& table, const std::string& path) {
                      cat("memory is ", format_bytes(service.memory), ", too little for the daemon", viewer,
                          " and jobs = ", service.jobs, "; it must be at least ", format_bytes(least)));
   }
-  std::set<std::string> files{service.state};
-  for (const std::string* file : {&service.log_file, &service.port_file, &service.control_socket}) {
-    if (file->empty() || files.insert(*file).second) continue;
-    reader.toml.fail(table, cat("two of state, log, port_file and control_socket are one file, ", *file));
-  }
-  if (service.state == path) reader.refuse("state", cat("state is this file, ", path));
   return service;
 }
 
@@ -276,23 +268,6 @@ WatchConfig read_watch(const toml::table& table, const std::string& path) {
   return watch;
 }
 
-/// Fills WatchConfig::excluded_paths.
-void exclude_own_files(DaemonConfig& config) {
-  const ServiceConfig& service = config.service;
-  std::vector<std::string> own{config.path,       service.work_dir, service.log_file,
-                               service.port_file, service.state,    service.control_socket};
-  for (const char* journal : {"-wal", "-shm", "-journal"}) own.push_back(service.state + journal);
-  if (!service.control_socket.empty()) own.push_back(service.control_socket + ".lock");
-  for (const WatchConfig& watch : config.watches) own.push_back(watch.output);
-  std::sort(own.begin(), own.end());
-  own.erase(std::unique(own.begin(), own.end()), own.end());
-  for (WatchConfig& watch : config.watches) {
-    for (const std::string& path : own) {
-      if (!path.empty() && is_within(path, watch.directory)) watch.excluded_paths.push_back(path);
-    }
-  }
-}
-
 }  // namespace
 
 DaemonConfig load_config(const std::string& path) {
@@ -314,6 +289,11 @@ DaemonConfig load_config(const std::string& path) {
     const toml::table& table = *tables.get(conflict->watch)->as_table();
     const toml::node* node = table.get(conflict->key);
     reader.fail(node != nullptr ? *node : table, conflict->message);
+  }
+  if (const auto conflict = find_own_file_conflict(config)) {
+    const toml::node* table = service != nullptr ? service : &document;
+    const toml::node* key = service != nullptr ? service->as_table()->get(conflict->key) : nullptr;
+    reader.fail(key != nullptr ? *key : *table, conflict->message);
   }
   exclude_own_files(config);
   return config;

@@ -175,6 +175,7 @@ struct MetricsView {
   std::map<std::string, std::uint64_t> errors;  ///< failed attempts by kind: "input", "io", "budget", "killed", ...
   std::uint64_t reloads = 0;                    ///< of the configuration
   std::uint64_t rejected_reloads = 0;           ///< a new configuration was bad, the old one stayed
+  std::uint64_t log_lines_lost = 0;             ///< that could not be written
 };
 
 struct Readiness {

@@ -81,6 +81,8 @@ void write_service(MetricsWriter& out, const StatusView& status, const MetricsVi
   out.family("config_reloads_total", "counter", "Reloads of the configuration; a rejected one changed nothing.");
   out.sample({{"result", "applied"}}, metrics.reloads);
   out.sample({{"result", "rejected"}}, metrics.rejected_reloads);
+  out.single("log_lines_lost_total", "counter", "Lines of the log that could not be written, as on a full disk.",
+             metrics.log_lines_lost);
 }
 
 void write_jobs(MetricsWriter& out, const StatusView& status, const MetricsView& metrics) {

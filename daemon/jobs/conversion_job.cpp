@@ -9,6 +9,7 @@
 #include <system_error>
 #include <utility>
 
+#include "daemon/config/watch_conflicts.h"
 #include "daemon/jobs/worker_reason.h"
 #include "daemon/store/file_identity.h"
 #include "daemon/watch/source_identity.h"
@@ -175,7 +176,9 @@ void ConversionJob::heard(std::string_view line) {
   if (told.contains("failed")) {
     failed_ = told.value("failed", "");
     const int error = told.value("errno", 0);
-    if (error == ENOSPC || error == EDQUOT) report_.full_directory = directory_at(told.value("path", task_.output));
+    const std::string path = told.value("path", task_.output);
+    if (error == ENOSPC || error == EDQUOT) report_.full_directory = directory_at(path);
+    output_busy_ = error == EWOULDBLOCK && is_written(path);
     return;
   }
   if (told.contains("planned")) {
@@ -186,6 +189,12 @@ void ConversionJob::heard(std::string_view line) {
   if (total <= 0) return;
   const double part = told.value("done", 0.0) / total;
   fraction_ = step_ == "convert" ? done_of_conversion(told.value("pass", ""), part) : part;
+}
+
+// A source whose server does not answer fails with the same number.
+bool ConversionJob::is_written(const std::string& path) const {
+  return is_within(path, fs::path(task_.output).parent_path().string()) ||
+         (!task_.work_dir.empty() && is_within(path, task_.work_dir));
 }
 
 // Passes of about the same length: two, or with --certify three.
@@ -323,6 +332,8 @@ void ConversionJob::fail(int exit_code, const std::string& reason) {
     end(TaskEnd::source_changed);
   } else if (exit_code == kIo && !report_.full_directory.empty()) {
     end(TaskEnd::disk_full);
+  } else if (exit_code == kIo && output_busy_) {
+    end(TaskEnd::output_busy);
   } else {
     end(TaskEnd::failed);
   }

@@ -24,6 +24,7 @@ enum class TaskEnd {
   done,
   failed,          ///< by itself: JobResult::exit_code and reason say why
   disk_full,       ///< nothing wrong with source or options
+  output_busy,     ///< another process writes the output
   source_changed,  ///< it or a file that it names was rewritten meanwhile: what was made of it is worth nothing
   source_gone,     ///< deleted before it was converted
   stopped          ///< as asked
@@ -84,6 +85,7 @@ class ConversionJob {
   void end(TaskEnd how);
   void heard(std::string_view line);
   double done_of_conversion(std::string_view pass, double part) const;
+  bool is_written(const std::string& path) const;
 
   boost::asio::io_context& io_;
   ConversionTask task_;
@@ -96,7 +98,8 @@ class ConversionJob {
   std::unique_ptr<WorkerProcess> worker_;
   std::string_view step_ = "convert";
   std::optional<double> fraction_;
-  std::string failed_;  ///< why the conversion failed, as it announced; empty: it did not
+  std::string failed_;        ///< why the conversion failed, as it announced; empty: it did not
+  bool output_busy_ = false;  ///< and that was because another process writes the output
   bool stopping_ = false;
   bool reported_ = false;  ///< that it is done
   bool repeated_ = false;  ///< the rendering of the present output

@@ -208,6 +208,9 @@ void JobRunner::attempt_ended(const RunningJob& run, const TaskReport& report) {
     case TaskEnd::disk_full:
       disk_full(run, report);
       break;
+    case TaskEnd::output_busy:
+      output_busy(run, report);
+      break;
     case TaskEnd::source_changed:
       figures_.attempt_failed("source-changed");
       [[fallthrough]];

@@ -97,6 +97,7 @@ class JobRunner {
   void done(const RunningJob& run, const TaskReport& report);
   void failed(const RunningJob& run, const TaskReport& report);
   void disk_full(const RunningJob& run, const TaskReport& report);
+  void output_busy(const RunningJob& run, const TaskReport& report);
   void forget_other_watches();
   void arm_timer();
   void look_at_disks();

@@ -1,4 +1,4 @@
-// What a JobRunner does where a file system has no room, and what it says of that.
+// What a JobRunner does where a file system has no room or an output another writer, and what it says of that.
 #include <filesystem>
 
 #include "daemon/disks/disk_room.h"
@@ -25,6 +25,14 @@ void JobRunner::disk_full(const RunningJob& run, const TaskReport& report) {
                   of_output ? report.planned_bytes : 0, std::chrono::steady_clock::now());
   log_.error("disk-full", {{"job", run.job.id}, {"directory", directory}, {"reason", report.result.reason}});
   writes_.add([this, id = run.job.id, reason = report.result.reason] { store_.postpone(id, reason); });
+}
+
+// However long that takes, it is no fault of the job.
+void JobRunner::output_busy(const RunningJob& run, const TaskReport& report) {
+  constexpr std::int64_t kBusyAgain_ms = 30'000;
+  const std::string& reason = report.result.reason;
+  if (run.job.result.reason != reason) log_.warn("output-busy", {{"job", run.job.id}, {"reason", reason}});
+  writes_.add([this, id = run.job.id, reason] { store_.postpone(id, reason, kBusyAgain_ms); });
 }
 
 void JobRunner::look_at_disks() {

@@ -5,20 +5,17 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <system_error>
 #include <utility>
 
 #include "daemon/config/watch_conflicts.h"
 #include "daemon/jobs/conversion_task.h"
+#include "daemon/jobs/outputs_fault.h"
 #include "daemon/store/file_identity.h"
 #include "daemon/watch/file_writers.h"
 #include "daemon/watch/path_filter.h"
 #include "format/base/error.h"
-#include "format/base/scalar_type.h"
 #include "format/base/text.h"
 #include "format/io/descriptor.h"
 #include "format/sidecar/sidecar.h"
@@ -42,121 +39,22 @@ milliseconds delay_of(const WatchConfig& watch) {
   return milliseconds(static_cast<std::int64_t>(watch.delete_after_s * 1000));
 }
 
-// What of the values no error counts, where the output is called lossless or they are not even finite; empty: nothing.
-std::string loss_fault(const nlohmann::json& sidecar, const std::string& path) {
-  const auto member = [](const nlohmann::json& of, const char* key) {
-    return of.is_object() ? of.value(key, nlohmann::json()) : nlohmann::json();
-  };
-  const nlohmann::json loss = member(sidecar, "conversion_loss");
-  const auto count = [&](const char* key) {
-    const nlohmann::json value = member(loss, key);
-    return value.is_number_unsigned() ? value.get<std::uint64_t>() : 0;
-  };
-  const std::uint64_t overflow = count("overflow");
-  if (overflow > 0)
-    return cat(path, ": ", overflow, overflow == 1 ? " value is" : " values are", " infinite in float32");
-  const std::uint64_t inexact = count("inexact");
-  if (inexact == 0 || member(member(sidecar, "error"), "lossless") != true) return {};
-  return cat(path, ": ", inexact, inexact == 1 ? " value was" : " values were",
-             " rounded to float32, so the output is not lossless");
-}
-
-// What the certificate `path` says; null where it cannot be read.
-nlohmann::json read_certificate(const std::string& path) {
-  std::ifstream file(path);
-  nlohmann::json sidecar = nlohmann::json::parse(file, nullptr, false);
-  const bool whole = sidecar.is_object() && sidecar.contains("source") && sidecar["source"].is_object();
-  return whole ? std::move(sidecar) : nlohmann::json();
-}
-
-// Whether the certificate tells what the job found of that output: another volume of the same size has another one.
-bool is_of_output(const nlohmann::json& sidecar, const JobOutput& output) {
-  const auto is = [&](const char* place, const std::optional<double>& expected) {
-    const nlohmann::json::json_pointer pointer(place);
-    if (!expected || !std::isfinite(*expected) || !sidecar.contains(pointer)) return true;
-    return sidecar[pointer] == *expected;
-  };
-  return is("/value_range/0", output.min) && is("/value_range/1", output.max) &&
-         is("/error/max_abs", output.max_error) && is("/error/psnr_db", output.psnr_db);
-}
-
-// Why `sidecar`, at `path`, is not the certificate of the job's source, of which `state` is now; empty: it is.
-std::string certificate_fault(const Job& job, const nlohmann::json& sidecar, const std::string& path,
-                              const std::optional<FileState>& state) {
-  const nlohmann::json& source = sidecar["source"];
-  if (source.contains("files_digest")) return "its values lie in several files, which other headers may name";
-  const auto is = [&](const char* key, const nlohmann::json& value) {
-    return source.contains(key) && source[key] == value;
-  };
-  if (!is("path", job.source) || !is("bytes", job.identity.bytes) || !is("mtime", utc_text(job.identity.mtime_ns)) ||
-      (state && touched_since(*state, look_at_file(path)))) {
-    return cat(path, " is of another file, or of this one as it was before");
-  }
-  return loss_fault(sidecar, path);
-}
-
-// Voxels of the volume that was read.
-std::uint64_t voxels_of(const nlohmann::json& source) {
-  const nlohmann::json extent = source.value("extent", nlohmann::json());
-  std::uint64_t voxels = extent.is_array() ? 1 : 0;
-  for (const nlohmann::json& axis : extent) voxels *= axis.is_number_unsigned() ? axis.get<std::uint64_t>() : 0;
-  return voxels;
-}
-
-// In the file; 0: not known. A raw file without its count has no more than its bytes.
-std::uint64_t values_of(const nlohmann::json& source) {
-  const auto number = [&](const char* key) {
-    const nlohmann::json value = source.value(key, nlohmann::json());
-    return value.is_number_unsigned() ? value.get<std::uint64_t>() : 0;
-  };
-  const nlohmann::json type = source.value("type", nlohmann::json());
-  if (const std::uint64_t counted = number("values"); counted > 0) return counted;
-  const auto scalar = type.is_string() ? parse_scalar(type.get<std::string>()) : std::nullopt;
-  return scalar && source.value("format", nlohmann::json()) == "raw" ? number("bytes") / scalar_bytes(*scalar) : 0;
-}
-
-std::string hidden_name(const Job& job) {
-  return (fs::path(job.source).parent_path() / cat(".weir-delete-", job.id)).string();
-}
-
 // Throws Error(io).
 void flush_file(const std::string& path) {
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   if (!file || ::fsync(file.get()) != 0) throw io_error(path, "flush it", errno);
 }
 
-// Why the outputs do not stand for the source, of which `state` is now; empty: they do. Without `state`, which a rename
-// changes, the source may be older or younger than its certificate.
-std::string outputs_fault(const Job& job, const std::optional<FileState>& state) {
-  if (job.result.outputs.empty()) return "it has no outputs";
-  std::uint64_t voxels = 0;  // of all outputs
-  std::uint64_t values = 0;  // of the source
-  for (const JobOutput& output : job.result.outputs) {
-    std::error_code error;
-    if (fs::file_size(output.path, error) != output.bytes || error) return cat(output.path, " is not there as it was");
-    const std::string path = sidecar_path(output.path);
-    if (!fs::is_regular_file(path, error)) return cat(path, " is not there");
-    const nlohmann::json sidecar = read_certificate(path);
-    if (sidecar.is_null()) return cat(path, " cannot be read");
-    if (std::string fault = certificate_fault(job, sidecar, path, state); !fault.empty()) return fault;
-    if (!is_of_output(sidecar, output)) return cat(path, " is of another volume than the job's");
-    const std::uint64_t counted = values_of(sidecar["source"]);
-    if (counted == 0) {
-      return cat(path, " does not say what else the file holds; let its job be done again (weir retry --force ", job.id,
-                 ")");
-    }
-    values = counted;
-    voxels += voxels_of(sidecar["source"]);
-  }
-  if (voxels >= values) return {};
-  return cat("its outputs have ", voxels, " of the ", values,
-             " values in it, and what else it holds would go with it; keep sources, or write that to another file");
+std::string left_fault(const std::string& hidden, bool is_source) {
+  return cat(hidden, is_source ? " is the source" : " is another file",
+             ", which a deletion that was interrupted has left; give it a name");
 }
 
 }  // namespace
 
-SourceDeletion::SourceDeletion(boost::asio::io_context& io, const JobStore& store, const EventLog& log, Held held)
-    : store_(store), log_(log), held_(std::move(held)), timer_(io) {}
+SourceDeletion::SourceDeletion(boost::asio::io_context& io, const JobStore& store, const EventLog& log, Held held,
+                               std::unique_ptr<FileSystem> files)
+    : store_(store), log_(log), held_(std::move(held)), files_(std::move(files)), timer_(io) {}
 
 void SourceDeletion::configure(const DaemonConfig& config) {
   const std::vector<WatchConfig> before = std::exchange(watches_, {});
@@ -172,6 +70,7 @@ void SourceDeletion::configure(const DaemonConfig& config) {
   });
   taking_up_ = !watches_.empty();
   taken_up_ = 0;
+  hidden_.look_through(config.watches);
   arm();
 }
 
@@ -190,12 +89,12 @@ const WatchConfig* SourceDeletion::deleting_watch(const std::string& label) cons
 }
 
 void SourceDeletion::arm() {
-  if (idle()) {
+  if (idle() && hidden_.idle()) {
     timer_.cancel();
     return;
   }
   auto next = Clock::now();
-  if (!taking_up_) {
+  if (!taking_up_ && hidden_.idle()) {
     next = std::min_element(due_.begin(), due_.end(), [](const auto& a, const auto& b) {
              return a.second.time < b.second.time;
            })->second.time;
@@ -216,7 +115,13 @@ void SourceDeletion::work() {
     return;
   }
   try {
-    taking_up_ ? take_up() : look();
+    if (taking_up_) {
+      take_up();
+    } else if (!hidden_.idle()) {
+      for (const HiddenSource& hidden : hidden_.step()) uncover(hidden);
+    } else {
+      look();
+    }
     arm();
   } catch (const CorruptDatabase&) {
     throw;
@@ -289,17 +194,14 @@ SourceDeletion::Outcome SourceDeletion::look_at(const Job& job, const WatchConfi
   }
   flush_outputs(job, watch);
   const FileWriters writers(job.source);
-  if (writers.some()) {
-    if (in_use_.insert(job.id).second) keep(job, "a program has it open for writing; tried again later");
-    return Outcome::later;
-  }
+  if (writers.some()) return wait_for_writer(job);
   if (!writers.known() && !says_when_done(watch.complete)) {
     keep(job,
          "whether a program writes to it cannot be known here; use complete = \"rename\" or \"marker\", or run the "
          "service as its owner");
     return Outcome::over;
   }
-  return remove(job, watch, writers.known());
+  return remove(job, watch, writers);
 }
 
 // A conversion flushes its own directory: neither those that were made for it, nor anything where it found the output
@@ -315,16 +217,25 @@ void SourceDeletion::flush_outputs(const Job& job, const WatchConfig& watch) con
   }
 }
 
-// Under a hidden name first, which is never a source: what took its place meanwhile gets its name back.
-SourceDeletion::Outcome SourceDeletion::remove(const Job& job, const WatchConfig& watch, bool writers_known) {
+SourceDeletion::Outcome SourceDeletion::wait_for_writer(const Job& job) {
+  if (in_use_.insert(job.id).second) keep(job, "a program has it open for writing; tried again later");
+  return Outcome::later;
+}
+
+// Under a hidden name first, which is never a source: what took its place meanwhile gets its name back, and so does
+// the source where a writer has found it by its name before. From then on none can; `writers` tells of those before.
+SourceDeletion::Outcome SourceDeletion::remove(const Job& job, const WatchConfig& watch, const FileWriters& writers) {
   const std::string doomed = hidden_name(job);
   files_->rename_new(job.source, doomed);
   try {
-    if (identify(doomed) == job.identity) {
+    const bool is_source = identify(doomed) == job.identity;
+    const bool one_waits = writers.one_waits();
+    if (is_source && !one_waits) {
       files_->remove(doomed);
-      removed(job, watch, writers_known);
+      removed(job, watch, writers.known());
     } else {
       files_->rename_new(doomed, job.source);
+      if (one_waits) return wait_for_writer(job);
     }
   } catch (const Error& error) {
     if (files_->exists(doomed)) files_->rename_new(doomed, job.source);
@@ -344,22 +255,47 @@ void SourceDeletion::removed(const Job& job, const WatchConfig& watch, bool writ
 }
 
 // The source under its hidden name was to be deleted: all that must hold held then. Its status has changed since.
-SourceDeletion::Outcome SourceDeletion::finish_interrupted(const Job& job, const WatchConfig& watch) const {
+SourceDeletion::Outcome SourceDeletion::finish_interrupted(const Job& job, const WatchConfig& watch) {
   const std::string doomed = hidden_name(job);
   const bool is_source = identify(doomed) == job.identity;
+  if (is_source && FileWriters(doomed).some()) return wait_for_writer(job);  // who opened it before it was hidden
   const std::string fault = is_source ? outputs_fault(job, std::nullopt) : "";
   if (is_source && fault.empty()) {
     flush_outputs(job, watch);
     files_->remove(doomed);
     removed(job, watch, true);
   } else if (files_->exists(job.source)) {
-    keep(job, cat(doomed, is_source ? " is the source" : " is another file",
-                  ", which a deletion that was interrupted has left; give it a name"));
+    keep(job, left_fault(doomed, is_source));
   } else {
     files_->rename_new(doomed, job.source);
     if (is_source) keep(job, cat(fault, "; let its job be done again (weir retry --force ", job.id, ")"));
   }
   return Outcome::over;
+}
+
+// What is to be deleted still, finish_interrupted() sees to. Of the others, one that is the source of its job gets its
+// name back; without its job nobody knows that name.
+void SourceDeletion::uncover(const HiddenSource& hidden) const {
+  const auto job = store_.job(hidden.job);
+  if (!job || hidden_name(*job) != hidden.path) {
+    log_.warn("not-deleted", {{"source", hidden.path},
+                              {"reason",
+                               "a deletion that was interrupted has left a source under this name, and no job tells "
+                               "its own; give it that, or remove it"}});
+    return;
+  }
+  if (job->state == JobState::done && deleting_watch(job->watch) != nullptr) return;
+  try {
+    const bool is_source = identify(hidden.path) == job->identity;
+    if (!is_source || files_->exists(job->source)) {
+      keep(*job, left_fault(hidden.path, is_source));
+      return;
+    }
+    files_->rename_new(hidden.path, job->source);
+    keep(*job, cat("a deletion that was interrupted had left it as ", hidden.path, "; it has its name back"));
+  } catch (const Error& error) {
+    keep(*job, error.what());
+  }
 }
 
 void SourceDeletion::keep(const Job& job, const std::string& reason) const {

@@ -9,10 +9,12 @@
 //      a directory (the Header of a plotfile, the metadata of a Zarr hierarchy) stays whatever its certificate says.
 //      Together they have as many voxels as the source has values: its other volumes would go with it;
 //   4. no program has the source open for writing, or maps it so (file_writers.h): else it is tried again later.
-//      Where that cannot be known, the writer must say itself that it is done (says_when_done);
+//      Where that cannot be known, the writer must say itself that it is done (says_when_done). One that opens it while
+//      it is looked at gets it whole: the source has lost its name when this is looked at last;
 //   5. the outputs are on their disk, with the directories that were made for them.
-// Jobs of an earlier process are taken up a few at a time; a deletion that it was killed in is finished. One thread,
-// that of the io_context.
+// Jobs of an earlier process are taken up a few at a time; a deletion that it was killed in is finished. Where the
+// watch deletes no more, or the job is to be done again, the source gets its name back; what no job knows is told of
+// and stays. One thread, that of the io_context.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -28,8 +30,10 @@
 #include <vector>
 
 #include "daemon/config/config.h"
+#include "daemon/jobs/hidden_sources.h"
 #include "daemon/log/event_log.h"
 #include "daemon/store/job_store.h"
+#include "daemon/watch/file_writers.h"
 #include "format/io/file_system.h"
 
 namespace weir {
@@ -37,8 +41,10 @@ namespace weir {
 class SourceDeletion {
  public:
   using Held = std::function<bool()>;
-  /// `store` and `log` must outlive the object. Nothing is deleted while `held`, where there is one.
-  SourceDeletion(boost::asio::io_context& io, const JobStore& store, const EventLog& log, Held held = {});
+  /// `store` and `log` must outlive the object. Nothing is deleted while `held`, where there is one. `files`: for
+  /// tests.
+  SourceDeletion(boost::asio::io_context& io, const JobStore& store, const EventLog& log, Held held = {},
+                 std::unique_ptr<FileSystem> files = make_posix_file_system());
 
   /// From now on as `config` says; what is done already waits for the whole of its time again where that has changed.
   void configure(const DaemonConfig& config);
@@ -63,9 +69,11 @@ class SourceDeletion {
   Outcome try_to_delete(const Job& job, const WatchConfig& watch);
   Outcome look_at(const Job& job, const WatchConfig& watch);
   void flush_outputs(const Job& job, const WatchConfig& watch) const;
-  Outcome remove(const Job& job, const WatchConfig& watch, bool writers_known);
+  Outcome wait_for_writer(const Job& job);
+  Outcome remove(const Job& job, const WatchConfig& watch, const FileWriters& writers);
   void removed(const Job& job, const WatchConfig& watch, bool writers_known) const;
-  Outcome finish_interrupted(const Job& job, const WatchConfig& watch) const;
+  Outcome finish_interrupted(const Job& job, const WatchConfig& watch);
+  void uncover(const HiddenSource& hidden) const;
   void keep(const Job& job, const std::string& reason) const;
   const WatchConfig* deleting_watch(const std::string& label) const;
 
@@ -77,7 +85,8 @@ class SourceDeletion {
   std::set<std::int64_t> in_use_;     ///< of which it was said
   bool taking_up_ = false;
   std::int64_t taken_up_ = 0;  ///< id of the last job that was looked through
-  std::unique_ptr<FileSystem> files_ = make_posix_file_system();
+  HiddenSources hidden_;
+  std::unique_ptr<FileSystem> files_;
   boost::asio::steady_timer timer_;
 };
 

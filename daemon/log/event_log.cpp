@@ -5,8 +5,10 @@
 #include <spdlog/sinks/rotating_file_sink.h>
 #include <spdlog/sinks/stdout_sinks.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
+#include <fstream>
 
 #include "format/base/error.h"
 
@@ -35,7 +37,13 @@ std::string logfmt(std::string_view value) {
   return text + '"';
 }
 
-std::shared_ptr<spdlog::logger> open_log(const ServiceConfig& service) {
+// What each line looks like, with `before` it.
+void set_line(spdlog::logger& logger, const std::string& before) {
+  logger.set_pattern(before + "%Y-%m-%dT%H:%M:%S.%eZ %l %v", spdlog::pattern_time_type::utc);
+}
+
+// What goes wrong with a line is left in `fault`.
+std::shared_ptr<spdlog::logger> open_log(const ServiceConfig& service, std::shared_ptr<std::string> fault) {
   spdlog::sink_ptr sink;
   try {
     if (service.log_file.empty()) {
@@ -51,12 +59,18 @@ std::shared_ptr<spdlog::logger> open_log(const ServiceConfig& service) {
                                    "; check the directory and its permissions"));
   }
   auto logger = std::make_shared<spdlog::logger>("weir", sink);
-  logger->set_pattern("%Y-%m-%dT%H:%M:%S.%eZ %l %v", spdlog::pattern_time_type::utc);
+  set_line(*logger, "");
   logger->set_level(spdlog::level::from_str(service.log_level));
   logger->flush_on(spdlog::level::trace);  // a line that is not there after a crash is no log
-  // A full disk under the log must not end in a message for each event.
-  logger->set_error_handler([](const std::string&) {});
+  logger->set_error_handler([fault = std::move(fault)](const std::string& text) { *fault = text; });
   return logger;
+}
+
+// Half of a line, say, of which the disk had no room for the rest. A file that is empty or cannot be read has none.
+bool ends_within_line(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  char last = '\n';
+  return file.seekg(-1, std::ios::end) && file.get(last) && last != '\n';
 }
 
 }  // namespace
@@ -67,13 +81,37 @@ std::string event_text(std::string_view name, std::initializer_list<Field> field
   return text;
 }
 
-EventLog::EventLog(const ServiceConfig& service) : logger_(open_log(service)) {}
+EventLog::EventLog(const ServiceConfig& service) : file_(service.log_file), logger_(open_log(service, fault_)) {}
 
-void EventLog::reopen(const ServiceConfig& service) { logger_ = open_log(service); }
+void EventLog::reopen(const ServiceConfig& service) {
+  logger_ = open_log(service, fault_);
+  file_ = service.log_file;
+}
 
 void EventLog::write(int level, std::string_view name, std::initializer_list<Field> fields) const {
-  const auto of_spdlog = static_cast<spdlog::level::level_enum>(level);
-  if (logger_->should_log(of_spdlog)) logger_->log(of_spdlog, event_text(name, fields));
+  if (!logger_->should_log(static_cast<spdlog::level::level_enum>(level))) return;
+  const bool lost_before = unsaid_ > 0;
+  if (lost_before && say_lost(level)) unsaid_ = 0;
+  if (unsaid_ == 0 && try_write(level, event_text(name, fields))) return;
+  ++lost_;
+  ++unsaid_;
+  if (lost_before) return;
+  const std::string notice = cat("weir: the log cannot be written: ", *fault_, "; events are lost until it can\n");
+  std::fputs(notice.c_str(), stderr);
+}
+
+bool EventLog::try_write(int level, const std::string& line) const {
+  fault_->clear();
+  logger_->log(static_cast<spdlog::level::level_enum>(level), line);
+  return fault_->empty();
+}
+
+bool EventLog::say_lost(int level) const {
+  if (ends_within_line(file_)) set_line(*logger_, "\n");
+  const bool written =
+      try_write(std::max<int>(level, spdlog::level::warn), event_text("log-lost", {{"lines", unsaid_}}));
+  set_line(*logger_, "");
+  return written;
 }
 
 void EventLog::debug(std::string_view name, std::initializer_list<Field> fields) const {

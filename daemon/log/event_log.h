@@ -2,6 +2,7 @@
 // can read it and a program can take it apart. One thread.
 #pragma once
 
+#include <cstdint>
 #include <initializer_list>
 #include <memory>
 #include <string>
@@ -38,15 +39,26 @@ class EventLog {
   /// Throws like the constructor; then the old log goes on.
   void reopen(const ServiceConfig& service);
 
+  /// An event that cannot be written, on a full disk for instance, is counted and lost: the first one is said on
+  /// stderr, and the next that can be written comes behind a line `log-lost lines=N`.
   void debug(std::string_view name, std::initializer_list<Field> fields) const;
   void info(std::string_view name, std::initializer_list<Field> fields) const;
   void warn(std::string_view name, std::initializer_list<Field> fields) const;
   void error(std::string_view name, std::initializer_list<Field> fields) const;
 
+  /// Since the beginning.
+  std::uint64_t lines_lost() const { return lost_; }
+
  private:
   /// `level` is one of spdlog::level::level_enum.
   void write(int level, std::string_view name, std::initializer_list<Field> fields) const;
+  bool try_write(int level, const std::string& line) const;
+  bool say_lost(int level) const;
 
+  std::shared_ptr<std::string> fault_ = std::make_shared<std::string>();  ///< of the last line; the logger writes it
+  mutable std::uint64_t lost_ = 0;
+  mutable std::uint64_t unsaid_ = 0;  ///< of them, those that no line of the log tells of yet
+  std::string file_;                  ///< empty: stderr
   std::shared_ptr<spdlog::logger> logger_;
 };
 

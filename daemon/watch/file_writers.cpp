@@ -119,6 +119,9 @@ FileWriters::FileWriters(const std::string& path) : file_(::open(path.c_str(), O
   }
 }
 
+// Of a lease that is being broken, the kernel tells what it is to become.
+bool FileWriters::one_waits() const { return leased_ && ::fcntl(file_.get(), F_GETLEASE) != F_RDLCK; }
+
 FileWriters::~FileWriters() {
   if (leased_) ::fcntl(file_.get(), F_SETLEASE, F_UNLCK);
 }

@@ -56,6 +56,13 @@ bool is_at_or_below(std::string_view path, std::string_view directory) {
          (directory.empty() || path.size() == directory.size() || path[directory.size()] == '/');
 }
 
+bool is_numbered(std::string_view path, const NumberedFiles& files) {
+  if (!path.starts_with(files.before)) return false;
+  const std::string_view rest = path.substr(files.before.size());
+  const std::size_t digits = std::min(rest.find_first_not_of("0123456789"), rest.size());
+  return digits > 0 && (files.after.empty() || rest.substr(digits) == files.after);
+}
+
 }  // namespace
 
 PathFilter::PathFilter(const WatchConfig& watch)
@@ -67,14 +74,25 @@ PathFilter::PathFilter(const WatchConfig& watch)
       exclude_(watch.exclude),
       marker_(watch.complete == Completion::marker ? watch.marker : std::string()) {
   for (const std::string& path : watch.excluded_paths) {
-    const fs::path relative = real_path(path).lexically_relative(real_directory_);
-    if (!relative.empty() && *relative.begin() != "..") excluded_.push_back(relative.string());
+    if (auto relative = in_tree(path)) excluded_.push_back(*std::move(relative));
   }
+  for (const NumberedFiles& files : watch.excluded_numbers) {
+    if (auto relative = in_tree(files.before)) excluded_numbers_.push_back({*std::move(relative), files.after});
+  }
+}
+
+// Relative to the tree, without links; none where it lies elsewhere.
+std::optional<std::string> PathFilter::in_tree(const std::string& path) const {
+  const fs::path relative = real_path(path).lexically_relative(real_directory_);
+  if (relative.empty() || *relative.begin() == "..") return std::nullopt;
+  return relative.string();
 }
 
 bool PathFilter::is_excluded(std::string_view path) const {
   return std::any_of(excluded_.begin(), excluded_.end(),
-                     [&](const std::string& excluded) { return is_at_or_below(path, excluded); });
+                     [&](const std::string& excluded) { return is_at_or_below(path, excluded); }) ||
+         std::any_of(excluded_numbers_.begin(), excluded_numbers_.end(),
+                     [&](const NumberedFiles& files) { return is_numbered(path, files); });
 }
 
 bool PathFilter::accepts_file(std::string_view path) const {

@@ -25,8 +25,8 @@ namespace weir {
 /// A Zarr hierarchy is the directory NAME.zarr, in no other one, and patterns are for that; nothing else in it is a
 /// source, and directories in it are not entered: there may be as many as chunks.
 ///
-/// Never sources: WatchConfig::excluded_paths and what lies below them, X.nvdb.json and what a conversion is in the
-/// middle of writing (*.partial, *.nvdb.json.previous), markers of the policy `marker`.
+/// Never sources: WatchConfig::excluded_paths and what lies below them, WatchConfig::excluded_numbers, X.nvdb.json and
+/// what a conversion is in the middle of writing (*.partial, *.nvdb.json.previous), markers of the policy `marker`.
 class PathFilter {
  public:
   /// Looks at the file system once: excluded paths and the directory may be named through links.
@@ -42,6 +42,7 @@ class PathFilter {
   std::string link_refusal(const std::string& path) const;
 
  private:
+  std::optional<std::string> in_tree(const std::string& path) const;
   bool is_excluded(std::string_view path) const;
 
   std::string directory_;
@@ -50,8 +51,9 @@ class PathFilter {
   bool any_raw_;
   std::vector<std::string> include_;
   std::vector<std::string> exclude_;
-  std::vector<std::string> excluded_;  ///< relative
-  std::string marker_;                 ///< empty: another policy
+  std::vector<std::string> excluded_;            ///< relative
+  std::vector<NumberedFiles> excluded_numbers_;  ///< relative
+  std::string marker_;                           ///< empty: another policy
 };
 
 }  // namespace weir

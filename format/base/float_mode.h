@@ -5,9 +5,9 @@
 
 namespace weir {
 
-/// While it lives, the calling thread rounds to nearest, takes subnormal numbers for what they are and traps nothing: what
-/// files, certificates and FORMAT.md count on. Then the caller's mode is back: -ffast-math, for instance, sets one for a
-/// whole program in which subnormal numbers are 0. Threads that are started meanwhile begin with its mode.
+/// While it lives, the calling thread rounds to nearest, takes subnormal numbers for what they are and traps nothing:
+/// what files, certificates and FORMAT.md count on. Then the caller's mode is back: -ffast-math, for instance, sets one
+/// for a whole program in which subnormal numbers are 0. Threads that are started meanwhile begin with its mode.
 class FloatMode {
  public:
   FloatMode() {

@@ -123,7 +123,8 @@ class PosixFileSystem final : public FileSystem {
         file->set_exclusive();
       } else if (errno == EWOULDBLOCK) {
         throw Error(ErrorKind::io,
-                    cat(path, ": is being written by another process; wait for it or choose another output"));
+                    cat(path, ": is being written by another process; wait for it or choose another output"),
+                    SystemFailure{EWOULDBLOCK, path});
       } else {
         tell_that_locks_fail(path, errno);
       }

@@ -59,7 +59,7 @@ TEST(WatchedTree, AKeyWithoutEffect_IsLogged) {
   };
   EXPECT_EQ(logged(false).find("delete_after"), std::string::npos);
   EXPECT_NE(
-      logged(true).find("warn watch watch=" + watch.label + " notice=\"delete_after has no effect, since nothing "),
+      logged(true).find("warning watch watch=" + watch.label + " notice=\"delete_after has no effect, since nothing "),
       std::string::npos);
 }
 

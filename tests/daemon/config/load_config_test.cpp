@@ -195,7 +195,6 @@ TEST_F(Config, WrongShapes) {
 
 TEST_F(Config, WrongValuesOfTheService) {
   EXPECT_EQ(service_refusal("state = ''"), "2:9: state is empty, it must be a path");
-  EXPECT_EQ(service_refusal("state = 'watch.toml'"), "2:9: state is this file, " + path_);
   EXPECT_EQ(service_refusal("listen = 'unix:weir.sock'"), "2:10: listen is HOST:PORT; a Unix socket is control_socket");
   EXPECT_EQ(service_refusal("control_socket = '/" + std::string(103, 'x') + "'"),
             "2:18: control_socket is a path of 104 bytes, /" + std::string(103, 'x') + "; 103 can be used");
@@ -360,25 +359,6 @@ TEST_F(Config, WatchConflict_IsReportedAtItsKey) {
   // No key to point at: the table.
   EXPECT_EQ(refusal(kWatch + kWatch), "4:1: there is a watch of the label \"" + (directory_ / "in") +
                                           "\" already; give this one a label of its own");
-}
-
-TEST_F(Config, OwnFilesAreNeverSources) {
-  const DaemonConfig config = load(R"([service]
-state = "in/weir.db"
-log = "in/deep/weir.log"
-work_dir = "elsewhere"
-[[watch]]
-directory = "in"
-output = "in/nvdb"
-[[watch]]
-directory = "in2"
-output = "in/deep/nvdb"
-)");
-  const std::string in = directory_ / "in/";
-  EXPECT_EQ(config.watches[0].excluded_paths,
-            (std::vector<std::string>{in + "deep/nvdb", in + "deep/weir.log", in + "nvdb", in + "weir.db",
-                                      in + "weir.db-journal", in + "weir.db-shm", in + "weir.db-wal"}));
-  EXPECT_TRUE(config.watches[1].excluded_paths.empty());
 }
 
 TEST_F(Config, UnreadableFiles) {

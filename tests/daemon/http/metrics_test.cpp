@@ -51,6 +51,7 @@ TEST(Metrics, ShowTheService) {
   MetricsView metrics;
   metrics.errors = {{"input", 3}, {"io", 1}};
   metrics.reloads = 2;
+  metrics.log_lines_lost = 7;
   const std::string text = metrics_text(sample_status(), metrics, {123456, 17, 5});
   EXPECT_EQ(lines_with(text, "weir_build_info"), "weir_build_info{version=\"0.1.0\"} 1\n");
   EXPECT_EQ(lines_with(text, "weir_start_time"), "weir_start_time_seconds 1795253270.125\n");
@@ -65,6 +66,7 @@ TEST(Metrics, ShowTheService) {
   EXPECT_EQ(lines_with(text, "weir_errors"), "weir_errors_total{kind=\"input\"} 3\nweir_errors_total{kind=\"io\"} 1\n");
   EXPECT_EQ(lines_with(text, "weir_config"),
             "weir_config_reloads_total{result=\"applied\"} 2\nweir_config_reloads_total{result=\"rejected\"} 0\n");
+  EXPECT_EQ(lines_with(text, "weir_log"), "weir_log_lines_lost_total 7\n");
   EXPECT_EQ(lines_with(text, "weir_resident"), "weir_resident_memory_bytes 123456\n");
   EXPECT_EQ(lines_with(text, "weir_conversions_resident"), "weir_conversions_resident_memory_bytes 1500\n");
   EXPECT_EQ(lines_with(text, "weir_open_descriptors"), "weir_open_descriptors 17\n");

@@ -136,7 +136,7 @@ TEST_F(ConversionJobTest, ProcessThatComputesAndSaysNothing_IsAStall) {
 }
 
 // Whatever the message says behind it, as where the work is kept.
-TEST_F(ConversionJobTest, FullDisk_IsToldByTheErrorsNumberAndPath) {
+TEST_F(ConversionJobTest, FullDiskAndBusyOutput_AreToldByTheErrorsNumberAndPath) {
   ConversionTask full = task(write_source("a_8x8x8_uint8.raw", 512));
   full.program = directory_ / "weir";
   const auto report_of = [&](int error, const std::string& path) {
@@ -154,6 +154,8 @@ TEST_F(ConversionJobTest, FullDisk_IsToldByTheErrorsNumberAndPath) {
   }
   EXPECT_EQ(report_of(ENOSPC, directory_.path()).full_directory, directory_.path());
   EXPECT_EQ(report_of(EIO, directory_ / "out/a.nvdb").end, TaskEnd::failed);
+  EXPECT_EQ(report_of(EWOULDBLOCK, directory_ / "out/a.nvdb.partial").end, TaskEnd::output_busy);
+  EXPECT_EQ(report_of(EWOULDBLOCK, full.source).end, TaskEnd::failed) << "a server that does not answer";
 }
 
 TEST_F(ConversionJobTest, LosslessOverValidVoxelsAlone_HasAnInfinitePsnr) {

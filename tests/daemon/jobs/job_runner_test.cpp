@@ -176,6 +176,31 @@ TEST_F(JobRunnerTest, SourceChangedWhileWaiting_IsReportedNotConverted) {
   EXPECT_EQ(changed_.front(), job.source);
 }
 
+TEST_F(JobRunnerTest, OutputThatAnotherProcessWrites_IsWaitedForWithoutAnAttempt) {
+  const Job job = add("a", "one");
+  fs::create_directory(directory_ / "out");
+  const std::string partial = directory_ / "out/one_24x20x16_uint8.nvdb.partial";
+  auto other = make_posix_file_system()->create(partial);
+  for (int i = 0; i < 2; ++i) {
+    ASSERT_TRUE(i == 0 || store_.retry(job.id));
+    runner_.wake();
+    run_until([&] { return idle() && state(job) == JobState::waiting; });
+    const std::optional<Job> now = store_.job(job.id);
+    EXPECT_EQ(now->attempts, 0);
+    EXPECT_EQ(now->result.reason,
+              partial + ": is being written by another process; wait for it or choose another output");
+  }
+  const std::string log = read_file(config_.service.log_file);
+  EXPECT_NE(log.find(cat(" warning output-busy job=", job.id, " reason=\"", partial, ": is being written")),
+            std::string::npos)
+      << log;
+  other.reset();
+  fs::remove(partial);
+  ASSERT_TRUE(store_.retry(job.id));
+  runner_.wake();
+  run_until([&] { return state(job) == JobState::done; });
+}
+
 TEST_F(JobRunnerTest, StartsNothingWhilePaused) {
   const Job job = add("a", "one");
   runner_.pause();

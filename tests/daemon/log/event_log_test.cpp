@@ -1,11 +1,15 @@
 #include "daemon/log/event_log.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <algorithm>
+#include <csignal>
 #include <filesystem>
 #include <regex>
 
 #include "format/base/error.h"
+#include "format/base/text.h"
 #include "tests/support/run_command.h"
 
 namespace weir::event_log_test {
@@ -61,6 +65,61 @@ TEST(EventLog, RotatesAtItsSize) {
   for (int i = 0; i < 100; ++i) log.info("event", {{"number", i}});
   EXPECT_EQ(list_directory(directory.path()), (std::vector<std::string>{"weir.1.log", "weir.2.log", "weir.log"}));
   EXPECT_LE(fs::file_size(service.log_file), 1000U);
+}
+
+// As a full disk does: a write beyond the limit writes what has room below it, and the next one fails.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) : former_handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    ::getrlimit(RLIMIT_FSIZE, &former_);
+    const rlimit limit{bytes, former_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() {
+    ::setrlimit(RLIMIT_FSIZE, &former_);
+    std::signal(SIGXFSZ, former_handler_);
+  }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+
+ private:
+  rlimit former_{};
+  void (*former_handler_)(int);
+};
+
+std::string without_time(const std::string& log) {
+  return std::regex_replace(log, std::regex(R"(\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{3}Z )"), "");
+}
+
+TEST(EventLog, LinesThatCannotBeWritten_AreCountedAndSaid) {
+  const TemporaryDirectory directory;
+  for (const std::uint64_t log_size : {0, 100000}) {
+    ServiceConfig service;
+    service.log_file = directory / cat("log", log_size);
+    service.log_size = log_size;
+    service.log_level = "info";
+    const EventLog log(service);
+    const std::string first(3000, 'x');  // so that stderr stays below the limit
+    log.info(first, {});
+    std::string said;
+    {
+      const FileSizeLimit limit(fs::file_size(service.log_file) + 30);
+      testing::internal::CaptureStderr();
+      for (int i = 0; i < 3; ++i) log.info("lost", {{"number", i}});
+      log.debug("below the level", {});
+      said = testing::internal::GetCapturedStderr();
+    }
+    EXPECT_EQ(log.lines_lost(), 3U);
+    log.info("next", {});
+    log.info("last", {});
+    EXPECT_EQ(without_time(read_file(service.log_file)),
+              "info " + first + "\ninfo \nwarning log-lost lines=3\ninfo next\ninfo last\n");
+    EXPECT_TRUE(said.starts_with("weir: the log cannot be written: ")) << said;
+    EXPECT_NE(said.find("File too large"), std::string::npos) << said;
+    EXPECT_TRUE(said.ends_with("; events are lost until it can\n")) << said;
+    EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
+    EXPECT_EQ(log.lines_lost(), 3U);
+  }
 }
 
 TEST(EventLog, SaysWhereItCannotWrite) {

@@ -192,6 +192,20 @@ TEST(WatchControl, ABadReloadChangesNothingAndAGoodOneTakesEffect) {
   })) << service.log();
 }
 
+// What a start ends with exit code 5 for.
+TEST(WatchControl, ReloadWithAPathThatCannotBeUsed_ChangesNothing) {
+  ServiceHarness service;
+  service.start();
+  service.add("one");
+  ASSERT_TRUE(service.eventually_done(1)) << service.log();
+  service.configure("work_dir = \"missing\"\n", "size = \"400000\"\n");
+  service.signal(SIGHUP);
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" reload-rejected ") == 1; })) << service.log();
+  EXPECT_EQ(service.logged("/missing: work_dir cannot be written to by user "), 1U) << service.log();
+  EXPECT_EQ(service.count("done"), 1U) << "not to be done anew";
+  EXPECT_EQ(service.logged(" reload config="), 0U) << service.log();
+}
+
 TEST(WatchControl, ReloadOfAnUnchangedConfiguration_LeavesWhatRunsAlone) {
   ServiceHarness service;
   service.start();

@@ -96,6 +96,18 @@ TEST_F(PathFilterTest, FilesOfWeirItselfAreNeverSources) {
   EXPECT_TRUE(accepts("weir.db2"));
 }
 
+TEST_F(PathFilterTest, NumberedFilesOfWeirItselfAreNeverSources) {
+  watch.include = {"*"};
+  watch.excluded_numbers = {{directory / "in/weir.", ".log"}, {directory / "in/sub/weir.db.corrupt-", ""}};
+  for (const char* name : {"weir.1.log", "weir.12.log", "sub/weir.db.corrupt-1", "sub/weir.db.corrupt-2-wal"}) {
+    EXPECT_FALSE(accepts(name)) << name;
+  }
+  for (const char* name :
+       {"weir.log", "weir.x.log", "weir.1.log.raw", "sub/weir.1.log", "weir.db.corrupt-1", "sub/weir.db.corrupt-"}) {
+    EXPECT_TRUE(accepts(name)) << name;
+  }
+}
+
 TEST_F(PathFilterTest, ZarrHierarchiesGoByTheNamesOfTheirDirectories) {
   for (const char* head : {"zarr.json", ".zgroup", ".zarray"}) {
     EXPECT_TRUE(accepts(std::string("run.zarr/") + head)) << head;

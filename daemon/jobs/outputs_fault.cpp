@@ -1,0 +1,121 @@
+#include "daemon/jobs/outputs_fault.h"
+
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <system_error>
+#include <utility>
+
+#include "format/base/scalar_type.h"
+#include "format/base/text.h"
+#include "format/sidecar/sidecar.h"
+
+namespace weir {
+namespace {
+
+namespace fs = std::filesystem;
+
+// What of the values no error counts, where the output is called lossless or they are not even finite; empty: nothing.
+std::string loss_fault(const nlohmann::json& sidecar, const std::string& path) {
+  const auto member = [](const nlohmann::json& of, const char* key) {
+    return of.is_object() ? of.value(key, nlohmann::json()) : nlohmann::json();
+  };
+  const nlohmann::json loss = member(sidecar, "conversion_loss");
+  const auto count = [&](const char* key) {
+    const nlohmann::json value = member(loss, key);
+    return value.is_number_unsigned() ? value.get<std::uint64_t>() : 0;
+  };
+  const std::uint64_t overflow = count("overflow");
+  if (overflow > 0)
+    return cat(path, ": ", overflow, overflow == 1 ? " value is" : " values are", " infinite in float32");
+  const std::uint64_t inexact = count("inexact");
+  if (inexact == 0 || member(member(sidecar, "error"), "lossless") != true) return {};
+  return cat(path, ": ", inexact, inexact == 1 ? " value was" : " values were",
+             " rounded to float32, so the output is not lossless");
+}
+
+// What the certificate `path` says; null where it cannot be read.
+nlohmann::json read_certificate(const std::string& path) {
+  std::ifstream file(path);
+  nlohmann::json sidecar = nlohmann::json::parse(file, nullptr, false);
+  const bool whole = sidecar.is_object() && sidecar.contains("source") && sidecar["source"].is_object();
+  return whole ? std::move(sidecar) : nlohmann::json();
+}
+
+// Whether the certificate tells what the job found of that output: another volume of the same size has another one.
+bool is_of_output(const nlohmann::json& sidecar, const JobOutput& output) {
+  const auto is = [&](const char* place, const std::optional<double>& expected) {
+    const nlohmann::json::json_pointer pointer(place);
+    if (!expected || !std::isfinite(*expected) || !sidecar.contains(pointer)) return true;
+    return sidecar[pointer] == *expected;
+  };
+  return is("/value_range/0", output.min) && is("/value_range/1", output.max) &&
+         is("/error/max_abs", output.max_error) && is("/error/psnr_db", output.psnr_db);
+}
+
+// Why `sidecar`, at `path`, is not the certificate of the job's source, of which `state` is now; empty: it is.
+std::string certificate_fault(const Job& job, const nlohmann::json& sidecar, const std::string& path,
+                              const std::optional<FileState>& state) {
+  const nlohmann::json& source = sidecar["source"];
+  if (source.contains("files_digest")) return "its values lie in several files, which other headers may name";
+  const auto is = [&](const char* key, const nlohmann::json& value) {
+    return source.contains(key) && source[key] == value;
+  };
+  if (!is("path", job.source) || !is("bytes", job.identity.bytes) || !is("mtime", utc_text(job.identity.mtime_ns)) ||
+      (state && touched_since(*state, look_at_file(path)))) {
+    return cat(path, " is of another file, or of this one as it was before");
+  }
+  return loss_fault(sidecar, path);
+}
+
+// Voxels of the volume that was read.
+std::uint64_t voxels_of(const nlohmann::json& source) {
+  const nlohmann::json extent = source.value("extent", nlohmann::json());
+  std::uint64_t voxels = extent.is_array() ? 1 : 0;
+  for (const nlohmann::json& axis : extent) voxels *= axis.is_number_unsigned() ? axis.get<std::uint64_t>() : 0;
+  return voxels;
+}
+
+// In the file; 0: not known. A raw file without its count has no more than its bytes.
+std::uint64_t values_of(const nlohmann::json& source) {
+  const auto number = [&](const char* key) {
+    const nlohmann::json value = source.value(key, nlohmann::json());
+    return value.is_number_unsigned() ? value.get<std::uint64_t>() : 0;
+  };
+  const nlohmann::json type = source.value("type", nlohmann::json());
+  if (const std::uint64_t counted = number("values"); counted > 0) return counted;
+  const auto scalar = type.is_string() ? parse_scalar(type.get<std::string>()) : std::nullopt;
+  return scalar && source.value("format", nlohmann::json()) == "raw" ? number("bytes") / scalar_bytes(*scalar) : 0;
+}
+
+}  // namespace
+
+std::string outputs_fault(const Job& job, const std::optional<FileState>& state) {
+  if (job.result.outputs.empty()) return "it has no outputs";
+  std::uint64_t voxels = 0;  // of all outputs
+  std::uint64_t values = 0;  // of the source
+  for (const JobOutput& output : job.result.outputs) {
+    std::error_code error;
+    if (fs::file_size(output.path, error) != output.bytes || error) return cat(output.path, " is not there as it was");
+    const std::string path = sidecar_path(output.path);
+    if (!fs::is_regular_file(path, error)) return cat(path, " is not there");
+    const nlohmann::json sidecar = read_certificate(path);
+    if (sidecar.is_null()) return cat(path, " cannot be read");
+    if (std::string fault = certificate_fault(job, sidecar, path, state); !fault.empty()) return fault;
+    if (!is_of_output(sidecar, output)) return cat(path, " is of another volume than the job's");
+    const std::uint64_t counted = values_of(sidecar["source"]);
+    if (counted == 0) {
+      return cat(path, " does not say what else the file holds; let its job be done again (weir retry --force ", job.id,
+                 ")");
+    }
+    values = counted;
+    voxels += voxels_of(sidecar["source"]);
+  }
+  if (voxels >= values) return {};
+  return cat("its outputs have ", voxels, " of the ", values,
+             " values in it, and what else it holds would go with it; keep sources, or write that to another file");
+}
+
+}  // namespace weir
