@@ -31,6 +31,11 @@ def smallest_good_wavelength(spectrum):
     return None
 
 
+def in_percent(share):
+    """0.123 -> 12"""
+    return f"{100 * share:.0f}" if share >= 0.1 else scientific(100 * share)
+
+
 class Derived(Experiment):
     name = "derived"
 
@@ -49,7 +54,7 @@ class Derived(Experiment):
                 for method in METHODS:
                     if method == "zfp" and shutil.which("zfp") is None:
                         continue
-                    output = bench.scratch("derived.nvdb")
+                    output = bench.scratch(f"{volume.name}.nvdb")
                     certified = self._convert(bench, volume, path, method, share, output)
                     if certified is None:
                         continue
@@ -123,8 +128,8 @@ class Derived(Experiment):
                 named = row is result["rows"][0]
                 lines.append([f"{result['volume']}, {size_text(result['extent'])}" if named else "", f"{row['share']} %",
                               {"zfp": "ZFP"}.get(row["method"], row["method"]), decibel(row),
-                              *(scientific(100 * row[f"quantile_{q}"]) for q in QUANTILES), scientific(100 * row["max_abs"]),
-                              scientific(100 * row["gradient_relative_rms"]), f"{row['ssim']:.5f}",
+                              *(in_percent(row[f"quantile_{q}"]) for q in QUANTILES), in_percent(row["max_abs"]),
+                              in_percent(row["gradient_relative_rms"]), f"{row['ssim']:.5f}",
                               "all" if row["wavelength"] is None else f"{row['wavelength']:.1f}"])
         header = ["volume", "of dense", "method", "PSNR, dB", "median", "99 %", "99.9 %", "largest", "gradient", "SSIM",
                   "wavelengths above"]
@@ -136,7 +141,7 @@ class Derived(Experiment):
     def _field_text(self, measured):
         for result in measured.results(self.name):
             if "field" in result:
-                lines = [[row["method"], decibel(row), *(f"{100 * row[f'{what}_relative_rms']:.2g} %"
+                lines = [[row["method"], decibel(row), *(f"{in_percent(row[f'{what}_relative_rms'])} %"
                                                          for what in ("vorticity", "divergence"))] for row in result["field"]]
                 edge = result["edge"]
                 return (f"A vector field of {edge}^3: three components of turbulence, each converted at a rate of {FIELD_RATE}; relative\n"
