@@ -45,12 +45,14 @@ def corners(grid, edge):
     """Low corners (z, y, x) of regions of that edge, whose blocks are whole, and which hold more than one value."""
     numbers = random.Random(1)
     found = []
-    while len(found) < READINGS:
+    for _ in range(500 * READINGS):
         corner = [8 * numbers.randrange(max(1, (n - edge) // 8 + 1)) for n in grid.shape]
         values = region(grid, corner, edge)
         if values.min() < values.max():
             found.append(corner)
-    return found
+            if len(found) == READINGS:
+                return found
+    sys.exit(f"{grid.path}: too few places of {edge}^3 voxels hold more than one value")
 
 
 def region(grid, corner, edge):

@@ -69,10 +69,11 @@ constexpr bool says_when_done(Completion completion) {
   return completion == Completion::rename || completion == Completion::marker;
 }
 
-/// BEFORE, a whole number, AFTER; where AFTER is empty, anything.
+/// BEFORE, a whole number, AFTER.
 struct NumberedFiles {
   std::string before;  ///< absolute
   std::string after;
+  bool any_after = false;  ///< anything may follow the number
   bool operator==(const NumberedFiles&) const = default;
 };
 

@@ -49,7 +49,7 @@ std::map<fs::path, std::string> read_files(const DaemonConfig& config) {
 
 // The service renames weir.log to weir.1.log, and that to weir.2.log.
 NumberedFiles rotated_logs(const fs::path& log) {
-  return {(log.parent_path() / log.stem()).string() + ".", log.extension().string()};
+  return {(log.parent_path() / log.stem()).string() + ".", log.extension().string(), false};
 }
 
 }  // namespace
@@ -81,7 +81,7 @@ void exclude_own_files(DaemonConfig& config) {
   for (const WatchConfig& watch : config.watches) own.push_back(watch.output);
   std::sort(own.begin(), own.end());
   own.erase(std::unique(own.begin(), own.end()), own.end());
-  std::vector<NumberedFiles> numbered{{service.state + ".corrupt-", ""}};
+  std::vector<NumberedFiles> numbered{{service.state + ".corrupt-", "", true}};
   if (!service.log_file.empty()) numbered.push_back(rotated_logs(service.log_file));
   for (WatchConfig& watch : config.watches) {
     for (const std::string& path : own) {

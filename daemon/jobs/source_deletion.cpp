@@ -159,6 +159,7 @@ void SourceDeletion::look() {
       continue;
     }
     in_use_.erase(at->first);
+    named_back_.erase(at->first);
     at = due_.erase(at);
   }
 }
@@ -188,7 +189,7 @@ SourceDeletion::Outcome SourceDeletion::look_at(const Job& job, const WatchConfi
   const auto identity = identify(job.source);
   if (!identity) return Outcome::later;                 // a server that does not answer
   if (*identity != job.identity) return Outcome::over;  // the watch sees that, too
-  if (const std::string fault = outputs_fault(job, look_at_file(job.source)); !fault.empty()) {
+  if (const std::string fault = outputs_fault(job, state_since_certified(job)); !fault.empty()) {
     keep(job, fault);
     return Outcome::over;
   }
@@ -217,6 +218,13 @@ void SourceDeletion::flush_outputs(const Job& job, const WatchConfig& watch) con
   }
 }
 
+// None where nothing but a rename by remove() has changed its status, which was looked at before that.
+std::optional<FileState> SourceDeletion::state_since_certified(const Job& job) const {
+  const FileState state = look_at_file(job.source);
+  const auto back = named_back_.find(job.id);
+  return back != named_back_.end() && back->second == state.ctime_ns ? std::nullopt : std::optional(state);
+}
+
 SourceDeletion::Outcome SourceDeletion::wait_for_writer(const Job& job) {
   if (in_use_.insert(job.id).second) keep(job, "a program has it open for writing; tried again later");
   return Outcome::later;
@@ -235,6 +243,7 @@ SourceDeletion::Outcome SourceDeletion::remove(const Job& job, const WatchConfig
       removed(job, watch, writers.known());
     } else {
       files_->rename_new(doomed, job.source);
+      named_back_[job.id] = look_at_file(job.source).ctime_ns;
       if (one_waits) return wait_for_writer(job);
     }
   } catch (const Error& error) {
@@ -292,7 +301,9 @@ void SourceDeletion::uncover(const HiddenSource& hidden) const {
       return;
     }
     files_->rename_new(hidden.path, job->source);
-    keep(*job, cat("a deletion that was interrupted had left it as ", hidden.path, "; it has its name back"));
+    keep(*job, cat("a deletion that was interrupted had left it as ", hidden.path,
+                   "; it has its name back. To have it deleted, let its job be done again (weir retry --force ",
+                   job->id, ")"));
   } catch (const Error& error) {
     keep(*job, error.what());
   }

@@ -25,6 +25,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -35,6 +36,7 @@
 #include "daemon/store/job_store.h"
 #include "daemon/watch/file_writers.h"
 #include "format/io/file_system.h"
+#include "ingest/files/file_state.h"
 
 namespace weir {
 
@@ -69,6 +71,7 @@ class SourceDeletion {
   Outcome try_to_delete(const Job& job, const WatchConfig& watch);
   Outcome look_at(const Job& job, const WatchConfig& watch);
   void flush_outputs(const Job& job, const WatchConfig& watch) const;
+  std::optional<FileState> state_since_certified(const Job& job) const;
   Outcome wait_for_writer(const Job& job);
   Outcome remove(const Job& job, const WatchConfig& watch, const FileWriters& writers);
   void removed(const Job& job, const WatchConfig& watch, bool writers_known) const;
@@ -83,6 +86,8 @@ class SourceDeletion {
   std::vector<WatchConfig> watches_;  ///< those that delete
   std::map<std::int64_t, Due> due_;   ///< by job
   std::set<std::int64_t> in_use_;     ///< of which it was said
+  std::map<std::int64_t, std::int64_t>
+      named_back_;  ///< by job: FileState::ctime_ns of sources that got their name back
   bool taking_up_ = false;
   std::int64_t taken_up_ = 0;  ///< id of the last job that was looked through
   HiddenSources hidden_;

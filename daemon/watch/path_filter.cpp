@@ -60,7 +60,7 @@ bool is_numbered(std::string_view path, const NumberedFiles& files) {
   if (!path.starts_with(files.before)) return false;
   const std::string_view rest = path.substr(files.before.size());
   const std::size_t digits = std::min(rest.find_first_not_of("0123456789"), rest.size());
-  return digits > 0 && (files.after.empty() || rest.substr(digits) == files.after);
+  return digits > 0 && (files.any_after || rest.substr(digits) == files.after);
 }
 
 }  // namespace

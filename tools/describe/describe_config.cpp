@@ -65,6 +65,9 @@ void describe(std::ostream& out, const WatchConfig& watch) {
   say(out, "include", joined(watch.include, " ", "everything that can be converted"));
   if (!watch.exclude.empty()) say(out, "exclude", joined(watch.exclude, " ", ""));
   for (const std::string& path : watch.excluded_paths) say(out, "never", path);
+  for (const NumberedFiles& files : watch.excluded_numbers) {
+    say(out, "never", cat(files.before, 'N', files.after, files.any_after ? "..." : "", ", N any number"));
+  }
   say(out, "output", cat(watch.output, '/', watch.name.empty() ? "{stem}.nvdb" : watch.name));
   say(out, "thumbnails", watch.thumbnails ? "yes" : "no");
   say(out, "watch", watch_method(watch));

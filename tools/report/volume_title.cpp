@@ -11,7 +11,8 @@ std::string chosen_text(const std::string& dataset, std::span<const std::int64_t
   std::string text = dataset;
   const char* const at = dataset.empty() ? "at " : " at ";
   for (const std::int64_t& i : index) text += cat(&i == index.data() ? at : ",", i);
-  if (!component.empty()) text += cat(", ", component == "magnitude" ? "" : "component ", component);
+  if (!component.empty())
+    text += cat(text.empty() ? "" : ", ", component == "magnitude" ? "" : "component ", component);
   return text;
 }
 

@@ -47,7 +47,7 @@ VolumeCheck head_checksum(const NvdbGrid& grid) {
 }
 
 VolumeCheck stored_range(const NvdbGrid& grid, const TreeCensus& census) {
-  if (std::isnan(grid.value_min()) && census.nonfinite == 0) {  // its writer left the statistics out
+  if ((load<std::uint32_t>(grid.data().data() + nvdb::grid::kFlags) & nvdb::grid::kFlagMinMax) == 0) {
     return {"stored range", "none stored", cat(census.min, " .. ", census.max), true};
   }
   const bool none = census.valued_voxels == census.nonfinite;  // nothing to bound

@@ -107,8 +107,9 @@ ValueMeaning value_meaning(hid_t object, const StoredType& type, std::span<const
     const std::vector<StoredValue> values = stored_value_attribute(object, name);
     std::string unheld;
     for (const StoredValue& value : values) {
-      meaning.mapping.missing.push_back(meant_otherwise ? as_meant(value, type.scalar) : value);
-      if (unheld.empty()) unheld = unheld_note(name, meaning.mapping.missing.back(), type.scalar);
+      const StoredValue meant = meant_otherwise ? as_meant(value, type.scalar) : value;
+      if (holds(type.scalar, meant)) meaning.mapping.missing.push_back(meant);
+      if (unheld.empty()) unheld = unheld_note(name, meant, type.scalar);
     }
     add_note(unheld, meaning.note);
     const std::string obstacle = missing_obstacle(object, name, values.size());

@@ -92,7 +92,7 @@ output = "in/deep/nvdb"
             (std::vector<std::string>{in + "deep/nvdb", in + "deep/weir.log", in + "nvdb", in + "weir.db",
                                       in + "weir.db-journal", in + "weir.db-shm", in + "weir.db-wal"}));
   EXPECT_TRUE(config.watches[1].excluded_paths.empty());
-  const std::vector<NumberedFiles> numbered{{in + "weir.db.corrupt-", ""}, {in + "deep/weir.", ".log"}};
+  const std::vector<NumberedFiles> numbered{{in + "weir.db.corrupt-", "", true}, {in + "deep/weir.", ".log"}};
   EXPECT_EQ(config.watches[0].excluded_numbers, numbered);
   EXPECT_TRUE(config.watches[1].excluded_numbers.empty());
 }

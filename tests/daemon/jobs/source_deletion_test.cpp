@@ -49,6 +49,30 @@ TEST_F(SourceDeletionTest, OpenedForWritingWhileItIsLookedAt_StaysWithWhatIsWrit
   EXPECT_EQ(list_directory(directory_ / "in").size(), 1U);
 }
 
+// Its own renames, there and back, make no other file of it.
+TEST_F(SourceDeletionTest, OpenedWhileItIsLookedAtAndNotWritten_IsDeletedLater) {
+  std::thread writer;
+  auto files = std::make_unique<SteppedFileSystem>();
+  files->before_rename = [&](const std::string& from) {
+    if (writer.joinable()) return;
+    writer = std::thread([from] { const Descriptor opened(::open(from.c_str(), O_WRONLY | O_CLOEXEC)); });
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    while (read_file("/proc/locks").find("BREAKING") == std::string::npos && std::chrono::steady_clock::now() < end) {
+      std::this_thread::yield();
+    }
+  };
+  SourceDeletion deletion(io_, store_, log_, {}, std::move(files));
+  std::this_thread::sleep_for(milliseconds(20));  // a later tick of the clock of files: the renames are seen
+  deletion.configure(config_);
+  deletion.done(convert());
+  EXPECT_TRUE(run_until([&] { return deletion.idle(); }));
+  ASSERT_TRUE(writer.joinable());
+  writer.join();
+  EXPECT_TRUE(logged("a program has it open for writing; tried again later"));
+  EXPECT_FALSE(fs::exists(source_));
+  EXPECT_TRUE(logged(" deleted job=1 source=" + source_));
+}
+
 TEST_F(SourceDeletionTest, SourceIsDeletedAfterTheDelay) {
   config_.watches[0].delete_after_s = 0.3;
   delete_done();

@@ -98,12 +98,14 @@ TEST_F(PathFilterTest, FilesOfWeirItselfAreNeverSources) {
 
 TEST_F(PathFilterTest, NumberedFilesOfWeirItselfAreNeverSources) {
   watch.include = {"*"};
-  watch.excluded_numbers = {{directory / "in/weir.", ".log"}, {directory / "in/sub/weir.db.corrupt-", ""}};
-  for (const char* name : {"weir.1.log", "weir.12.log", "sub/weir.db.corrupt-1", "sub/weir.db.corrupt-2-wal"}) {
+  watch.excluded_numbers = {
+      {directory / "in/weir.", ".log"}, {directory / "in/sub/weir.db.corrupt-", "", true}, {directory / "in/run.", ""}};
+  for (const char* name :
+       {"weir.1.log", "weir.12.log", "sub/weir.db.corrupt-1", "sub/weir.db.corrupt-2-wal", "run.1"}) {
     EXPECT_FALSE(accepts(name)) << name;
   }
-  for (const char* name :
-       {"weir.log", "weir.x.log", "weir.1.log.raw", "sub/weir.1.log", "weir.db.corrupt-1", "sub/weir.db.corrupt-"}) {
+  for (const char* name : {"weir.log", "weir.x.log", "weir.1.log.raw", "sub/weir.1.log", "weir.db.corrupt-1",
+                           "sub/weir.db.corrupt-", "run.0001_32x32x32_float32.raw"}) {
     EXPECT_TRUE(accepts(name)) << name;
   }
 }

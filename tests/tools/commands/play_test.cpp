@@ -131,7 +131,8 @@ TEST_F(Play, StepThatNamesNoRange_GivesAWarning) {
   const auto said = [&](const std::vector<std::string>& inputs, const std::vector<std::string>& more) {
     std::vector<std::string> all{"play"};
     all.insert(all.end(), inputs.begin(), inputs.end());
-    const CommandResult result = run_weir(with(with(all, {"-o", out_}), more));
+    all.insert(all.end(), {"-o", out_});
+    const CommandResult result = run_weir(with(all, more));
     EXPECT_EQ(result.exit_code, 0) << result.err;
     return result.err;
   };

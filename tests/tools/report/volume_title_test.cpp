@@ -19,6 +19,7 @@ TEST(VolumeTitle, NamesTheFileAndWhatWasChosenOfIt) {
   EXPECT_EQ(volume_title(source("/v", {}, "0")), "run.h5 /v, component 0");
   EXPECT_EQ(volume_title(source("/v", {3}, "magnitude")), "run.h5 /v at 3, magnitude");
   EXPECT_EQ(volume_title(source("", {}, "")), "run.h5");
+  EXPECT_EQ(volume_title(source("", {}, "0")), "run.h5 component 0") << "an array that is the root of its store";
   EXPECT_EQ(volume_title(source("/a\nb", {}, "")), "run.h5 /a?b");
 }
 
