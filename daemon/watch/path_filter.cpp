@@ -77,7 +77,8 @@ PathFilter::PathFilter(const WatchConfig& watch)
     if (auto relative = in_tree(path)) excluded_.push_back(*std::move(relative));
   }
   for (const NumberedFiles& files : watch.excluded_numbers) {
-    if (auto relative = in_tree(files.before)) excluded_numbers_.push_back({*std::move(relative), files.after, files.any_after});
+    if (auto relative = in_tree(files.before))
+      excluded_numbers_.push_back({*std::move(relative), files.after, files.any_after});
   }
 }
 
