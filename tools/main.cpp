@@ -25,14 +25,14 @@
 #include "tools/options/empty_names.h"
 #include "tools/options/help_words.h"
 #include "tools/options/parse_message.h"
+#include "tools/report/error_line.h"
 #include "tools/report/printable.h"
 #include "tools/report/standard_output.h"
 
 namespace {
 
 int fail(const std::string& message, int code) {
-  // Paths are what the user gave or a file said: control characters must neither break the line nor steer the terminal.
-  std::fprintf(stderr, "weir: %s\n", weir::one_line(message).c_str());
+  weir::print_error_line(message);
   return code;
 }
 

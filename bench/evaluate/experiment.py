@@ -29,6 +29,11 @@ class Bench:
             wanted = wanted + volumes.full_set()
         return [volume for volume in wanted if self.files.available(volume)]
 
+    def few_bytes_volumes(self):
+        """Those of the tables of few bytes, and of what is derived, that can be had."""
+        wanted = volumes.few_bytes_set(64) if self.quick else [*volumes.real_set(), *volumes.few_bytes_set(256)]
+        return [volume for volume in wanted if self.files.available(volume)]
+
     def scratch(self, name):
         """A path for a file that is in the way afterwards, whose directory exists."""
         path = self.directory / "work" / name

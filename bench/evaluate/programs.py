@@ -10,6 +10,9 @@ import tempfile
 import time
 
 
+BUDGET_EXIT_CODE = 4  # of weir: no file of that size or error can be made, as where the smallest tree is larger
+
+
 class ProgramFailed(Exception):
     """A program ended with another exit code than 0; the text is its last line on stderr."""
 

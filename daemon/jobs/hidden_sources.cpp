@@ -32,8 +32,7 @@ void HiddenSources::look_through(const std::vector<WatchConfig>& watches) {
     if (!std::filesystem::is_directory(watch.directory, absent)) continue;
     if (!looked_.insert({watch.directory, watch.recursive}).second) continue;
     waiting_.push_back({watch.directory, watches_.size()});
-    watches_.push_back(watch);
-    filters_.emplace_back(watch);
+    watches_.push_back({watch, PathFilter(watch)});
   }
 }
 
@@ -55,9 +54,10 @@ void HiddenSources::next() {
 void HiddenSources::enter(const std::filesystem::directory_entry& entry) {
   const std::string path = entry.path().string();
   std::error_code gone;
-  if (!watches_[watch_].recursive || entry.is_symlink(gone) || !entry.is_directory(gone)) return;
-  const std::string relative = path.substr(watches_[watch_].directory.size() + 1);
-  if (filters_[watch_].enters_directory(relative)) waiting_.push_back({path, watch_});
+  const auto& [config, filter] = watches_[watch_];
+  if (!config.recursive || entry.is_symlink(gone) || !entry.is_directory(gone)) return;
+  const std::string relative = path.substr(config.directory.size() + 1);
+  if (filter.enters_directory(relative)) waiting_.push_back({path, watch_});
 }
 
 std::vector<HiddenSource> HiddenSources::step() {

@@ -36,9 +36,13 @@ class HiddenSources {
 
  private:
   using Key = std::pair<std::string, bool>;  // directory and recursive
+  struct Watched {
+    WatchConfig config;
+    PathFilter filter;
+  };
   struct Waiting {
     std::string directory;
-    std::size_t watch;  // its place in filters_
+    std::size_t watch;  // its place in watches_
   };
 
   void open_next();
@@ -46,8 +50,7 @@ class HiddenSources {
   void enter(const std::filesystem::directory_entry& entry);
 
   std::set<Key> looked_;
-  std::vector<WatchConfig> watches_;
-  std::vector<PathFilter> filters_;
+  std::vector<Watched> watches_;
   std::deque<Waiting> waiting_;
   std::filesystem::directory_iterator at_;
   std::size_t watch_ = 0;  ///< of at_

@@ -40,14 +40,8 @@ ModeDefaults defaults_of(RenderMode mode) {
 
 // The grid's range where it is one; NaN policies of other writers may leave none, then the cells'.
 MinMax value_range(const NvdbGrid& grid, const MacrocellGrid& cells) {
-  MinMax range{grid.value_min(), grid.value_max()};
-  if (is_finite(range.min) && is_finite(range.max) && range.min <= range.max) return range;
-  range = {kInfinity, -kInfinity};
-  for (const MinMax& cell : cells.bounds()) {
-    if (is_finite(cell.min)) range.min = std::min(range.min, cell.min);
-    if (is_finite(cell.max)) range.max = std::max(range.max, cell.max);
-  }
-  return range.min <= range.max ? range : MinMax{0, 1};
+  const MinMax stored{grid.value_min(), grid.value_max()};
+  return has_finite_ends(stored) ? stored : cells.finite_range().value_or(MinMax{0, 1});
 }
 
 // In double: scenes may have directions of any length.

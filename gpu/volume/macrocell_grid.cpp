@@ -20,6 +20,10 @@ Box cells_of(const Box& voxels, std::int64_t edge) {
 
 }  // namespace
 
+bool has_finite_ends(const MinMax& range) {
+  return is_finite(range.min) && is_finite(range.max) && range.min <= range.max;
+}
+
 bool has_macrocells(const NvdbGrid& grid) {
   const MacrocellView file = grid.macrocells();
   return !file.cells.empty() && file.apron >= 1;
@@ -46,6 +50,15 @@ MacrocellGrid::MacrocellGrid(const NvdbGrid& grid, std::int64_t edge) {
 
 MacrocellGrid::MacrocellGrid(const NodeLattice& lattice, std::vector<MinMax> cells)
     : lattice_(lattice), cells_(std::move(cells)) {}
+
+std::optional<MinMax> MacrocellGrid::finite_range() const {
+  MinMax range = kNoValues;
+  for (const MinMax& cell : cells_) {
+    if (is_finite(cell.min)) range.min = std::min(range.min, cell.min);
+    if (is_finite(cell.max)) range.max = std::max(range.max, cell.max);
+  }
+  return has_finite_ends(range) ? std::optional(range) : std::nullopt;
+}
 
 std::vector<float> MacrocellGrid::majorants(const TransferFunction& transfer) const {
   std::vector<float> result(cells_.size());

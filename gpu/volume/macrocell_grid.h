@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "format/nanovdb/nvdb_grid.h"
@@ -19,6 +20,9 @@ bool has_macrocells(const NvdbGrid& grid);
 /// Cells as a tracer walks them.
 CellLattice cell_lattice(const NodeLattice& lattice);
 
+/// Whether it is a range of finite values.
+bool has_finite_ends(const MinMax& range);
+
 class MacrocellGrid {
  public:
   /// Cells of at least `edge` voxels over grid.index_bbox(): the file's, merged eight to one until
@@ -30,6 +34,8 @@ class MacrocellGrid {
   CellLattice lattice() const { return cell_lattice(lattice_); }
   const NodeLattice& nodes() const { return lattice_; }
   const std::vector<MinMax>& bounds() const { return cells_; }
+  /// From the least to the largest end that is finite; none where no cell has one.
+  std::optional<MinMax> finite_range() const;
   /// Of bounds and, while a picture is made, majorants.
   std::uint64_t bytes() const { return cells_.size() * kCellBytes; }
   static constexpr std::uint64_t kCellBytes = sizeof(MinMax) + sizeof(float);

@@ -26,6 +26,7 @@ struct AxisPlace {
   bool falls = false;             ///< they are equally spaced, and the last one is the lowest
   std::string spacing_from = {};  ///< what of the file says the spacing, "attribute resolution"; empty: coordinates
   std::string origin_from = {};   ///< the same of the origin
+  std::string spacing_note = {};  ///< that it is by an attribute which programs may mean otherwise; else empty
   bool points_down = false;       ///< CF's attribute `positive` says that they rise downwards, as depths do
 };
 

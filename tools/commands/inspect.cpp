@@ -35,6 +35,7 @@
 #include "tools/options/run_options.h"
 #include "tools/options/table_options.h"
 #include "tools/options/volume_series.h"
+#include "tools/report/error_line.h"
 #include "tools/report/error_text.h"
 #include "tools/report/histogram_plot.h"
 #include "tools/report/input_listing.h"
@@ -94,7 +95,7 @@ const char* checksum_state(const NvdbGrid& grid) {
 MinMax range_of_values(const NvdbGrid& grid) {
   const MinMax stored{grid.value_min(), grid.value_max()};
   if (!std::isnan(stored.min) || !std::isnan(stored.max)) return stored;
-  return finite_range(MacrocellGrid(grid, kMacrocell)).value_or(stored);
+  return MacrocellGrid(grid, kMacrocell).finite_range().value_or(stored);
 }
 
 Sidecar::Histogram counted_histogram(const NvdbGrid& grid, const MinMax& range, const ProgressOptions& shown) {
@@ -329,7 +330,7 @@ void run(const InspectArguments& arguments) {
   int status = 0;
   const auto say = [&](const std::string& problem, ErrorKind kind) {
     std::cout.flush();
-    std::fprintf(stderr, "weir: %s\n", one_line(problem).c_str());
+    print_error_line(problem);
     if (status == 0) status = static_cast<int>(kind);
   };
   for (const std::string& path : paths) {

@@ -49,11 +49,14 @@ void run(const JobsArguments& a) {
   if (!a.state.empty()) target += cat("&state=", percent_encode(a.state));
   if (!a.watch.empty()) target += cat("&watch=", percent_encode(a.watch));
   const ServiceClient client(a.service);
-  if (!a.watch.empty()) require_watch(client, a.watch);
   const auto now = static_cast<double>(std::time(nullptr));
-  std::cout << client.read(client.get(target), [&](const ServiceClient::Json& page) {
+  bool none = false;
+  const std::string text = client.read(client.get(target), [&](const ServiceClient::Json& page) {
+    none = page.at("total") == 0;
     return a.json ? page.dump() + '\n' : jobs_text(page, now);
   });
+  if (none && !a.watch.empty()) require_watch(client, a.watch);
+  std::cout << text;
 }
 
 }  // namespace

@@ -17,6 +17,7 @@
 #include "tools/options/run_options.h"
 #include "tools/options/trace_option.h"
 #include "tools/options/volume_series.h"
+#include "tools/report/error_line.h"
 #include "tools/report/printable.h"
 #include "tools/report/progress.h"
 #include "tools/verify/volume_verification.h"
@@ -69,7 +70,7 @@ Json verify_one(const std::string& path, const VerifyArguments& arguments) {
   for (const VolumeCheck& check : checks) {
     if (check.ok) continue;
     ok = false;
-    std::fprintf(stderr, "weir: %s\n", one_line(failure_text(path, check)).c_str());
+    print_error_line(failure_text(path, check));
   }
   if (ok && !arguments.json) std::cout << cat(one_line(path), ": all ", checks.size(), " checks hold\n");
   return to_json(path, ok, checks);

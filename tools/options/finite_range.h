@@ -8,12 +8,9 @@
 
 namespace weir {
 
-bool has_finite_ends(const MinMax& range);
 /// As the file's root says, else as certified_range; none where neither has one.
 std::optional<MinMax> known_range(const NvdbFile& file);
 /// As the certificate that belongs to the file says; none where it has none. Throws as own_sidecar.
 std::optional<MinMax> certified_range(const NvdbFile& file);
-/// Of the cells whose ends are finite; none where no cell has one.
-std::optional<MinMax> finite_range(const MacrocellGrid& cells);
 
 }  // namespace weir

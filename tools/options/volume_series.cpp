@@ -54,7 +54,7 @@ std::optional<MinMax> range_beside_head(const std::string& path) {
   try {
     const NvdbFile file(path);
     if (const auto range = certified_range(file)) return range;
-    if (has_macrocells(file.grid())) return finite_range(MacrocellGrid(file.grid(), kMacrocell));
+    if (has_macrocells(file.grid())) return MacrocellGrid(file.grid(), kMacrocell).finite_range();
   } catch (const Error&) {  // said when its turn comes
   }
   return std::nullopt;

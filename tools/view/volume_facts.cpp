@@ -83,7 +83,7 @@ SeenValues seen_values(const NvdbFile& file, const std::function<std::shared_ptr
   SeriesSummary one;
   add_values(one, grid.background(), {grid.value_min(), grid.value_max()});
   if (!one.range) one.range = certified_range(file);
-  if (!one.range) one.range = finite_range(*cells());
+  if (!one.range) one.range = cells()->finite_range();
   return seen_values(one);
 }
 

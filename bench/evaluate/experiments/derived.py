@@ -6,17 +6,15 @@ Of ZFP what its command decompresses is packed without loss first, so that `weir
 import math
 import shutil
 
-import volumes
 from experiment import Experiment, describe, method_options, remove_volume, size_text
 from experiments.zfp import zfp_statistics
 from markdown import command, decibel, scientific, table
-from programs import ProgramFailed
+from programs import BUDGET_EXIT_CODE, ProgramFailed
 
 SHARES = (5, 10)  # percent of dense float32
 METHODS = ("auto", "packed", "zfp")
 QUANTILES = ("0.5", "0.99", "0.999")
 SMALL_ERROR = 0.01  # of the source's power
-BUDGET_EXIT_CODE = 4
 SEEDS = (1, 2, 3)  # of the components of a vector field
 FIELD_RATE = 20
 CHARTED = "turbulence"
@@ -40,10 +38,8 @@ class Derived(Experiment):
     name = "derived"
 
     def measure(self, bench):
-        wanted = volumes.few_bytes_set(64) if bench.quick else [*volumes.real_set(), *volumes.few_bytes_set(256)]
-        for volume in wanted:
-            if bench.files.available(volume):
-                bench.store.measure(self.name, volume.file_name, lambda volume=volume: self._rows(bench, volume))
+        for volume in bench.few_bytes_volumes():
+            bench.store.measure(self.name, volume.file_name, lambda volume=volume: self._rows(bench, volume))
         edge = 64 if bench.quick else 256
         bench.store.measure(self.name, f"field {edge}", lambda: self._field(bench, edge))
 

@@ -8,13 +8,12 @@ import math
 import shutil
 import statistics
 
-import volumes
 from experiment import Experiment, describe, remove_volume, size_text
 from experiments.sizes import FRAME_BYTES, UPPER_BYTES
 from experiments.worst_case import BLIND_RECORD_BYTES, ROOT_ENTRY_BYTES
 from experiments.zfp import psnr, zfp_statistics
 from markdown import command, decibel, percent, table
-from programs import ProgramFailed
+from programs import BUDGET_EXIT_CODE, ProgramFailed
 
 SHARES = (1, 2, 5, 10, 20)  # percent of dense float32; each divides 100
 METHODS = ("auto", "packed", "zfp")
@@ -23,7 +22,6 @@ NOTHING = {"bytes": None, "psnr_db": None, "lossless": False}
 JUDGED_SHARE = 1 / 3  # of a file that the fixed part may have
 MACROCELL_BYTES = 8
 ACCURACY_BITS = 40  # bounds from the range down to what float32 has nothing to gain from
-BUDGET_EXIT_CODE = 4
 
 
 def fixed_bytes(inspected):
@@ -58,10 +56,8 @@ class FewBytes(Experiment):
     name = "few_bytes"
 
     def measure(self, bench):
-        wanted = volumes.few_bytes_set(64) if bench.quick else [*volumes.real_set(), *volumes.few_bytes_set(256)]
-        for volume in wanted:
-            if bench.files.available(volume):
-                bench.store.measure(self.name, volume.file_name, lambda volume=volume: self._rows(bench, volume))
+        for volume in bench.few_bytes_volumes():
+            bench.store.measure(self.name, volume.file_name, lambda volume=volume: self._rows(bench, volume))
 
     def _rows(self, bench, volume):
         with bench.files.file(volume) as path:

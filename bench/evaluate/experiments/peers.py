@@ -15,7 +15,7 @@ from markdown import command
 from peer_tables import (OURS, SHARES, SPEED_DB, TARGETS_DB, chart, shares_table, speed_table, targets_table,
                          versions_text)
 from png import write_png
-from programs import ProgramFailed, run
+from programs import BUDGET_EXIT_CODE, ProgramFailed, run
 from search import smallest_that_reaches
 
 CHART = "peers.png"
@@ -23,7 +23,6 @@ IMAGES = "images/evaluation"  # relative to the report
 ROUNDS = 3
 TOLERANCE_DB = 0.1  # above the target, where the search ends
 TOLERANCE_BYTES = 0.01  # below the size, as a share of it
-BUDGET_EXIT_CODE = 4
 POINT_KEYS = ("bytes", "psnr_db", "max_abs", "lossless")
 
 

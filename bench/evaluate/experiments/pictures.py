@@ -11,12 +11,11 @@ from experiment import Experiment, method_options, remove_volume
 from experiments.sizes import cells
 from experiments.zfp import zfp_statistics
 from markdown import command, table
-from programs import ProgramFailed
+from programs import BUDGET_EXIT_CODE, ProgramFailed
 
 RATES = (20, 10, 6, 5, 4)
 SHEET_RATES = (20, 10, 5)
 METHODS = ("auto", "packed", "paper", "zfp")
-BUDGET_EXIT_CODE = 4
 LEAST_ZFP_BITS = 9  # a block of 4^3 voxels
 SIZE = "256x192"
 SCENES = pathlib.Path(__file__).resolve().parents[1] / "scenes"

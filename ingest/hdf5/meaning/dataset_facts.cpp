@@ -11,7 +11,6 @@
 #include "format/base/text.h"
 #include "ingest/hdf5/file/hdf5_attribute.h"
 #include "ingest/hdf5/meaning/openpmd.h"
-#include "ingest/hdf5/meaning/plain_placement.h"
 #include "ingest/hdf5/meaning/volume_slice.h"
 #include "ingest/hdf5/meaning/vtk_hdf.h"
 #include "ingest/values/decode_values.h"
@@ -107,7 +106,9 @@ DatasetFacts dataset_facts(hid_t file, const Hdf5Object& object) {
     look_at_constant(handle, facts);
   }
   facts.components = component_axis(facts.axes);
-  facts.place_note = plain_spacing_note(facts.axes);
+  for (const AxisPlace& axis : facts.axes) {
+    if (facts.place_note.empty()) facts.place_note = axis.spacing_note;
+  }
   if (facts.type) {
     const bool set = facts.storage && facts.storage->fill_is_set;
     facts.meaning = value_meaning(handle, *facts.type,

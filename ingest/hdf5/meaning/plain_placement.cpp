@@ -37,7 +37,7 @@ constexpr std::array kOrigins{PlainName{"origin"}, PlainName{"Origin"}, PlainNam
 
 struct FoundPlace {
   Triple values;
-  const char* name;
+  const PlainName* name;
 };
 
 bool are_extents(Triple values, std::span<const AxisPlace> axes) {
@@ -52,13 +52,12 @@ std::optional<FoundPlace> found_in(hid_t object, bool is_dataset, std::span<cons
   for (const PlainName& candidate : names) {
     if (candidate.is_ambiguous && !is_dataset) continue;
     const std::vector<double> values = number_attribute(object, candidate.name);
-    if (values.size() == 1 && candidate.one_for_all)
-      return FoundPlace{{values[0], values[0], values[0]}, candidate.name};
+    if (values.size() == 1 && candidate.one_for_all) return FoundPlace{{values[0], values[0], values[0]}, &candidate};
     if (values.size() != 3) continue;
     Triple ordered{values[0], values[1], values[2]};
     if (candidate.is_ambiguous && are_extents(ordered, axes)) continue;
     if (!candidate.slowest_first) std::reverse(ordered.begin(), ordered.end());
-    return FoundPlace{ordered, candidate.name};
+    return FoundPlace{ordered, &candidate};
   }
   return std::nullopt;
 }
@@ -76,7 +75,10 @@ void fill_places(hid_t dataset, std::span<const Hdf5Handle> groups, std::span<co
     // A note says that the coordinates are others, or taken as indices.
     if (axes[i].*place || axes[i].is_time || !axes[i].note.empty()) continue;
     axes[i].*place = found->values.at(i);
-    axes[i].*from = cat("attribute ", found->name, where);
+    axes[i].*from = cat("attribute ", found->name->name, where);
+    if (found->name->is_convention) {
+      axes[i].spacing_note = cat("its spacing is that of the ", axes[i].*from, "; --spacing sets another");
+    }
   }
 }
 
@@ -86,17 +88,6 @@ void place_by_attributes(hid_t dataset, std::span<const Hdf5Handle> groups, std:
   if (axes.size() < 3) return;
   fill_places(dataset, groups, kSpacings, axes.last(3), &AxisPlace::spacing, &AxisPlace::spacing_from);
   fill_places(dataset, groups, kOrigins, axes.last(3), &AxisPlace::origin, &AxisPlace::origin_from);
-}
-
-std::string plain_spacing_note(std::span<const AxisPlace> axes) {
-  for (const AxisPlace& axis : axes) {
-    for (const PlainName& name : kSpacings) {
-      const std::string from = cat("attribute ", name.name);
-      if (!name.is_convention || (axis.spacing_from != from && !axis.spacing_from.starts_with(from + ' '))) continue;
-      return cat("its spacing is that of the ", axis.spacing_from, "; --spacing sets another");
-    }
-  }
-  return "";
 }
 
 }  // namespace weir

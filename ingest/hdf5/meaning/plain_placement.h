@@ -22,8 +22,4 @@ namespace weir {
 /// The caller holds Hdf5Lock.
 void place_by_attributes(hid_t dataset, std::span<const Hdf5Handle> groups, std::span<AxisPlace> axes);
 
-/// That the spacing of `axes` is that of voxel_size, element_size_um or resolution, which a program may mean otherwise;
-/// else empty.
-std::string plain_spacing_note(std::span<const AxisPlace> axes);
-
 }  // namespace weir

@@ -92,10 +92,14 @@ void place_by_vtk_hdf(const Hdf5Object& object, std::span<const Hdf5Handle> grou
   const AxisPlacement placement = place_axes(steps, first);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     AxisPlace& place = axes[axes.size() - 1 - axis];
-    if (!place.spacing) place.spacing_from = "attribute Spacing of its image";
-    if (!place.origin) place.origin_from = "attribute Origin of its image";
-    if (!place.spacing) place.spacing = placement.spacing[axis];
-    if (!place.origin) place.origin = placement.origin[axis];
+    if (!place.spacing) {
+      place.spacing = placement.spacing[axis];
+      place.spacing_from = "attribute Spacing of its image";
+    }
+    if (!place.origin) {
+      place.origin = placement.origin[axis];
+      place.origin_from = "attribute Origin of its image";
+    }
     place.orientation = placement.orientation;
   }
 }

@@ -9,6 +9,7 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <memory>
 #include <string>
 #include <thread>
@@ -26,18 +27,26 @@ using std::chrono::milliseconds;
 
 using SourceDeletionTest = DeletingWatch;
 
-// The kernel lets whoever opens it for writing wait while the service looks at it.
-TEST_F(SourceDeletionTest, OpenedForWritingWhileItIsLookedAt_StaysWithWhatIsWritten) {
-  std::thread writer;
+// Before the first rename `writer` calls open(SOURCE), and that waits for the lease.
+std::unique_ptr<FileSystem> opened_before_rename(std::thread& writer,
+                                                 const std::function<void(const std::string&)>& open) {
   auto files = std::make_unique<SteppedFileSystem>();
-  files->before_rename = [&](const std::string& from) {
+  files->before_rename = [&writer, open](const std::string& from) {
     if (writer.joinable()) return;
-    writer = std::thread([from] { std::ofstream(from, std::ios::app) << " and more"; });
+    writer = std::thread([open, from] { open(from); });
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
     while (read_file("/proc/locks").find("BREAKING") == std::string::npos && std::chrono::steady_clock::now() < end) {
       std::this_thread::yield();
     }
   };
+  return files;
+}
+
+// The kernel lets whoever opens it for writing wait while the service looks at it.
+TEST_F(SourceDeletionTest, OpenedForWritingWhileItIsLookedAt_StaysWithWhatIsWritten) {
+  std::thread writer;
+  auto files = opened_before_rename(
+      writer, [](const std::string& source) { std::ofstream(source, std::ios::app) << " and more"; });
   SourceDeletion deletion(io_, store_, log_, {}, std::move(files));
   deletion.configure(config_);
   deletion.done(convert());
@@ -52,15 +61,8 @@ TEST_F(SourceDeletionTest, OpenedForWritingWhileItIsLookedAt_StaysWithWhatIsWrit
 // Its own renames, there and back, make no other file of it.
 TEST_F(SourceDeletionTest, OpenedWhileItIsLookedAtAndNotWritten_IsDeletedLater) {
   std::thread writer;
-  auto files = std::make_unique<SteppedFileSystem>();
-  files->before_rename = [&](const std::string& from) {
-    if (writer.joinable()) return;
-    writer = std::thread([from] { const Descriptor opened(::open(from.c_str(), O_WRONLY | O_CLOEXEC)); });
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-    while (read_file("/proc/locks").find("BREAKING") == std::string::npos && std::chrono::steady_clock::now() < end) {
-      std::this_thread::yield();
-    }
-  };
+  auto files = opened_before_rename(
+      writer, [](const std::string& source) { const Descriptor opened(::open(source.c_str(), O_WRONLY | O_CLOEXEC)); });
   SourceDeletion deletion(io_, store_, log_, {}, std::move(files));
   std::this_thread::sleep_for(milliseconds(20));  // a later tick of the clock of files: the renames are seen
   deletion.configure(config_);

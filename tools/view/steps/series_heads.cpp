@@ -1,7 +1,5 @@
 #include "tools/view/steps/series_heads.h"
 
-#include <utility>
-
 #include "format/base/error.h"
 #include "tools/view/base/file_identity.h"
 
@@ -11,13 +9,11 @@ bool SeriesHeads::look_at(const std::string& path) {
   const std::string identity = file_identity(path);  // before it is read: one that takes its place is another
   const auto known = read_.find(path);
   if (known != read_.end() && known->second == identity) return true;
-  SeriesSummary next = summary_;
   try {
-    add_to_summary(next, path);
+    add_to_summary(summary_, path);
   } catch (const Error&) {  // said when its turn comes
     return false;
   }
-  summary_ = std::move(next);
   read_[path] = identity;
   return true;
 }

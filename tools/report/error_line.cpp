@@ -1,0 +1,11 @@
+#include "tools/report/error_line.h"
+
+#include <cstdio>
+
+#include "tools/report/printable.h"
+
+namespace weir {
+
+void print_error_line(const std::string& message) { std::fprintf(stderr, "weir: %s\n", one_line(message).c_str()); }
+
+}  // namespace weir
