@@ -125,8 +125,9 @@ std::vector<SeriesStep> with_indices(const SeriesStep& step, const SourceOptions
   of_step.dataset = options.magnitude.empty() ? step.dataset : options.magnitude.front();
   const std::vector<DatasetInfo> datasets = datasets_of(step.path, options, option("index"));
   const DatasetInfo& dataset = dataset_of_choices(step.path, datasets, of_step);
-  const auto positions = chosen_positions(dataset.name.empty() ? step.path : cat(step.path, ": ", dataset.name),
-                                          dataset.index_axes, options.index_choices);
+  const std::vector<LeadingAxis>& axes = axes_to_choose_on(dataset, of_step);
+  const auto positions = chosen_positions(dataset.name.empty() ? step.path : cat(step.path, ": ", dataset.name), axes,
+                                          options.index_choices);
   std::vector<SeriesStep> steps;
   for (const std::vector<std::int64_t>& position : positions) {
     steps.push_back(at);
@@ -134,8 +135,7 @@ std::vector<SeriesStep> with_indices(const SeriesStep& step, const SourceOptions
     // Axes with one position among all say nothing in a name.
     for (std::size_t axis = 0; axis < position.size(); ++axis) {
       if (positions.front()[axis] == positions.back()[axis]) continue;
-      const std::int64_t largest = dataset.index_axes[axis].extent - 1;
-      steps.back().step = joined_name(steps.back().step, padded_number(position[axis], largest));
+      steps.back().step = joined_name(steps.back().step, padded_number(position[axis], axes[axis].extent - 1));
     }
   }
   return steps;

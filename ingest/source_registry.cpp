@@ -97,7 +97,7 @@ std::vector<std::int64_t> chosen_position(const std::string& path, const SourceF
   const std::vector<DatasetInfo> datasets = format.list(path, options);
   const DatasetInfo& dataset = dataset_of_choices(path, datasets, options);
   const auto positions = chosen_positions(dataset.name.empty() ? path : cat(path, ": ", dataset.name),
-                                          dataset.index_axes, options.index_choices);
+                                          axes_to_choose_on(dataset, options), options.index_choices);
   if (positions.size() == 1) return positions.front();
   throw usage_error(compose(path, ": ", option("index"), " stands for ", positions.size(),
                             " volumes, and one is read here; give one position on each axis"));

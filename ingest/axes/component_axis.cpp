@@ -72,7 +72,9 @@ ComponentAxis component_axis(std::span<const AxisPlace> axes) {
   return by_extent(axes);
 }
 
-ComponentAxis asked_component_axis(std::span<const AxisPlace> axes) {
+namespace {
+
+ComponentAxis asked_anywhere(std::span<const AxisPlace> axes) {
   const ComponentAxis sure = component_axis(axes);
   if (sure.found() || axes.size() <= kSpaceAxes) return sure;
   const AxisPlace& last = axes.back();
@@ -89,10 +91,16 @@ ComponentAxis asked_component_axis(std::span<const AxisPlace> axes) {
   return has_extent_of_components(last) ? as_asked : ComponentAxis{};
 }
 
+}  // namespace
+
+ComponentAxis asked_component_axis(std::span<const AxisPlace> axes, bool leading_counts) {
+  const ComponentAxis vectors = asked_anywhere(axes);
+  return vectors.leading && !leading_counts ? ComponentAxis{} : vectors;
+}
+
 ComponentAxis chosen_component_axis(std::span<const AxisPlace> axes, std::size_t positions, const std::string& said,
                                     const std::optional<ComponentChoice>& component, bool leading_counts) {
-  ComponentAxis vectors = component ? asked_component_axis(axes) : component_axis(axes);
-  if (vectors.leading && !leading_counts) vectors = {};
+  const ComponentAxis vectors = component ? asked_component_axis(axes, leading_counts) : component_axis(axes);
   if (!component) {
     if (!vectors.found() || positions == axes.size() - kSpaceAxes) return {};
     throw no_choice(axes, vectors, said);

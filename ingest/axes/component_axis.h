@@ -30,12 +30,12 @@ ComponentAxis component_axis(std::span<const AxisPlace> axes);
 /// The same for a user who says that there is one. Also the axis before the last three, by its name; a last one of 2,
 /// 3, 4 or 9 that is no axis of space, unless that before it is shorter; else one of the two of which the file says
 /// nothing, of 2 to kMostComponents and shorter than the three beside it; else a last one of 2, 3, 4 or 9 whatever it
-/// is.
-ComponentAxis asked_component_axis(std::span<const AxisPlace> axes);
+/// is. `leading_counts`: one before the last three may be it.
+ComponentAxis asked_component_axis(std::span<const AxisPlace> axes, bool leading_counts = true);
 
 /// The axis of `axes` that `component` chooses on: none without one, where `positions`, those of --index, make a volume
-/// of the last three whatever they are. `leading_counts`: one before the last three may be it. Throws Error(usage),
-/// beginning with `said`, "here: its axes are 4 x 5 x 6 x 3", where a choice is needed, is of none, or does not fit.
+/// of the last three whatever they are. `leading_counts` as above. Throws Error(usage), beginning with `said`, "here:
+/// its axes are 4 x 5 x 6 x 3", where a choice is needed, is of none, or does not fit.
 ComponentAxis chosen_component_axis(std::span<const AxisPlace> axes, std::size_t positions, const std::string& said,
                                     const std::optional<ComponentChoice>& component, bool leading_counts = true);
 

@@ -41,6 +41,25 @@ void add_axes(std::span<const AxisPlace> axes, Attributes& attributes) {
   for (auto& listed : listed_axes({&axes[x], &axes[y], &axes[z]})) attributes.push_back(std::move(listed));
 }
 
+std::vector<LeadingAxis> axes_at(std::span<const AxisPlace> axes, const std::vector<std::size_t>& places) {
+  std::vector<LeadingAxis> chosen;
+  for (const std::size_t i : places) chosen.push_back({axes[i].label, axes[i].extent});
+  return chosen;
+}
+
+// What --index counts, as volume_slice does.
+void add_index_axes(const DatasetFacts& facts, DatasetInfo& info) {
+  if (facts.axes.size() < kVolumeRank) return;
+  const std::span axes = facts.axes;
+  const AxisRoles all = axis_roles(axes);
+  const AxisRoles usual = axis_roles_beside(facts.components, axes);
+  info.index_axes = axes_at(axes, usual.others);
+  info.vector_index_axes = axes_at(axes, all.others);
+  const ComponentAxis asked = asked_component_axis(axes, !all.interleaved());
+  info.component_index_axes = axes_at(axes, axis_roles_beside(asked, axes).others);
+  info.index_by_name = usual.interleaved();
+}
+
 DatasetInfo described(const Hdf5Object& object, const DatasetFacts& facts) {
   DatasetInfo info;
   info.name = object.name;
@@ -70,11 +89,7 @@ DatasetInfo described(const Hdf5Object& object, const DatasetFacts& facts) {
         cat(facts.components.count, " along the last axis, ", facts.components.evidence));
   }
   const auto axes = std::span(facts.axes).first(facts.axes.size() - (facts.components.found() ? 1 : 0));
-  if (axes.size() > kVolumeRank) {
-    const AxisRoles roles = axis_roles(axes);
-    for (const std::size_t i : roles.others) info.index_axes.push_back({axes[i].label, axes[i].extent});
-    info.index_by_name = roles.interleaved();
-  }
+  add_index_axes(facts, info);
   add_axes(axes, info.attributes);
   info.components = facts.components.count;
   info.obstacle = facts.obstacle;

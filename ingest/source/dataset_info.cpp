@@ -17,11 +17,13 @@ std::string listed(const std::vector<std::string>& names) {
 }
 
 // Of `choices`, that do not fit `dataset`, what is wrong.
-Error unfit(const std::string& path, const DatasetInfo& dataset, const std::vector<AxisChoice>& choices) {
+Error unfit(const std::string& path, const DatasetInfo& dataset, const SourceOptions& options) {
+  const std::vector<AxisChoice>& choices = options.index_choices;
+  const std::vector<LeadingAxis>& axes = axes_to_choose_on(dataset, options);
   const std::string name = dataset.name.empty() ? "the array" : dataset.name;
   for (const AxisChoice& choice : choices) {
     const auto is_it = [&](const std::string& axis) { return axis == choice.axis; };
-    if (choice.axis.empty() || std::ranges::any_of(dataset.index_axes, is_it, &LeadingAxis::name)) continue;
+    if (choice.axis.empty() || std::ranges::any_of(axes, is_it, &LeadingAxis::name)) continue;
     if (std::ranges::any_of(dataset.axis_names, is_it)) {
       return usage_error(compose(path, ": ", option("index"), " names ", choice.axis, ", an axis of the volume ", name,
                                  "; ", option("roi"), " cuts along that"));
@@ -30,17 +32,23 @@ Error unfit(const std::string& path, const DatasetInfo& dataset, const std::vect
     return usage_error(compose(path, ": ", option("index"), ": no axis ", choice.axis, "; ", name, " has ",
                                names.empty() ? "axes without names" : names));
   }
-  std::string axes;
-  for (std::size_t i = 0; i < dataset.index_axes.size(); ++i) {
-    const LeadingAxis& axis = dataset.index_axes[i];
-    axes += cat(i == 0 ? "" : ", ", axis.name.empty() ? cat("axis ", i) : axis.name, " of ", axis.extent);
+  std::string text;
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    text += cat(i == 0 ? "" : ", ", axes[i].name.empty() ? cat("axis ", i) : axes[i].name, " of ", axes[i].extent);
   }
   return usage_error(compose(path, ": ", option("index"), " has ", choices.size(),
                              choices.size() == 1 ? " position" : " positions", ", and ", name, " has ",
-                             axes.empty() ? "no leading axis" : axes, "; weir inspect lists what there is"));
+                             axes.empty() ? "no leading axis" : text, "; weir inspect lists what there is"));
 }
 
 }  // namespace
+
+const std::vector<LeadingAxis>& axes_to_choose_on(const DatasetInfo& dataset, const SourceOptions& options) {
+  if (options.component) return dataset.component_index_axes;
+  const std::vector<LeadingAxis>& all = dataset.vector_index_axes;
+  const bool takes_all = options.index_choices.size() == all.size() && choices_fit(options.index_choices, all);
+  return dataset.components > 1 && takes_all ? all : dataset.index_axes;
+}
 
 const DatasetInfo& dataset_of_choices(const std::string& path, const std::vector<DatasetInfo>& datasets,
                                       const SourceOptions& options) {
@@ -53,14 +61,16 @@ const DatasetInfo& dataset_of_choices(const std::string& path, const std::vector
                                     : dataset.name == name || dataset.name == '/' + name;
     if (!meant) continue;
     volumes.push_back(&dataset);
-    if (choices_fit(choices, dataset.index_axes)) fitting.push_back(&dataset);
+    if (choices_fit(choices, axes_to_choose_on(dataset, options))) fitting.push_back(&dataset);
   }
+  const auto is_scalar = [](const DatasetInfo* dataset) { return dataset->components == 1; };
+  if (options.component && !std::ranges::all_of(fitting, is_scalar)) std::erase_if(fitting, is_scalar);
   if (fitting.size() == 1) return *fitting.front();
   if (fitting.size() > 1) {
     throw usage_error(compose(path, ": ", option("index"), " fits the axes of several datasets; choose one with ",
                               option("dataset")));
   }
-  if (volumes.size() == 1) throw unfit(path, *volumes.front(), choices);
+  if (volumes.size() == 1) throw unfit(path, *volumes.front(), options);
   throw usage_error(compose(path, ": ", option("index"), " has ", choices.size(),
                             choices.size() == 1 ? " position" : " positions",
                             ", and no dataset has such axes; weir inspect lists what there is"));

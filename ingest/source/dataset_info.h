@@ -21,15 +21,22 @@ struct DatasetInfo {
   std::vector<std::pair<std::string, std::string>> attributes;  ///< those that matter: units, missing value, spacing
   std::size_t leading_axes = 0;                                 ///< how many positions --index must give
   std::vector<LeadingAxis> index_axes;                          ///< all axes that it may give one for
-  bool index_by_name = false;                                   ///< not all of these come before those of the volume
-  std::vector<std::string> axis_names;                          ///< of all axes that the file gives a name
-  std::int64_t components = 1;                                  ///< more: --component must choose among them
-  bool by_name_only = false;  ///< read only where --dataset names it: a coarser one of several scales
-  std::string obstacle;       ///< why it cannot be converted; empty where it can
+  std::vector<LeadingAxis> component_index_axes;                ///< the same where --component is given
+  std::vector<LeadingAxis> vector_index_axes;  ///< the same where what would be components are voxels along x
+  bool index_by_name = false;                  ///< not all of these come before those of the volume
+  std::vector<std::string> axis_names;         ///< of all axes that the file gives a name
+  std::int64_t components = 1;                 ///< more: --component must choose among them
+  bool by_name_only = false;                   ///< read only where --dataset names it: a coarser one of several scales
+  std::string obstacle;                        ///< why it cannot be converted; empty where it can
 };
 
+/// The axes of `dataset` that options.index_choices give positions on. The last axis of an array of components is x
+/// where no component is chosen and each axis before the last three has its choice.
+const std::vector<LeadingAxis>& axes_to_choose_on(const DatasetInfo& dataset, const SourceOptions& options);
+
 /// Of `datasets` of the file `path`, the one that options.index_choices choose positions in: options.dataset, or the
-/// only one that can be converted and whose axes they fit. Throws Error(usage) where it is unclear or they do not fit.
+/// only one that can be converted and whose axes they fit, of vectors where options.component is given and some are.
+/// Throws Error(usage) where it is unclear or they do not fit.
 const DatasetInfo& dataset_of_choices(const std::string& path, const std::vector<DatasetInfo>& datasets,
                                       const SourceOptions& options);
 

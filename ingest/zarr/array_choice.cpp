@@ -154,6 +154,8 @@ DatasetInfo describe_array(ZarrStore& store, const ZarrNode& node, Surroundings&
     if (!notes.empty()) info.attributes.emplace_back("note", std::move(notes));
     info.obstacle = chosen.meaning.obstacle;
     info.index_axes = chosen.meaning.leading();
+    info.component_index_axes = chosen.meaning.leading_before(asked_component_axis(chosen.meaning.axes.places));
+    info.vector_index_axes = chosen.meaning.leading_before({});
     const bool single = std::all_of(info.index_axes.begin(), info.index_axes.end(),
                                     [](const LeadingAxis& axis) { return axis.extent == 1; });
     info.leading_axes = info.obstacle.empty() && !single ? info.index_axes.size() : 0;

@@ -20,4 +20,11 @@ AxisRoles axis_roles(std::span<const AxisPlace> axes) {
   return roles;
 }
 
+AxisRoles axis_roles_beside(const ComponentAxis& components, std::span<const AxisPlace> axes) {
+  const bool behind = components.found() && !components.leading;
+  AxisRoles roles = axis_roles(axes.first(axes.size() - (behind ? 1 : 0)));
+  if (components.leading) roles.others.pop_back();
+  return roles;
+}
+
 }  // namespace weir

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ingest/axes/axis_place.h"
+#include "ingest/axes/component_axis.h"
 
 namespace weir {
 
@@ -22,5 +23,9 @@ struct AxisRoles {
 /// The volume's are the last three that are no time; the last three whatever they are where fewer are none. `axes` are
 /// those of an array, without one of components.
 AxisRoles axis_roles(std::span<const AxisPlace> axes);
+
+/// The same of all axes of an array, four or more where `components` are found; that of the components has neither
+/// role.
+AxisRoles axis_roles_beside(const ComponentAxis& components, std::span<const AxisPlace> axes);
 
 }  // namespace weir

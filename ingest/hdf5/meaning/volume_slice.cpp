@@ -44,16 +44,14 @@ std::size_t leading_axes(std::span<const AxisPlace> axes) {
   return have_one_element_each(axes, others) ? 0 : others.size();
 }
 
-VolumeSlice volume_slice(std::span<const AxisPlace> all_axes, const std::vector<std::int64_t>& index,
+VolumeSlice volume_slice(std::span<const AxisPlace> axes, const std::vector<std::int64_t>& index,
                          const std::string& where, const std::optional<ComponentChoice>& component) {
   VolumeSlice slice;
-  const std::string said = cat(where, ": its axes are ", axes_text(all_axes));
-  const bool behind = !axis_roles(all_axes).interleaved();
-  const ComponentAxis vectors = chosen_component_axis(all_axes, index.size(), said, component, behind);
-  const auto axes = all_axes.first(all_axes.size() - (vectors.found() && !vectors.leading ? 1 : 0));
-  slice.roles = axis_roles(axes);
-  std::vector<std::size_t>& others = slice.roles.others;
-  if (vectors.leading) others.pop_back();  // that of the components
+  const std::string said = cat(where, ": its axes are ", axes_text(axes));
+  const bool leading_counts = !axis_roles(axes).interleaved();
+  const ComponentAxis vectors = chosen_component_axis(axes, index.size(), said, component, leading_counts);
+  slice.roles = axis_roles_beside(vectors, axes);
+  const std::vector<std::size_t>& others = slice.roles.others;
   const auto refuse = [&](const Message& found) {
     const Message remedy =
         others.empty() ? compose("leave ", option("index"), " out")

@@ -57,10 +57,10 @@ void find_obstacle(const ZarrArray& array, ArrayMeaning& meaning) {
 
 }  // namespace
 
-std::vector<LeadingAxis> ArrayMeaning::leading() const {
+std::vector<LeadingAxis> ArrayMeaning::leading_before(const ComponentAxis& vectors) const {
   std::vector<LeadingAxis> leading;
-  const std::size_t behind = kSpaceRank + (components.leading ? 1 : 0);
-  for (std::size_t axis = 0; axis + behind < end_of_space(); ++axis) {
+  const std::size_t behind = kSpaceRank + (vectors.found() ? 1 : 0);  // those axes, whichever comes first
+  for (std::size_t axis = 0; axis + behind < axes.places.size(); ++axis) {
     leading.push_back({axes.places[axis].label, axes.places[axis].extent});
   }
   return leading;

@@ -29,7 +29,9 @@ struct ArrayMeaning {
   /// Where its axes of space end: before the components that each voxel has, where there are some.
   std::size_t end_of_space() const { return axes.places.size() - (components.found() && !components.leading ? 1 : 0); }
   /// Those before the axes of space, and components, which --index takes positions on.
-  std::vector<LeadingAxis> leading() const;
+  std::vector<LeadingAxis> leading() const { return leading_before(components); }
+  /// The same where `vectors` are the components.
+  std::vector<LeadingAxis> leading_before(const ComponentAxis& vectors) const;
   /// The last three before end_of_space(), of an array that has them.
   VolumeAxes volume_axes() const;
 };

@@ -1,5 +1,8 @@
 // Arrays of vectors and tensors: which component is read, whatever the storage.
+#include "format/base/text.h"
 #include "ingest/hdf5/hdf5_source.h"
+#include "ingest/series.h"
+#include "ingest/series_names.h"
 #include "tests/ingest/hdf5/support/h5py_file.h"
 
 namespace weir::hdf5_components_test {
@@ -114,6 +117,36 @@ with h5py.File("a.h5", "w") as f:
   const auto source = open_source(scratch_.path("a.h5"), options_for("v", {true, 0}));
   EXPECT_EQ(source->info().spacing, (std::array<double, 3>{1, 2, 3}));
   EXPECT_EQ(source->info().details.component, "magnitude");
+}
+
+// Which axes those are depends on --component, as it does for plain positions.
+TEST_F(Hdf5Components, IndexChoices_AreOfTheAxesThatPositionsAreOf) {
+  write_by_h5py(scratch_, R"(
+with h5py.File("a.h5", "w") as f:
+    f["v"] = np.arange(12 * 5 * 6 * 3, dtype="f4").reshape(12, 5, 6, 3)
+    w = f.create_dataset("w", data=np.arange(4 * 3 * 24, dtype="f4").reshape(4, 3, 2, 3, 4))
+    for axis, name in enumerate(["time", "vector", "z", "y", "x"]): w.dims[axis].label = name
+)");
+  const auto steps = [&](SourceOptions options, const std::string& choices) {
+    for (const std::string& choice : split(choices, ',')) options.index_choices.push_back(*parse_axis_choice(choice));
+    std::string text;
+    const auto expanded = expand_series(std::vector{scratch_.path("a.h5")}, options);
+    const auto names = series_outputs(expanded, "out/", options);
+    for (std::size_t i = 0; i < expanded.size(); ++i) {
+      const auto source = open_source(expanded[i].path, options_of_step(options, expanded[i]));
+      text += cat(text.empty() ? "" : " ", names[i].substr(4), ':', all_values(*source).front());
+    }
+    return text;
+  };
+  EXPECT_EQ(steps(dataset_options("v"), "-1"), "a_v_11.nvdb:990") << "components are x";
+  EXPECT_EQ(steps(dataset_options("v"), "9:11"), "a_v_09.nvdb:810 a_v_10.nvdb:900");
+  EXPECT_EQ(steps(dataset_options("w"), "-1,1"), "a_w_3_1.nvdb:240");
+  EXPECT_EQ(steps(options_for("w", {false, 1}), "time=-1"), "a_w_y_3.nvdb:240");
+  EXPECT_EQ(steps(options_for("w", {false, 1}), "2:"), "a_w_y_2.nvdb:168 a_w_y_3.nvdb:240");
+  EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { steps(dataset_options("v"), "-1,0"); }),
+            scratch_.path("a.h5") +
+                ": --index has 2 positions, and /v has no leading axis; weir inspect lists what "
+                "there is");
 }
 
 TEST_F(Hdf5Components, OnlyFieldOfVectorsIsTheDefaultOfComponent) {

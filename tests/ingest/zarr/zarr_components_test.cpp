@@ -191,6 +191,29 @@ TEST(ZarrComponents, ALeadingAxisOfThem_IsChosenFromToo) {
   }
 }
 
+TEST(ZarrComponents, IndexChoices_AreOfTheAxesThatPositionsAreOf) {
+  const auto first_value = [](const ZarrFiles& files, SourceOptions options, const char* choice) {
+    options.index_choices = {*parse_axis_choice(choice)};
+    return files.read(options).front();
+  };
+  const ZarrFiles unnamed;
+  write_vectors(unnamed, kShape, true);
+  EXPECT_EQ(first_value(unnamed, {}, "-1"), value_at({1, 0, 0, 0})) << "components are x";
+  EXPECT_EQ(message_of_error(ErrorKind::usage,
+                             [&] {
+                               first_value(unnamed, options_for({false, 1}), "-1");
+                             }),
+            unnamed.path() +
+                ": --index has 1 position, and the array has no leading axis; weir inspect lists what "
+                "there is");
+  const ZarrFiles leading;
+  leading.write("zarr.json", zarr_json("[2,3,1,1,1]", "[2,3,1,1,1]", R"([{"name":"bytes"}])", "uint8", "0",
+                                       R"(,"dimension_names":["t","vector","z","y","x"])"));
+  leading.write_values("c/0/0/0/0/0", std::vector<std::uint8_t>{1, 2, 3, 4, 5, 6});
+  EXPECT_EQ(first_value(leading, options_for({false, 1}), "-1"), 5);
+  EXPECT_EQ(first_value(leading, options_for({false, 1}), "t=0"), 2);
+}
+
 TEST(ZarrComponents, ScaleAndMissingValues_AreOfEachNumber) {
   const ZarrFiles files;
   files.write(".zarray", zarray("[1,1,3,2]", "[1,1,3,1]", "|u1", "0"));
