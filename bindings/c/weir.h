@@ -247,7 +247,8 @@ WEIR_API weir_status weir_convert_file(const char* input, const weir_input_optio
 /* ---- Push: a volume out of a running simulation ---------------------------------------------------------------- */
 
 /* A volume that is handed over in slabs; the values of a slab need not exist after its call. Any threads may push slabs
- * at once; one thread makes the other calls, before and after all slabs. */
+ * at once; one thread makes the other calls, before and after all slabs. A child that is forked meanwhile must neither
+ * use nor free its copy of the handle, whose threads are the parent's alone; it may call exec or _exit. */
 typedef struct weir_push weir_push;
 
 /* Begins `output`. Strings of `volume` and `options` are copied, callbacks and `user` are used until the end. Values

@@ -101,7 +101,7 @@ void add_meaning(const py::dict& meaning, DenseArray& array) {
   array.details.long_name = text_at(meaning, "long_name");
   if (meaning.contains("time")) {
     const auto [value, units] = meaning["time"].cast<std::pair<double, std::string>>();
-    array.details.time = TimePoint{value, units, {}};
+    array.details.time = TimePoint{value, units, text_at(meaning, "calendar")};
   }
   if (!meaning.contains("axes")) return;
   std::size_t i = 0;

@@ -83,6 +83,15 @@ std::vector<Box> in_index_space(std::vector<Box> boxes, const NvdbGrid& grid) {
 
 }  // namespace
 
+void Grid::Opened::require_unchanged() const {
+  if (file == nullptr) return;
+  try {
+    file->mapping().check_unchanged();
+  } catch (const Error&) {
+    throw input_error(file->path(), "changed since it was opened; open it again");
+  }
+}
+
 void Grid::Opened::with_boxes(const std::function<std::vector<Box>()>& boxes, const std::function<void()>& use) const {
   if (remote == nullptr) return use();
   remote->with_blocks(in_index_space(boxes(), grid()), use);
@@ -169,6 +178,7 @@ py::array_t<float> Grid::read(const Triple& lo, const Triple& hi, int level) con
     return std::vector{Box{part.lo * edge, min(part.hi * edge, file->source->info().extent)}};
   };
   const auto read = [&, values = values_of(array)](Watch& watch) {
+    file->require_unchanged();
     const auto use = [&](std::int64_t first, std::int64_t end, std::span<float> part) {
       read_level(*file->source, level, planes(first, end), part, watch.cancelled());
     };
@@ -191,6 +201,7 @@ py::array_t<float> Grid::read_strided(const Triple& first, const Triple& step, c
     return part;
   };
   const auto read = [&, values = values_of(array)](Watch& watch) {
+    file->require_unchanged();
     const auto use = [&](std::int64_t begin, std::int64_t end, std::span<float> part) {
       python::read_strided(*file->source, planes(begin, end), part, watch.cancelled());
     };
@@ -206,6 +217,7 @@ std::tuple<std::int64_t, Triple, py::array_t<float>, py::array_t<float>> Grid::m
   const auto file = shared();
   std::optional<MacrocellGrid> cells;
   const auto gather = [&](Watch&) {
+    file->require_unchanged();
     if (file->remote == nullptr) return void(cells.emplace(file->grid(), kMacrocell));
     if (!has_macrocells(file->grid())) {
       throw Error(ErrorKind::usage, cat(path_, ": has no macrocells; copy the file to this machine to gather them"));
@@ -231,6 +243,7 @@ std::vector<std::tuple<std::string, std::string, std::string, bool>> Grid::verif
   const auto file = with_file("verify");
   std::vector<std::tuple<std::string, std::string, std::string, bool>> all;
   run_watched(progress, [&](Watch& watch) {
+    file->require_unchanged();
     VerificationWatch verification;
     verification.pass_started = [&](const std::string& pass, std::uint64_t bytes) { watch.start(pass, bytes); };
     verification.pass_advanced = [&](std::uint64_t done) { watch.advance(done); };

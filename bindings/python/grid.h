@@ -86,6 +86,10 @@ class Grid {
     std::optional<LeafTable> table;  ///< for samples, of a file
 
     const NvdbGrid& grid() const { return file != nullptr ? file->grid() : remote->grid(); }
+    /// Throws Error(input) where the file was written to or cut since it was opened: its mapping may have other values,
+    /// or end the process. One that was replaced by a rename is as it was. Of what lies elsewhere the reader tells. One
+    /// call of the system, which may wait for a server: without the interpreter's lock.
+    void require_unchanged() const;
     /// Calls `use` while what touches boxes(), in voxels from the lowest one, can be read from `source`; of a file
     /// nobody asks for them.
     void with_boxes(const std::function<std::vector<Box>()>& boxes, const std::function<void()>& use) const;

@@ -42,6 +42,7 @@ py::array Grid::render(const GivenOptions& options, bool linear, const py::objec
   const auto file = with_file("render");
   Picture picture;
   run_watched(progress, [&](Watch& watch) {
+    file->require_unchanged();
     PictureRequest request = read_picture_request(options);
     request.sampling.cancel = &watch.cancelled();
     request.sampling.progress = [&](std::uint64_t done) { watch.advance(done); };

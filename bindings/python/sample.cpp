@@ -56,6 +56,7 @@ py::array_t<float> Grid::sample(const py::array_t<float, py::array::c_style>& po
     return array;
   }
   const py::gil_scoped_release unlocked;
+  file->require_unchanged();
   const FloatMode mode;
   std::call_once(file->table_made, [&] { file->table.emplace(file->grid()); });
   sample_all(VolumeSampler{file->table->view(), filter}, positions, values);

@@ -216,10 +216,12 @@ void Selection::choose_error(double squared_error) {
   PurchaseGoal goal;
   goal.unit = CutSearch::error_unit(rule_);
   if (goal.unit == 0 || error < std::ldexp(goal.unit, 84)) goal.unit = std::ldexp(error, -90);
-  if (!(goal.unit > 0)) return choose(error > squared_error ? bytes_.full.file_bytes : bytes_.minimum.file_bytes);
+  // Nothing need be bought: sums of gains may round to more than this error, and would buy for the difference.
+  if (error <= squared_error) return choose(bytes_.minimum.file_bytes);
+  if (!(goal.unit > 0)) return choose(bytes_.full.file_bytes);
   const bool ends_exact = rule_.packed || rule_.encoding == Encoding::float32;
   if (ends_exact) {
-    goal.left = goal.weight(0, std::min(squared_error, error));
+    goal.left = goal.weight(0, squared_error);
   } else {
     goal.limit = goal.weight(0, error - squared_error);
   }

@@ -95,19 +95,20 @@ void FetchedBytes::add(const ByteRange& range) {
 }
 
 void FetchedBytes::forget_from(std::uint64_t offset) {
+  if (offset >= bytes_.size()) return;
   const auto page = static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
-  const std::uint64_t from = (offset + page - 1) / page * page;
-  if (from >= bytes_.size()) return;
-  ::madvise(bytes_.data() + from, bytes_.size() - from, MADV_DONTNEED);
+  const std::uint64_t whole = std::min((offset + page - 1) / page * page, std::uint64_t{bytes_.size()});
+  std::ranges::fill(bytes_.subspan(offset, whole - offset), std::byte{0});
+  if (whole < bytes_.size()) ::madvise(bytes_.data() + whole, bytes_.size() - whole, MADV_DONTNEED);
   for (auto next = there_.begin(); next != there_.end();) {
     auto& [begin, end] = *next;
-    if (end <= from) {
+    if (end <= offset) {
       ++next;
       continue;
     }
-    held_ -= end - std::max(begin, from);
-    if (begin < from) {
-      end = from;
+    held_ -= end - std::max(begin, offset);
+    if (begin < offset) {
+      end = offset;
       ++next;
     } else {
       next = there_.erase(next);

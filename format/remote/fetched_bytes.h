@@ -32,7 +32,7 @@ class FetchedBytes {
   void put(std::uint64_t offset, std::span<const std::byte> bytes);
   /// Bytes that are there.
   std::uint64_t held() const { return held_; }
-  /// Forgets what lies at `offset`, rounded up to a whole page, and beyond, and gives its memory back.
+  /// Forgets what lies at `offset` and beyond, and gives its memory back, in whole pages.
   void forget_from(std::uint64_t offset);
 
  private:

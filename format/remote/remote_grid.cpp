@@ -7,6 +7,7 @@
 #include <mutex>
 #include <utility>
 
+#include "format/base/error.h"
 #include "format/nanovdb/nvdb_bytes.h"
 #include "format/nanovdb/packed_chunk.h"
 #include "format/packed/packed_layout.h"
@@ -134,6 +135,18 @@ bool RemoteGrid::fit_cache(std::span<const Box> boxes) const {
 }
 
 void RemoteGrid::with_blocks(std::span<const Box> boxes, const std::function<void()>& use) {
+  try {
+    use_blocks(boxes, use);
+  } catch (const Error& error) {
+    if (error.kind() == ErrorKind::input) {
+      const std::unique_lock lock(mutex_);
+      file_->forget_from(heads_end_);
+    }
+    throw;
+  }
+}
+
+void RemoteGrid::use_blocks(std::span<const Box> boxes, const std::function<void()>& use) {
   const std::vector<WantedRegion> wanted = wanted_regions(boxes);  // by the table of regions, which always stays
   {
     const std::shared_lock lock(mutex_);

@@ -33,7 +33,8 @@ class RemoteGrid {
   /// Calls `use` while the blocks that touch `boxes` (index space) are there. Of a region that is looked at for the
   /// first time, one request reads the head and up to three the streams, or a single one all of it where a third or
   /// more is asked for; requests of several regions are made at once. Thread-safe. Throws as the reader and
-  /// PackedData::stream.
+  /// PackedData::stream. Where that or `use` throws Error(input), since what was read is damaged, all but the heads is
+  /// forgotten, so that the next call reads it again.
   void with_blocks(std::span<const Box> boxes, const std::function<void()>& use);
   /// The same of the grid's macrocells.
   void with_macrocells(const std::function<void()>& use);
@@ -51,6 +52,7 @@ class RemoteGrid {
   bool has(std::span<const WantedRegion> wanted) const;
   void fetch(std::span<const WantedRegion> wanted);
   void make_room();
+  void use_blocks(std::span<const Box> boxes, const std::function<void()>& use);
   Ranges macrocells() const;
 
   std::string path_;

@@ -27,46 +27,79 @@ void describe_error(Archive& archive, E& error) {
   archive.field("lossless", error.lossless);
 }
 
+template <typename Archive, typename S>
+void describe_source(Archive& archive, S& source) {
+  archive.field("path", source.path);
+  archive.field("format", source.format);
+  archive.field("dataset", source.dataset);
+  archive.field("extent", source.extent);
+  archive.field("type", source.type);
+  archive.field("bytes", source.bytes);
+  archive.field("mtime", source.mtime);
+  archive.field("digest", source.digest);
+  archive.field("index", source.index);
+  archive.field("axes", source.axes);
+  archive.field("units", source.units);
+  archive.field("unit_si", source.unit_si);
+  archive.field("scale", source.scale);
+  archive.field("offset", source.offset);
+  archive.optional_field("files_digest", source.files_digest);
+  archive.optional_field("values", source.values);
+  archive.optional_field("long_name", source.long_name);
+  archive.optional_field("component", source.component);
+  archive.optional_object("level", source.level, [&](auto& level) {
+    archive.field("number", level.number);
+    archive.field("count", level.count);
+  });
+  archive.optional_object("time", source.time, [&](auto& time) {
+    archive.field("value", time.value);
+    archive.field("units", time.units);
+    archive.optional_field("calendar", time.calendar);
+  });
+  archive.optional_field("axis_units", source.axis_units);
+  archive.optional_object("irregular_axes", source.irregular_axes, [&](auto& axes) {
+    archive.optional_field("x", axes.x);
+    archive.optional_field("y", axes.y);
+    archive.optional_field("z", axes.z);
+  });
+  archive.optional_field("reversed_axes", source.reversed_axes);
+  archive.optional_field("orientation", source.orientation);
+}
+
+template <typename Archive, typename S>
+void describe_selection(Archive& archive, S& selection) {
+  archive.field("metric", selection.metric);
+  archive.field("fill", selection.fill);
+  archive.field("brick", selection.brick);
+  archive.field("leaves_total", selection.leaves_total);
+  archive.field("leaves_kept", selection.leaves_kept);
+  archive.object("bits", [&] {
+    for (std::size_t i = 0; i < kBitKeys.size(); ++i) archive.field(kBitKeys[i], selection.bits[i]);
+  });
+}
+
+template <typename Archive, typename P>
+void describe_packed(Archive& archive, P& packed) {
+  archive.field("preview", packed.preview);
+  archive.object("blocks", [&] {
+    for (std::size_t i = 0; i < kBlockKeys.size(); ++i) archive.field(kBlockKeys[i], packed.blocks[i]);
+  });
+  archive.object("error_preview", [&] { describe_error(archive, packed.error_preview); });
+}
+
+template <typename Archive, typename G>
+void describe_gradient(Archive& archive, G& gradient) {
+  archive.field("rms", gradient.rms);
+  archive.field("relative_rms", gradient.relative_rms);
+  archive.field("max_abs", gradient.max_abs);
+  archive.field("voxels", gradient.voxels);
+  archive.field("left_out", gradient.left_out);
+}
+
 // The document's keys, once, for writing and for reading: `archive` is a JsonWriter or a JsonReader.
 template <typename Archive, typename S>
 void describe(Archive& archive, S& s) {
-  archive.object("source", [&] {
-    archive.field("path", s.source.path);
-    archive.field("format", s.source.format);
-    archive.field("dataset", s.source.dataset);
-    archive.field("extent", s.source.extent);
-    archive.field("type", s.source.type);
-    archive.field("bytes", s.source.bytes);
-    archive.field("mtime", s.source.mtime);
-    archive.field("digest", s.source.digest);
-    archive.field("index", s.source.index);
-    archive.field("axes", s.source.axes);
-    archive.field("units", s.source.units);
-    archive.field("unit_si", s.source.unit_si);
-    archive.field("scale", s.source.scale);
-    archive.field("offset", s.source.offset);
-    archive.optional_field("files_digest", s.source.files_digest);
-    archive.optional_field("values", s.source.values);
-    archive.optional_field("long_name", s.source.long_name);
-    archive.optional_field("component", s.source.component);
-    archive.optional_object("level", s.source.level, [&](auto& level) {
-      archive.field("number", level.number);
-      archive.field("count", level.count);
-    });
-    archive.optional_object("time", s.source.time, [&](auto& time) {
-      archive.field("value", time.value);
-      archive.field("units", time.units);
-      archive.optional_field("calendar", time.calendar);
-    });
-    archive.optional_field("axis_units", s.source.axis_units);
-    archive.optional_object("irregular_axes", s.source.irregular_axes, [&](auto& axes) {
-      archive.optional_field("x", axes.x);
-      archive.optional_field("y", axes.y);
-      archive.optional_field("z", axes.z);
-    });
-    archive.optional_field("reversed_axes", s.source.reversed_axes);
-    archive.optional_field("orientation", s.source.orientation);
-  });
+  archive.object("source", [&] { describe_source(archive, s.source); });
   archive.object("grid", [&] {
     archive.field("name", s.grid.name);
     archive.field("type", s.grid.type);
@@ -111,25 +144,10 @@ void describe(Archive& archive, S& s) {
     archive.field("dense_float32_bytes", s.budget.dense_float32_bytes);
     archive.field("rate", s.budget.rate);
   });
-  archive.object("selection", [&] {
-    archive.field("metric", s.selection.metric);
-    archive.field("fill", s.selection.fill);
-    archive.field("brick", s.selection.brick);
-    archive.field("leaves_total", s.selection.leaves_total);
-    archive.field("leaves_kept", s.selection.leaves_kept);
-    archive.object("bits", [&] {
-      for (std::size_t i = 0; i < kBitKeys.size(); ++i) archive.field(kBitKeys[i], s.selection.bits[i]);
-    });
-  });
+  archive.object("selection", [&] { describe_selection(archive, s.selection); });
   archive.object("error", [&] {
     describe_error(archive, s.error);
-    archive.optional_object("gradient", s.gradient, [&](auto& gradient) {
-      archive.field("rms", gradient.rms);
-      archive.field("relative_rms", gradient.relative_rms);
-      archive.field("max_abs", gradient.max_abs);
-      archive.field("voxels", gradient.voxels);
-      archive.field("left_out", gradient.left_out);
-    });
+    archive.optional_object("gradient", s.gradient, [&](auto& gradient) { describe_gradient(archive, gradient); });
   });
   archive.optional_object("visible", s.visible, [&](auto& visible) {
     archive.field("scene", visible.scene);
@@ -138,13 +156,7 @@ void describe(Archive& archive, S& s) {
     describe_error(archive, visible.error);
     archive.optional_field("scene_digest", visible.scene_digest);
   });
-  archive.optional_object("packed", s.packed, [&](auto& packed) {
-    archive.field("preview", packed.preview);
-    archive.object("blocks", [&] {
-      for (std::size_t i = 0; i < kBlockKeys.size(); ++i) archive.field(kBlockKeys[i], packed.blocks[i]);
-    });
-    archive.object("error_preview", [&] { describe_error(archive, packed.error_preview); });
-  });
+  archive.optional_object("packed", s.packed, [&](auto& packed) { describe_packed(archive, packed); });
   archive.object("macrocells", [&] {
     archive.field("cell", s.macrocells.cell);
     archive.field("dims", s.macrocells.dims);

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -218,6 +219,86 @@ void print_text(const Comparison& c, const std::string& units) {
   }
 }
 
+void print(const CompareArguments& arguments, const Comparison& comparison, const Besides& besides,
+           const std::string& units, double total_s) {
+  if (arguments.json) {
+    std::cout << to_json(arguments, comparison, besides, total_s)
+                     .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)
+              << '\n';
+    return;
+  }
+  print_text(comparison, units);
+  if (besides.derived) std::cout << derived_text(*besides.derived, extent_of(comparison.range), units);
+  if (besides.spectrum) std::cout << spectrum_text(*besides.spectrum);
+  if (besides.vector) std::cout << vector_text(*besides.vector, units);
+}
+
+void warn_of_loss(const std::string& input, const ConversionLoss& loss) {
+  if (loss.inexact > 0) {
+    spdlog::warn("{}: {} values are not representable in float32 and count as rounded, by up to {}", input,
+                 loss.inexact, short_number(loss.max_abs_error));
+  }
+  if (loss.overflow > 0) {
+    spdlog::warn("{}: {} values are finite but beyond float32, and count as infinite", input, loss.overflow);
+  }
+}
+
+// The passes over one volume and its source, or over the three of a vector field.
+class ComparePasses {
+ public:
+  // `pairs` and `trace` outlive it.
+  ComparePasses(const CompareArguments& arguments, const std::vector<ComparedPair>& pairs, std::uint64_t block_bytes,
+                Trace* trace)
+      : arguments_(arguments), pairs_(pairs), progress_(arguments.progress) {
+    options_.block_bytes = block_bytes;
+    options_.cancel = &interrupt_flag();
+    options_.release_pages = [&pairs] {
+      for (const ComparedPair& pair : pairs) pair.file.mapping().release_pages();
+    };
+    options_.trace = trace;
+    options_.progress = [this](std::uint64_t done) { progress_.update(done); };
+  }
+
+  Comparison compare() {
+    return pass("compare", [&] { return compare_volumes(source(), grid(), arguments_.volume, options_); });
+  }
+
+  Besides besides(const Comparison& comparison, std::optional<SpectrumFile>& spectrum_file) {
+    Besides besides;
+    if (arguments_.derived) {
+      besides.derived = pass("derived", [&] { return derive_errors(source(), grid(), comparison, options_); });
+    }
+    if (spectrum_file) {
+      besides.spectrum = pass("spectrum", [&] { return power_spectrum(source(), grid(), options_); });
+      spectrum_file->write(*besides.spectrum, std::filesystem::path(arguments_.volume).filename().string());
+    }
+    if (pairs_.size() == 3) {
+      const auto component = [&](std::size_t i) { return PairedVolume{*pairs_[i].source, pairs_[i].file.grid()}; };
+      besides.vector = pass("vectors", [&] {
+        return vector_errors({{component(0), component(1), component(2)}}, options_);
+      });
+    }
+    return besides;
+  }
+
+ private:
+  VolumeSource& source() const { return *pairs_.front().source; }
+  const NvdbGrid& grid() const { return pairs_.front().file.grid(); }
+
+  template <typename Run>
+  std::invoke_result_t<const Run&> pass(const char* name, const Run& run) {
+    progress_.start(name, static_cast<std::uint64_t>(source().info().domain().voxels()) * sizeof(float));
+    auto result = run();
+    progress_.finish();
+    return result;
+  }
+
+  const CompareArguments& arguments_;
+  const std::vector<ComparedPair>& pairs_;
+  Progress progress_;
+  CompareOptions options_;
+};
+
 void compare(const CompareArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   const ConversionOptions run = read_conversion_request(arguments.options).conversion;
@@ -226,67 +307,15 @@ void compare(const CompareArguments& arguments) {
   std::optional<SpectrumFile> spectrum_file;
   if (!arguments.spectrum.empty()) spectrum_file.emplace(*files, arguments.spectrum);
   const std::vector<ComparedPair> pairs = open_pairs(arguments);
-  const auto& [file, source] = pairs.front();
-
-  CompareOptions options;
-  options.block_bytes = block_bytes(arguments, run, pairs);
-  options.cancel = &interrupt_flag();
-  options.release_pages = [&pairs] {
-    for (const ComparedPair& pair : pairs) pair.file.mapping().release_pages();
-  };
   const std::unique_ptr<Trace> trace =
       open_trace(arguments.trace,
                  std::array{arguments.input, arguments.volume, find_sidecar(arguments.volume), arguments.spectrum});
-  options.trace = trace.get();
-  Progress progress(arguments.progress);
-  const std::uint64_t bytes = static_cast<std::uint64_t>(source->info().domain().voxels()) * sizeof(float);
-  progress.start("compare", bytes);
-  options.progress = [&](std::uint64_t done) { progress.update(done); };
-  const Comparison comparison = compare_volumes(*source, file.grid(), arguments.volume, options);
-  progress.finish();
-  Besides besides;
-  if (arguments.derived) {
-    progress.start("derived", bytes);
-    besides.derived = derive_errors(*source, file.grid(), comparison, options);
-    progress.finish();
-  }
-  if (spectrum_file) {
-    progress.start("spectrum", bytes);
-    besides.spectrum = power_spectrum(*source, file.grid(), options);
-    progress.finish();
-    spectrum_file->write(*besides.spectrum, std::filesystem::path(arguments.volume).filename().string());
-  }
-  if (pairs.size() == 3) {
-    progress.start("vectors", bytes);
-    besides.vector = vector_errors({{{*pairs[0].source, pairs[0].file.grid()},
-                                     {*pairs[1].source, pairs[1].file.grid()},
-                                     {*pairs[2].source, pairs[2].file.grid()}}},
-                                   options);
-    progress.finish();
-  }
+  ComparePasses passes(arguments, pairs, block_bytes(arguments, run, pairs), trace.get());
+  const Comparison comparison = passes.compare();
+  const Besides besides = passes.besides(comparison, spectrum_file);
   if (trace) trace->close();
-
-  if (comparison.loss.inexact > 0) {
-    spdlog::warn("{}: {} values are not representable in float32 and count as rounded, by up to {}", arguments.input,
-                 comparison.loss.inexact, short_number(comparison.loss.max_abs_error));
-  }
-  if (comparison.loss.overflow > 0) {
-    spdlog::warn("{}: {} values are finite but beyond float32, and count as infinite", arguments.input,
-                 comparison.loss.overflow);
-  }
-  const double total_s = seconds_since(start);
-  if (arguments.json) {
-    std::cout << to_json(arguments, comparison, besides, total_s)
-                     .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)
-              << '\n';
-  } else {
-    print_text(comparison, source->info().units);
-    if (besides.derived) {
-      std::cout << derived_text(*besides.derived, extent_of(comparison.range), source->info().units);
-    }
-    if (besides.spectrum) std::cout << spectrum_text(*besides.spectrum);
-    if (besides.vector) std::cout << vector_text(*besides.vector, source->info().units);
-  }
+  warn_of_loss(arguments.input, comparison.loss);
+  print(arguments, comparison, besides, pairs.front().source->info().units, seconds_since(start));
 }
 
 }  // namespace

@@ -150,7 +150,9 @@ def convert(
         Called in this thread some twenty times a second at most as progress(pass, done, total), in float32 bytes.
         What it raises, KeyboardInterrupt too, ends the conversion and goes on.
 
-    Nothing is left of a conversion that fails or is interrupted, but for what resume keeps. The interpreter's lock is
+    The output is there whole or not at all: nothing is left of a conversion that fails or is interrupted, but for what
+    resume keeps. What a signal handler raises, as KeyboardInterrupt, may come when the files are complete already; then
+    they stay. The interpreter's lock is
     free while it runs. Warnings, for instance that the least size is larger than the rate's, go to the logger
     "weir".
 
@@ -233,10 +235,20 @@ def convert(
     else:
         raise TypeError(
             f"source is a {source.__class__.__name__}, it must be a path, a numpy array, an xarray.DataArray"
-            " or an array with DLPack or __cuda_array_interface__"
+            f" or an array with DLPack or __cuda_array_interface__{_remedy(source)}"
         )
     records = [json.loads(text) for text in texts]
     return records if several else records[0]
+
+
+def _remedy(source: Any) -> str:
+    """What to give instead of `source`, for the end of a message; empty where that is not known."""
+    if hasattr(source, "data_vars"):
+        return "; give one of its arrays, source[NAME]"
+    if source.__class__.__module__.partition(".")[0] in ("h5py", "zarr"):
+        array = ", or numpy.asarray(source)" if hasattr(source, "__array__") else ""
+        return f"; give the path of its file with dataset=NAME, which is streamed{array}"
+    return "; give numpy.asarray(source)" if hasattr(source, "__array__") else ""
 
 
 def _convert_array(

@@ -388,7 +388,7 @@ def _box_of(roi: Any, shape: Sequence[int]) -> tuple[tuple[int, ...], tuple[int,
             low, high = ([_whole(end) for end in corner] for corner in parts)
             if len(low) != 3 or len(high) != 3:
                 raise bad
-    except (AttributeError, TypeError, ValueError):
+    except (AttributeError, OverflowError, TypeError, ValueError):
         raise bad from None
     if not all(0 <= a < b <= count for a, b, count in zip(low, high, shape[::-1])):
         raise UsageError(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import sys
 from typing import TYPE_CHECKING, Any, NamedTuple, Optional
 
@@ -9,6 +10,7 @@ import numpy
 from numpy.typing import NDArray
 
 from .errors import UsageError
+from .options import described
 
 if TYPE_CHECKING:
     import xarray
@@ -17,6 +19,8 @@ if TYPE_CHECKING:
 _TOLERANCE = 1e-3
 _EPOCH = "seconds since 1970-01-01 00:00:00"
 _KNOWN = {"x": "x", "lon": "x", "longitude": "x", "y": "y", "lat": "y", "latitude": "y", "z": "z"}
+#: Names of what may be z, though a name alone does not make it that.
+_HEIGHTS = {"altitude", "depth", "height", "lev", "level", "plev", "pressure"}
 
 
 class Labelled(NamedTuple):
@@ -26,7 +30,8 @@ class Labelled(NamedTuple):
     spacing: tuple[float, float, float]  #: x, y, z
     origin: tuple[float, float, float]
     name: Optional[str]
-    meaning: dict[str, Any]  #: "units", "long_name", "time", and of "axes" x, y, z: "name", "units", "coordinates", "note"
+    meaning: dict[str, Any]  #: "units", "long_name", "time", "calendar", and of "axes" x, y, z: "name", "units",
+    #: "coordinates", "note"
 
 
 def is_data_array(source: Any) -> bool:
@@ -37,8 +42,7 @@ def is_data_array(source: Any) -> bool:
 
 def take_apart(array: xarray.DataArray) -> Labelled:
     """Values are read. Axes whose coordinates fall are turned round. Raises UsageError for other than three axes."""
-    while array.ndim > 3 and 1 in array.shape:
-        array = array.isel({array.dims[array.shape.index(1)]: 0})
+    array = _without_further_axes(array)
     if array.ndim != 3:
         axes = ", ".join(map(str, array.dims))
         remedy = f"; choose with source.isel({array.dims[0]}=0)" if array.ndim > 3 else ""
@@ -53,11 +57,8 @@ def take_apart(array: xarray.DataArray) -> Labelled:
         origin.append(first)
         if falls:
             values = numpy.flip(values, place)
-    attributes = {key: _text(array.attrs[key]) for key in ("units", "long_name") if array.attrs.get(key)}
-    meaning: dict[str, Any] = {"axes": axes, **attributes}
-    time = _time(array)
-    if time is not None:
-        meaning["time"] = time
+    attributes = {key: _attribute(array, "source", key) for key in ("units", "long_name")}
+    meaning: dict[str, Any] = {"axes": axes, **{key: text for key, text in attributes.items() if text}, **_time(array)}
     x, y, z = spacing
     a, b, c = origin
     return Labelled(values, (x, y, z), (a, b, c), None if array.name is None else _text(array.name), meaning)
@@ -68,14 +69,46 @@ def _text(value: Any) -> str:
     return str(value).encode("utf-8", "replace").decode()
 
 
-def _z_y_x(array: xarray.DataArray) -> tuple[Any, ...]:
-    """The axes in the order z, y, x where two of them say which they are; else as they are."""
+def _attribute(array: xarray.DataArray, shown: str, key: str) -> str:
+    """The attribute `key` of `array`, which messages call `shown`; empty where it has none. Raises UsageError."""
+    value = array.attrs.get(key)
+    if isinstance(value, numpy.ndarray):
+        if value.size != 1:
+            raise UsageError(f"{shown} has {key} that are {described(value)}; set {shown}.attrs[{key!r}] to a text")
+        value = value.item()
+    return _text(value) if value else ""
+
+
+def _known_axes(array: xarray.DataArray) -> dict[str, Any]:
+    """The axes that say that they are x, y or z; of several that say the same, the first longer than 1."""
     axis_of: dict[str, Any] = {}
     for name in array.dims:
         said = str(array.coords[name].attrs.get("axis", "")) if name in array.coords else ""
         axis = said.lower() if said in ("X", "Y", "Z") else _KNOWN.get(str(name).lower())
-        if axis is not None:
-            axis_of.setdefault(axis, name)
+        if axis is not None and (axis not in axis_of or array.sizes[axis_of[axis]] == 1 < array.sizes[name]):
+            axis_of[axis] = name
+    return axis_of
+
+
+def _without_further_axes(array: xarray.DataArray) -> xarray.DataArray:
+    """Of more than three axes, those of one position left out: time first, x, y and z only where there are no others."""
+    known = _known_axes(array).values()
+
+    def rank(name: Any) -> int:
+        coordinate = array.coords[name] if name in array.coords else None
+        if name in known:
+            return 3
+        if str(name).lower() in _HEIGHTS or coordinate is not None and "positive" in coordinate.attrs:
+            return 2
+        return 0 if str(name).lower() == "time" or coordinate is not None and coordinate.dtype.kind == "M" else 1
+
+    single = sorted((name for name in array.dims if array.sizes[name] == 1), key=rank)
+    return array.isel(dict.fromkeys(single[: max(0, array.ndim - 3)], 0))
+
+
+def _z_y_x(array: xarray.DataArray) -> tuple[Any, ...]:
+    """The axes in the order z, y, x where two of them say which they are; else as they are."""
+    axis_of = _known_axes(array)
     if len(axis_of) == 2:
         (missing,) = set("xyz") - set(axis_of)
         (axis_of[missing],) = set(array.dims) - set(axis_of.values())
@@ -89,8 +122,9 @@ def _axis(array: xarray.DataArray, place: int) -> tuple[dict[str, Any], float, f
     if name not in array.coords:
         return axis, 1.0, 0.0, False
     coordinate = array.coords[name]
-    if coordinate.attrs.get("units"):
-        axis["units"] = _text(coordinate.attrs["units"])
+    units = _attribute(coordinate, f"source[{name!r}]", "units")
+    if units:
+        axis["units"] = units
     if coordinate.dtype.kind == "M":  # a distance is no time
         axis["units"] = _EPOCH
         axis["coordinates"] = _seconds(coordinate).tolist()
@@ -134,15 +168,39 @@ def _seconds(coordinate: xarray.DataArray) -> Any:
     return (coordinate.values - numpy.datetime64("1970-01-01")) / numpy.timedelta64(1, "s")
 
 
-def _time(array: xarray.DataArray) -> Optional[tuple[float, str]]:
-    """The scalar coordinate `time`, and what it counts."""
+def _time(array: xarray.DataArray) -> dict[str, Any]:
+    """The scalar coordinate `time` as "time", its number and what it counts, and "calendar", of a date of cftime.
+
+    Nothing, and a warning, where it has no such number.
+    """
     if "time" not in array.coords or array.coords["time"].ndim != 0:
-        return None
+        return {}
     coordinate = array.coords["time"]
+    found: dict[str, Any] = {}
     if coordinate.dtype.kind == "M":
-        return float(_seconds(coordinate)), _EPOCH
-    if coordinate.dtype.kind == "m":
-        return float(coordinate.values / numpy.timedelta64(1, "s")), "s"
-    if coordinate.dtype.kind in "iuf":
-        return float(coordinate), str(coordinate.attrs.get("units", ""))
-    return None
+        found = {"time": (float(_seconds(coordinate)), _EPOCH)}
+    elif coordinate.dtype.kind == "m":
+        found = {"time": (float(coordinate.values / numpy.timedelta64(1, "s")), "s")}
+    elif coordinate.dtype.kind in "iuf":
+        found = {"time": (float(coordinate), _attribute(coordinate, "source['time']", "units"))}
+    elif coordinate.dtype.kind == "O":
+        found = _date_of_calendar(coordinate.item())
+    if found and numpy.isfinite(found["time"][0]):
+        return found
+    shown = described(str(coordinate.values[()]))
+    source = "source" if array.name is None else _text(array.name)
+    logging.getLogger("weir").warning(
+        f"{source}: time is {shown}, no date of a known calendar and no finite number; it is left out"
+    )
+    return {}
+
+
+def _date_of_calendar(date: Any) -> dict[str, Any]:
+    """What _time returns, of one of cftime's dates; of anything else nothing."""
+    cftime = sys.modules.get("cftime")
+    if cftime is None or not isinstance(date, cftime.datetime):
+        return {}
+    try:
+        return {"time": (float(cftime.date2num(date, _EPOCH, date.calendar)), _EPOCH), "calendar": date.calendar}
+    except (KeyError, ValueError):  # a date of no calendar
+        return {}

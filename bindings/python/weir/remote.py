@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
+import re
 from typing import Any, Mapping, Optional, Union
 
 from . import _core
+from .errors import UsageError
 from .grid import Grid
 from .options import shown_url, text_of
 from .remote_file import FsspecFile, HttpFile, RemoteFile, sidecar_url
@@ -13,10 +15,34 @@ from .remote_file import FsspecFile, HttpFile, RemoteFile, sidecar_url
 
 def open_remote_file(url: str, storage_options: Optional[dict[str, Any]]) -> RemoteFile:
     """What reads ranges of the file at `url`."""
-    headers = _headers_alone(storage_options or {})
-    if url.partition("://")[0].lower() in ("http", "https") and headers is not None:
-        return HttpFile(url, headers)
-    return FsspecFile(url, storage_options or {})
+    options = _dictionary("storage_options", storage_options)
+    if url.partition("://")[0].lower() in ("http", "https"):
+        headers = _headers_alone(options)
+        if headers is not None:
+            return HttpFile(url, headers)
+    return FsspecFile(url, options)
+
+
+def _dictionary(shown: str, value: Any) -> dict[str, Any]:
+    """`value`, of which None is an empty one. Raises UsageError, without what may be a password, for anything else."""
+    if value is None:
+        return {}
+    if not isinstance(value, Mapping) or not all(isinstance(key, str) for key in value):
+        raise UsageError(
+            f"{shown} is of type {value.__class__.__name__}, it must be a dictionary whose keys are texts"
+        )
+    return dict(value)
+
+
+def _headers(shown: str, value: Any) -> dict[str, str]:
+    """Headers that a request can carry."""
+    headers = _dictionary(shown, value)
+    for name, text in headers.items():
+        if not isinstance(text, str):
+            raise UsageError(f"{shown}[{name!r}] is of type {text.__class__.__name__}, it must be a text")
+        if not re.fullmatch(r"[!-9;-~]+", name) or not re.fullmatch(r"[^\x00\r\n\u0100-\U0010ffff]*", text):
+            raise UsageError(f"{shown}[{name!r}] has a character that no header has, a line break for instance; remove it")
+    return headers
 
 
 def _headers_alone(options: Mapping[str, Any]) -> Optional[dict[str, str]]:
@@ -24,10 +50,11 @@ def _headers_alone(options: Mapping[str, Any]) -> Optional[dict[str, str]]:
 
     fsspec reads all of a file into memory where its server knows no ranges; HttpFile refuses it.
     """
-    client = options.get("client_kwargs") or {}
+    client = _dictionary("storage_options['client_kwargs']", options.get("client_kwargs"))
     if options.keys() - {"headers", "client_kwargs"} or client.keys() - {"headers"}:
         return None
-    return {**(client.get("headers") or {}), **(options.get("headers") or {})}
+    of_client = _headers("storage_options['client_kwargs']['headers']", client.get("headers"))
+    return {**of_client, **_headers("storage_options['headers']", options.get("headers"))}
 
 
 class RemoteGrid(Grid):

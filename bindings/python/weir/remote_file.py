@@ -392,7 +392,7 @@ class FsspecFile(RemoteFile):
         self._options = options
         try:
             self._connect()
-        except (ImportError, ValueError) as error:
+        except (ImportError, TypeError, ValueError) as error:
             raise UsageError(f"{self._shown}: cannot be opened: {shown_urls(str(error))}") from self._cause(error)
         self._version: Optional[dict[str, Any]] = None  # as of the first bytes that were read
 
@@ -501,11 +501,11 @@ def _server(url: str, shown: str) -> tuple[str, str, int]:
 
 
 def sidecar_url(url: str) -> str:
-    """Of the sidecar beside the file at `url`, for http and https with the same query."""
+    """Of the sidecar beside the file at `url`, for http and https with the same query, and without a fragment."""
     parts = urlsplit(url)
-    if parts.scheme not in ("http", "https") or not parts.query:
+    if parts.scheme not in ("http", "https") or not (parts.query or parts.fragment):
         return url + ".json"
-    return urlunsplit(parts._replace(path=parts.path + ".json"))
+    return urlunsplit(parts._replace(path=parts.path + ".json", fragment=""))
 
 
 def _reason(error: Exception) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 import os
+import re
 from typing import TYPE_CHECKING, Any, Iterable, Optional
 
 import numpy
@@ -14,6 +15,7 @@ from xarray.core import indexing
 
 from . import xarray_accessor as _xarray_accessor  # noqa: F401
 from .errors import UsageError
+from .options import is_url
 
 if TYPE_CHECKING:
     from .grid import Grid
@@ -209,8 +211,11 @@ class WeirBackendEntrypoint(BackendEntrypoint):  # type: ignore[misc]
         return dataset
 
     def guess_can_open(self, filename_or_obj: Any) -> bool:
-        """Whether it is the path of an .nvdb file."""
-        return isinstance(filename_or_obj, (str, os.PathLike)) and str(filename_or_obj).lower().endswith(".nvdb")
+        """Whether it is the path or URL of an .nvdb file."""
+        if not isinstance(filename_or_obj, (str, os.PathLike)):
+            return False
+        name = re.split("[?#]", filename_or_obj)[0] if is_url(filename_or_obj) else os.fspath(filename_or_obj)
+        return name.lower().endswith(".nvdb")
 
 
 def _listed(names: Optional[Iterable[str]]) -> list[str]:

@@ -94,6 +94,14 @@ class Errors(FolderTest):
             "source is a list, it must be a path, a numpy array, an xarray.DataArray or an array with DLPack or"
             " __cuda_array_interface__",
         )
+        for module, remedy in (
+            ("h5py._hl.dataset", "give the path of its file with dataset=NAME, which is streamed, or numpy.asarray(source)"),
+            ("zarr.core", "give the path of its file with dataset=NAME, which is streamed, or numpy.asarray(source)"),
+            ("dask.array.core", "give numpy.asarray(source)"),
+        ):
+            lazy = type("Array", (), {"__array__": lambda self: ramp(9, 9, 9), "__module__": module})()
+            message = self.refused(TypeError, weir.convert, lazy, self.folder / "out.nvdb")
+            self.assertEqual(message.split("; ")[1], remedy)
         message = self.refused(weir.UsageError, weir.convert, ramp(9, 9, 9))
         self.assertEqual(message, "output is missing: an array has no name to make one from")
         message = self.refused(TypeError, weir.convert, ramp(9, 9, 9), "a.nvdb", rte=8)

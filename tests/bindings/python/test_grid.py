@@ -3,6 +3,7 @@
 import gc
 import json
 import os
+import shutil
 import unittest
 
 import numpy
@@ -117,6 +118,8 @@ class ToNumpy(FolderTest):
             (numpy.s_[::-1, :, :], form),
             (((0, 0), (1, 1)), form),
             (((0, 0, 0.5), (1, 1, 1)), form),
+            (((0, 0, 0), (float("inf"), 1, 1)), form),
+            (((0, 0, 0), (1, float("nan"), 1)), form),
             (7, form),
             ((1, 2, 3), form),
         ):
@@ -208,6 +211,57 @@ class Bounds(FolderTest):
     def test_the_first_cell_of_a_region_begins_before_it(self):
         grid = self.lossless(noise((37, 70, 50)), roi=((3, 5, 17), (50, 70, 37)))
         self.assertEqual(grid.macrocells().origin, (-3, -5, -1))
+
+
+class ChangedFiles(FolderTest):
+    """Files that are written to in place while they are open."""
+
+    def opened(self, encoding):
+        weir.convert(ramp(40, 50, 60), self.folder / "a.nvdb", encoding=encoding, rate=1.2, overwrite=True)
+        grid = weir.open(self.folder / "a.nvdb")
+        self.addCleanup(grid.close)
+        return grid
+
+    def refuses_to_read(self, grid):
+        for use in (
+            grid.to_numpy,
+            lambda: grid[3],
+            lambda: grid[::7, ::-9, 3],
+            lambda: grid.to_numpy(level=1),
+            lambda: grid.sample([[30, 30, 30]]),
+            grid.macrocells,
+            lambda: grid.render(mode="mip", size=(16, 16), backend="cpu"),
+            grid.verify,
+        ):
+            message = self.refused(weir.InputError, use)
+            self.assertEqual(message, "a.nvdb: changed since it was opened; open it again")
+        self.assertEqual(grid.extent, (40, 50, 60))
+
+    def test_a_file_that_was_cut(self):
+        for encoding in ("fpn", "packed"):
+            with self.subTest(encoding):
+                grid = self.opened(encoding)
+                os.truncate(grid.path, 20000)
+                self.refuses_to_read(grid)
+
+    def test_a_file_that_was_overwritten(self):
+        for encoding in ("fpn", "packed"):
+            with self.subTest(encoding):
+                grid = self.opened(encoding)
+                grid.sample([[1, 1, 1]])
+                weir.convert(-ramp(40, 50, 60), self.folder / "b.nvdb", encoding=encoding, rate=1.2, overwrite=True)
+                shutil.copyfile(self.folder / "b.nvdb", grid.path)
+                os.utime(grid.path, ns=(1, 1))  # whatever the clock's steps are
+                self.refuses_to_read(grid)
+
+    def test_a_file_that_was_replaced_is_read_on(self):
+        values = ramp(40, 50, 60)
+        grid = self.lossless(values)
+        weir.convert(-values, grid.path, lossless=True, overwrite=True)
+        self.assertTrue(same(grid.to_numpy(), values))
+        self.assertTrue(same(grid[::7, ::-9, 3], values[::7, ::-9, 3]))
+        self.assertEqual(grid.sample([[0.5, 0.5, 0.5]]), values[0, 0, 0])
+        self.assertEqual(grid.render(mode="mip", size=(16, 16), backend="cpu").shape, (16, 16, 3))
 
 
 class Lifetime(FolderTest):

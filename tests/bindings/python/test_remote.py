@@ -19,6 +19,7 @@ import numpy
 import weir
 from range_server import RangeServer
 from support import FolderTest, same
+from weir.remote_file import sidecar_url
 
 
 def bumps(edge):
@@ -403,6 +404,55 @@ class Remote(FolderTest):
             except (weir.InputError, weir.IoError) as error:
                 self.assertNotIn("\n", str(error))
         self.assertLess(opened, 12)
+
+    def test_damage_on_the_way_is_forgotten(self):
+        data = bytearray(self.files["/run/a.nvdb"])
+        head = 65536  # the grid's, which is read when it is opened
+        data[head:] = bytes(byte ^ 0xFF for byte in data[head:])
+        for cache in ("256MiB", 0):
+            with self.subTest(cache):
+                server, url = self.served()
+                grid = weir.open(url, cache=cache)
+                server.files["/run/a.nvdb"] = bytes(data)  # the same version, as the server says
+                for use in (grid.to_numpy, lambda: grid.sample([[200, 200, 200]]), lambda: grid[200, ::50, ::50]):
+                    with self.assertRaises(weir.InputError):
+                        use()
+                server.files["/run/a.nvdb"] = self.files["/run/a.nvdb"]
+                self.assertTrue(same(grid[200, ::50, ::50], self.here[200, ::50, ::50]))
+                self.assertEqual(grid.sample([[200, 200, 200]]), self.here.sample([[200, 200, 200]]))
+                self.assertTrue(same(grid.to_numpy(), self.here.to_numpy()))
+
+    def test_a_fragment_is_no_part_of_what_is_asked_for(self):
+        for url in ("/run/a.nvdb#v1", "/run/a.nvdb?key=1#v1"):
+            server, url = self.served(url)
+            grid = weir.open(url)
+            self.assertEqual(grid.certificate, self.here.certificate)
+            self.assertLess(grid.bytes_read, self.here.bytes / 2)
+        self.assertEqual(sidecar_url("https://host/a.nvdb?key=1#v1"), "https://host/a.nvdb.json?key=1")
+        self.assertEqual(sidecar_url("s3://bucket/a#1.nvdb"), "s3://bucket/a#1.nvdb.json")
+
+    def test_storage_options_of_wrong_types(self):
+        for options, message in (
+            ([1], "storage_options is of type list, it must be a dictionary whose keys are texts"),
+            ({1: 2}, "storage_options is of type dict, it must be a dictionary whose keys are texts"),
+            ({"headers": 3}, "storage_options['headers'] is of type int, it must be a dictionary whose keys are texts"),
+            (
+                {"client_kwargs": 3},
+                "storage_options['client_kwargs'] is of type int, it must be a dictionary whose keys are texts",
+            ),
+            (
+                {"client_kwargs": {"headers": {"A": 1}}},
+                "storage_options['client_kwargs']['headers']['A'] is of type int, it must be a text",
+            ),
+            (
+                {"headers": {"Authorization": "Bearer secret\n"}},
+                "storage_options['headers']['Authorization'] has a character that no header has, a line break for instance; "
+                "remove it",
+            ),
+        ):
+            with self.subTest(message):
+                found = self.refused(weir.UsageError, weir.open, "https://host/a.nvdb", storage_options=options)
+                self.assertEqual(found, message)
 
     def test_file_systems_of_fsspec(self):
         try:

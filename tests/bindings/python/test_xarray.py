@@ -353,8 +353,83 @@ class Convert(FolderTest):
         self.assertEqual(
             self.refused(TypeError, weir.convert, self.array().to_dataset(), self.folder / "b.nvdb"),
             "source is a Dataset, it must be a path, a numpy array, an xarray.DataArray or an array with DLPack or"
-            " __cuda_array_interface__",
+            " __cuda_array_interface__; give one of its arrays, source[NAME]",
         )
+
+    def test_of_axes_of_one_position_those_of_space_stay(self):
+        coords = {
+            "z": ("z", [700.0], {"units": "m"}),
+            "height": ("height", [500.0], {"units": "m"}),
+            "time": ("time", numpy.array(["2020-01-01"], "datetime64[ns]")),
+        }
+        values = ramp(14, 9, 1)
+        for dims, z in (
+            (("z", "time", "y", "x"), "z"),
+            (("time", "z", "y", "x"), "z"),
+            (("height", "time", "lat", "lon"), "height"),
+            (("height", "member", "lat", "lon"), "height"),
+            (("time", "member", "height", "lat", "lon"), "height"),
+        ):
+            with self.subTest(dims):
+                array = xarray.DataArray(
+                    values.reshape((1,) * (len(dims) - 2) + (9, 14)),
+                    dims=dims,
+                    coords={name: coords[name] for name in dims if name in coords},
+                )
+                record = weir.convert(array, self.folder / "a.nvdb", lossless=True, overwrite=True)
+                self.assertEqual(record["source"]["axes"], [dims[-1], dims[-2], z])
+                self.assertEqual(record["grid"]["origin"], [0, 0, coords[z][1][0]])
+                self.assertEqual(record["source"].get("time", {}).get("value"), 1577836800 if "time" in dims else None)
+                with weir.open(self.folder / "a.nvdb") as grid:
+                    self.assertTrue(same(grid.to_numpy(), values))
+        series = xarray.DataArray(ramp(14, 9, 8)[:, None], dims=("time", "z", "y", "x"))
+        self.assertTrue(same(self.lossless(series, overwrite=True).to_numpy(), ramp(14, 9, 8)), "nothing else to leave out")
+
+    def test_a_time_of_another_calendar_is_kept(self):
+        try:
+            import cftime
+        except ImportError:
+            self.skipTest("python3-cftime is missing")
+        for date, seconds in (
+            (cftime.DatetimeNoLeap(2000, 1, 1), 30 * 365 * 86400),
+            (cftime.Datetime360Day(2000, 2, 30, 12), (30 * 360 + 59.5) * 86400),
+        ):
+            with self.subTest(date):
+                record = weir.convert(
+                    self.array().assign_coords(time=date), self.folder / "a.nvdb", lossless=True, overwrite=True
+                )
+                self.assertEqual(
+                    record["source"]["time"],
+                    {"value": seconds, "units": "seconds since 1970-01-01 00:00:00", "calendar": date.calendar},
+                )
+                with xarray.open_dataset(self.folder / "a.nvdb", engine="weir") as dataset:
+                    self.assertEqual(dataset.time.item(), date)
+
+    def test_a_time_that_cannot_be_kept_is_said(self):
+        for time, shown in ((numpy.datetime64("NaT", "ns"), "'NaT'"), ("noon", "'noon'")):
+            with self.subTest(shown), self.assertLogs("weir") as logs:
+                array = self.array().assign_coords(time=time)
+                record = weir.convert(array, self.folder / "a.nvdb", lossless=True, overwrite=True)
+                self.assertNotIn("time", record["source"])
+                self.assertIn(
+                    f"WARNING:weir:qc: time is {shown}, no date of a known calendar and no finite number; it is left out",
+                    logs.output,
+                )
+
+    def test_attributes_that_are_arrays(self):
+        record = weir.convert(self.array(attrs={"units": numpy.array(["K"])}), self.folder / "a.nvdb", lossless=True)
+        self.assertEqual(record["source"]["units"], "K")
+        self.assertEqual(
+            self.refused(weir.UsageError, weir.convert, self.array(attrs={"units": numpy.arange(2)}), self.folder / "b.nvdb"),
+            "source has units that are an array of int64 with the shape (2,); set source.attrs['units'] to a text",
+        )
+        array = self.array().assign_coords(lon=("lon", numpy.arange(4), {"units": numpy.arange(2)}))
+        self.assertEqual(
+            self.refused(weir.UsageError, weir.convert, array, self.folder / "b.nvdb"),
+            "source['lon'] has units that are an array of int64 with the shape (2,); set source['lon'].attrs['units'] to a"
+            " text",
+        )
+        self.assertEqual(self.names(), ["a.nvdb", "a.nvdb.json"])
 
     def test_the_accessor(self):
         record = self.array().weir.convert(self.folder / "a.nvdb", lossless=True)
@@ -388,6 +463,15 @@ class Engine(FolderTest):
             self.assertEqual(dict(dataset.sizes), {"z": 8, "y": 8, "x": 8})
         with self.assertRaises(FileNotFoundError):
             xarray.open_dataset(self.folder / "no.nvdb", engine="weir")
+
+    def test_it_knows_files_and_urls_by_their_names(self):
+        from weir.xarray_backend import WeirBackendEntrypoint
+
+        engine = WeirBackendEntrypoint()
+        for name in ("a.nvdb", self.folder / "a.NVDB", "a?.nvdb", "https://host/a.nvdb?key=1", "s3://bucket/a.nvdb#1"):
+            self.assertTrue(engine.guess_can_open(name), name)
+        for name in ("a.nc", "https://host/a.nc?b.nvdb", "a.nvdb?key=1", b"a.nvdb", 3):
+            self.assertFalse(engine.guess_can_open(name), name)
 
     def test_it_is_pickled_as_its_path(self):
         values = ramp(12, 20, 28)

@@ -194,6 +194,24 @@ TEST(ErrorTargets, TakeOneFileOfAVolumeOfManyLeaves) {
   }
 }
 
+TEST(ErrorTargets, PsnrOfAFileWithoutBlocks_TakesTheSmallestFile) {
+  MemoryVolume volume({{0, 0, 0}, {40, 40, 40}}, [](const Index3& i) {
+    return i == Index3{17, 20, 9} ? 1e30F : static_cast<float>(1 + (i.x * 7 + i.y * 13 + i.z * 29) % 31) * 1e-30F;
+  });
+  for (const Encoding encoding : {Encoding::automatic, Encoding::float32, Encoding::packed}) {
+    ConversionOptions options;
+    options.encoding = encoding;
+    const std::uint64_t smallest = test::minimum_size(volume, options);
+    options.budget.kind = Budget::Kind::psnr;
+    for (const double psnr : {20.0, 45.0}) {  // one voxel of 64,000 is lost: 48 dB
+      options.budget.target = psnr;
+      EXPECT_EQ(test::convert(volume, options).file.size(), smallest) << encoding_name(encoding) << ' ' << psnr;
+    }
+    options.budget.target = 49;
+    EXPECT_GT(test::convert(volume, options).file.size(), smallest) << encoding_name(encoding);
+  }
+}
+
 TEST(ErrorTargets, HoldForADecoderWithFusedMultiplyAdd) {
   // fma(code, quantum, minimum) may differ by an ulp: the bound leaves room for it.
   const auto source = open_synthetic("turbulence", {{64, 64, 64}, 9});

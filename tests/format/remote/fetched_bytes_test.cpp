@@ -62,19 +62,21 @@ TEST(FetchedBytes, AFailedReadKeepsWhatWasThere) {
   EXPECT_FALSE(file.has({50, 100}));
 }
 
-TEST(FetchedBytes, ForgetsFromAPageOn) {
+TEST(FetchedBytes, ForgetsFromAByteOn) {
   RemoteFile remote;
   FetchedBytes file(1 << 20, remote.reader());
   file.fetch({{0, 10000}, {300000, 5000}});
   file.forget_from(4097);
-  EXPECT_TRUE(file.has({0, 8192}));
-  EXPECT_FALSE(file.has({0, 8193}));
-  EXPECT_EQ(file.held(), 8192U);
+  EXPECT_TRUE(file.has({0, 4097}) && holds_file(file, {0, 4097}));
+  EXPECT_FALSE(file.has({0, 4098}));
+  EXPECT_EQ(file.held(), 4097U);
+  EXPECT_EQ(file.bytes()[4097], std::byte{0});
+  EXPECT_EQ(file.bytes()[9999], std::byte{0});
   EXPECT_EQ(file.bytes()[300001], std::byte{0});
   file.fetch({{300000, 5000}});
   EXPECT_TRUE(holds_file(file, {300000, 5000}));
   file.forget_from(1 << 20);
-  EXPECT_EQ(file.held(), 13192U);
+  EXPECT_EQ(file.held(), 9097U);
 }
 
 TEST(FetchedBytes, AgreesWithASetOfBytesWhateverIsAskedFor) {
