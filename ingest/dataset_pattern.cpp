@@ -7,6 +7,7 @@
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "ingest/source/left_out.h"
 
 namespace weir {
 namespace {
@@ -44,6 +45,50 @@ Message left_out(const DatasetInfo& dataset, const SourceOptions& options) {
                  positions_text(dataset.index_axes.size()));
 }
 
+// "/a: WHY; /b: WHY; and 3 more".
+Message several_text(std::span<const Message> datasets) {
+  Message text;
+  for (std::size_t i = 0; i < std::min(datasets.size(), kMostLeftOut); ++i) {
+    text += compose(i == 0 ? "" : "; ", datasets[i]);
+  }
+  if (datasets.size() > kMostLeftOut) text += cat("; and ", datasets.size() - kMostLeftOut, " more");
+  return text;
+}
+
+/// What a pattern matches: volumes, and of all else "/v: WHY".
+struct Matches {
+  std::vector<std::string> volumes;
+  std::vector<Message> others;        ///< of which other options make volumes
+  std::vector<Message> by_name_only;  ///< said only where there is nothing else
+  std::vector<Message> unread;        ///< volumes but for an obstacle
+  std::vector<Message> no_volumes;    ///< of other shapes, with an obstacle; said only where there is nothing else
+
+  void add(const DatasetInfo& dataset, const SourceOptions& options) {
+    if (!dataset.obstacle.empty()) {
+      (is_unread_volume(dataset) ? unread : no_volumes).push_back(compose(dataset.name, ": ", dataset.obstacle));
+    } else if (dataset.by_name_only) {
+      by_name_only.push_back(compose(dataset.name, ": it is read only where ", option("dataset"), " names it"));
+    } else if (const Message why = left_out(dataset, options); !why.empty()) {
+      others.push_back(compose(dataset.name, ": ", why));
+    } else {
+      volumes.push_back(dataset.name);
+    }
+  }
+
+  /// Why there is no volume.
+  Error none(const std::string& path, const std::string& pattern) const {
+    const Message begin = compose(path, ": ", option("dataset", pattern), " stands for no volume");
+    std::vector<Message> said = others;
+    said.insert(said.end(), by_name_only.begin(), by_name_only.end());
+    const bool by_options = !said.empty();
+    said.insert(said.end(), unread.begin(), unread.end());
+    if (by_options) return usage_error(compose(begin, " with these options: ", several_text(said)));
+    said.insert(said.end(), no_volumes.begin(), no_volumes.end());
+    if (!said.empty()) return {ErrorKind::input, compose(begin, ": ", several_text(said))};
+    return {ErrorKind::input, cat(path, ": no dataset's name matches ", pattern, "; weir inspect lists what there is")};
+  }
+};
+
 }  // namespace
 
 bool names_dataset(const std::string& pattern, const std::string& name) {
@@ -54,39 +99,18 @@ bool names_dataset(const std::string& pattern, const std::string& name) {
 std::vector<std::string> matching_datasets(const std::string& path, std::span<const DatasetInfo> datasets,
                                            const std::string& pattern, const SourceOptions& options,
                                            const Notice& notice) {
-  std::vector<std::string> found;
-  std::vector<Message> others;        // "/v: its voxels have no components; ..."
-  std::vector<Message> by_name_only;  // said only where there is nothing else
+  Matches matches;
   for (const DatasetInfo& dataset : datasets) {
     if (dataset.name == pattern || dataset.name == '/' + pattern) return {dataset.name};
-    if (!dataset.obstacle.empty() || !names_dataset(pattern, dataset.name)) continue;
-    if (dataset.by_name_only) {
-      by_name_only.push_back(compose(dataset.name, ": it is read only where ", option("dataset"), " names it"));
-      continue;
-    }
-    const Message why = left_out(dataset, options);
-    if (why.empty()) {
-      found.push_back(dataset.name);
-    } else {
-      others.push_back(compose(dataset.name, ": ", why));
+    if (names_dataset(pattern, dataset.name)) matches.add(dataset, options);
+  }
+  if (matches.volumes.empty()) throw matches.none(path, pattern);
+  for (const std::vector<Message>& of_kind : {matches.others, matches.unread}) {
+    for (const Message& other : of_kind) {
+      if (notice) notice(compose(path, ": left out: ", other));
     }
   }
-  if (found.empty()) others.insert(others.end(), by_name_only.begin(), by_name_only.end());
-  if (found.empty() && others.empty()) {
-    throw Error(ErrorKind::input,
-                cat(path, ": no dataset's name matches ", pattern, "; weir inspect lists what there is"));
-  }
-  if (found.empty()) {
-    Message text = compose(path, ": ", option("dataset", pattern), " stands for no volume with these options: ");
-    for (std::size_t i = 0; i < std::min(others.size(), kMostLeftOut); ++i)
-      text += compose(i == 0 ? "" : "; ", others[i]);
-    if (others.size() > kMostLeftOut) text += cat("; and ", others.size() - kMostLeftOut, " more");
-    throw usage_error(text);
-  }
-  for (const Message& other : others) {
-    if (notice) notice(compose(path, ": left out: ", other));
-  }
-  return found;
+  return matches.volumes;
 }
 
 }  // namespace weir

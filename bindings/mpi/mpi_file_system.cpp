@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <functional>
 #include <string>
 #include <utility>
@@ -18,11 +19,11 @@ constexpr std::size_t kMostFileBytes = std::size_t{1} << 30U;  // of a call: cou
 
 class MpiFile final : public File {
  public:
-  // `own` is the leading rank's, which made the file.
-  MpiFile(MpiTeam& team, std::string path, std::unique_ptr<File> own)
+  // `own` is the leading rank's, which made or opened the file; `mode` is MPI_MODE_RDWR or MPI_MODE_RDONLY.
+  MpiFile(MpiTeam& team, std::string path, std::unique_ptr<File> own, int mode)
       : team_(team), path_(std::move(path)), own_(std::move(own)) {
     const std::lock_guard lock(team_.calls());
-    check_mpi(MPI_File_open(MPI_COMM_SELF, path_.c_str(), MPI_MODE_RDWR, MPI_INFO_NULL, &file_), "opening " + path_);
+    check_mpi(MPI_File_open(MPI_COMM_SELF, path_.c_str(), mode, MPI_INFO_NULL, &file_), "opening " + path_);
   }
   ~MpiFile() override {
     const std::lock_guard lock(team_.calls());
@@ -113,6 +114,12 @@ class MpiFileSystem final : public FileSystem {
     team_.lead([&] { own = files_.open(path); });
     return shared(path, std::move(own));
   }
+  std::unique_ptr<File> open_to_read(const std::string& path) override {
+    if (!exists(path)) throw io_error(path, "open for reading", ENOENT);  // on all ranks, so that all know that
+    std::unique_ptr<File> own;
+    team_.lead([&] { own = files_.open_to_read(path); });
+    return shared(path, std::move(own), MPI_MODE_RDONLY);
+  }
   // With a name until all have it open: one without cannot be opened by others.
   std::unique_ptr<File> create_unnamed(const std::string& directory) override {
     const std::string name = cat("/.weir.", ::getpid(), '.', unnamed_++);
@@ -167,9 +174,9 @@ class MpiFileSystem final : public FileSystem {
   }
 
   // `own` is the leading rank's.
-  std::unique_ptr<File> shared(const std::string& path, std::unique_ptr<File> own) {
+  std::unique_ptr<File> shared(const std::string& path, std::unique_ptr<File> own, int mode = MPI_MODE_RDWR) {
     std::unique_ptr<File> file;
-    team_.run([&] { file = std::make_unique<MpiFile>(team_, path, std::move(own)); });
+    team_.run([&] { file = std::make_unique<MpiFile>(team_, path, std::move(own), mode); });
     return file;
   }
 

@@ -42,7 +42,6 @@ std::string_view completion_name(Completion completion);  ///< "auto", "close", 
 std::string_view watch_method_name(WatchMethod method);   ///< "auto", "inotify", "poll"
 std::string_view priority_name(Priority priority);        ///< "newest", "oldest"
 std::string_view after_done_name(AfterDone source);       ///< "keep", "delete-after-verify"
-std::string_view follow_name(Follow follow);              ///< "inside", "anywhere"
 std::string_view io_class_name(IoClass io_class);         ///< "none", "best-effort", "idle"
 
 }  // namespace weir

@@ -30,10 +30,8 @@ std::optional<std::string_view> bearer_token(std::string_view authorization) {
   return authorization.substr(kScheme.size());
 }
 
-HttpResponse refuse_token(bool given) {
-  HttpResponse response = given ? error_response(401,
-                                                 "the token is not the service's; take the one that its "
-                                                 "configuration names (token, token_file)")
+HttpResponse refuse_token(const AccessRules& rules, bool given) {
+  HttpResponse response = given ? error_response(401, rules.wrong_token)
                                 : error_response(401, "this needs the service's token: Authorization: Bearer TOKEN");
   response.headers.emplace_back("WWW-Authenticate", given ? "Bearer error=\"invalid_token\"" : "Bearer");
   return response;
@@ -57,7 +55,7 @@ std::optional<HttpResponse> refuse(const AccessRules& rules, const HttpRequest& 
   }
   if (!open && !rules.token.empty()) {
     const auto token = bearer_token(request.authorization);
-    if (!token || !same_secret(rules.token, *token)) return refuse_token(token.has_value());
+    if (!token || !same_secret(rules.token, *token)) return refuse_token(rules, token.has_value());
   }
   if (request.method == "POST" && !rules.control_at.empty()) {
     return error_response(403, cat("this address only shows; ask at ", rules.control_at, " (--address, --config)"));

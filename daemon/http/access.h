@@ -14,6 +14,9 @@ struct AccessRules {
   std::string token;         ///< bearer token; empty: none is needed
   bool loopback = true;      ///< only this machine can connect, so a Host header that names another one is a trick
   std::string control_at{};  ///< the address at which alone a POST is answered; empty: here
+  /// What a request with another token is told.
+  std::string wrong_token =
+      "the token is not the service's; take the one that its configuration names (token, token_file)";
 };
 
 /// Whether both are the same; takes as long for any `given` of one length, so that a token cannot be guessed byte by

@@ -11,12 +11,12 @@
 
 #include "daemon/config/watch_conflicts.h"
 #include "daemon/jobs/worker_reason.h"
+#include "daemon/jobs/wrong_output.h"
 #include "daemon/store/file_identity.h"
 #include "daemon/watch/source_identity.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "format/io/file_system.h"
-#include "format/sidecar/sidecar.h"
 #include "ingest/files/file_state.h"
 
 namespace weir {
@@ -178,7 +178,7 @@ void ConversionJob::heard(std::string_view line) {
     const int error = told.value("errno", 0);
     const std::string path = told.value("path", task_.output);
     if (error == ENOSPC || error == EDQUOT) report_.full_directory = directory_at(path);
-    output_busy_ = error == EWOULDBLOCK && is_written(path);
+    output_busy_ = error == EWOULDBLOCK && is_in_output_or_work_dir(path);
     return;
   }
   if (told.contains("planned")) {
@@ -192,7 +192,7 @@ void ConversionJob::heard(std::string_view line) {
 }
 
 // A source whose server does not answer fails with the same number.
-bool ConversionJob::is_written(const std::string& path) const {
+bool ConversionJob::is_in_output_or_work_dir(const std::string& path) const {
   return is_within(path, fs::path(task_.output).parent_path().string()) ||
          (!task_.work_dir.empty() && is_within(path, task_.work_dir));
 }
@@ -223,6 +223,7 @@ void ConversionJob::verify_next() {
     all_verified();
     return;
   }
+  verified_file_ = identify(outputs_[next_].job.path);
   run("verify", {outputs_[next_].job.path}, &ConversionJob::verified);
 }
 
@@ -233,17 +234,15 @@ void ConversionJob::verified(const WorkerEnd& end) {
     return;
   }
   const std::string reason = worker_reason(step_, end);
-  const std::string& output = outputs_[next_].job.path;
+  // Exit code 3 alone says that the content is wrong: a disk or a file server that fails says nothing of it.
   if (end.exit_code != kInput || stopping_) {
     fail(end.exit_code, reason);
     return;
   }
   // Not what was written: nobody may take it for a result, and the next attempt makes it anew. The fault is
   // the device's, not the source's.
-  std::error_code ignored;
-  fs::remove(output, ignored);
-  fs::remove(sidecar_path(output), ignored);
-  fail(kIo, cat("verify: ", reason, "; removed"));
+  const std::unique_ptr<FileSystem> files = make_posix_file_system();
+  fail(kIo, cat("verify: ", reason, "; ", remove_wrong_output(*files, outputs_[next_].job.path, verified_file_)));
 }
 
 // The result is there: a picture of it, which takes longer than a small conversion, keeps nobody waiting for it.

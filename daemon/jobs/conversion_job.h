@@ -85,7 +85,7 @@ class ConversionJob {
   void end(TaskEnd how);
   void heard(std::string_view line);
   double done_of_conversion(std::string_view pass, double part) const;
-  bool is_written(const std::string& path) const;
+  bool is_in_output_or_work_dir(const std::string& path) const;
 
   boost::asio::io_context& io_;
   ConversionTask task_;
@@ -104,7 +104,8 @@ class ConversionJob {
   bool reported_ = false;  ///< that it is done
   bool repeated_ = false;  ///< the rendering of the present output
   std::vector<Output> outputs_;
-  std::size_t next_ = 0;  ///< of outputs_, in the present step
+  std::size_t next_ = 0;                       ///< of outputs_, in the present step
+  std::optional<FileIdentity> verified_file_;  ///< of that output, before it was verified
   TaskReport report_;
   std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  ///< for what was posted and comes too late
 };

@@ -60,7 +60,7 @@ void JobRunner::resume_thumbnails() {
   });
 }
 
-bool JobRunner::render_left() {
+bool JobRunner::start_next_rendering() {
   while (!unrendered_.empty()) {
     const std::int64_t id = unrendered_.back();
     unrendered_.pop_back();
@@ -71,7 +71,7 @@ bool JobRunner::render_left() {
     if (watch != nullptr) task = make_rendering_task(program_, config_.service, *watch, *job);
     if (task) {
       run(*job, *std::move(task));
-      running_.at(id).done = true;
+      running_.at(id).only_rendering = true;
       return true;
     }
     writes_.add([this, id] { store_.finish_rendering(id, {}); });
@@ -95,18 +95,18 @@ void JobRunner::wake() {
   try {
     while (start_next()) {
     }
-    writes_.say_written();
+    writes_.clear_fault();
   } catch (const CorruptDatabase&) {
     throw;
   } catch (const Error& error) {  // the state file: nothing was changed
-    writes_.say_fault(error);
+    writes_.log_fault(error);
   }
   arm_timer();
 }
 
 bool JobRunner::start_next() {
   if (stopping_ || !writes_.empty() || running_.size() >= static_cast<std::size_t>(config_.service.jobs)) return false;
-  if (!paused() && render_left()) return true;
+  if (!paused() && start_next_rendering()) return true;
   std::vector<WatchLoad> loads;
   std::map<std::string, Job> first;
   for (const WatchConfig& watch : config_.watches) {
@@ -169,14 +169,14 @@ void JobRunner::run(const Job& job, ConversionTask task) {
 void JobRunner::ended(std::int64_t id, const TaskReport& report) {
   if (report.rendering) {
     RunningJob& run = running_.at(id);
-    run.done = true;
+    run.only_rendering = true;
     done(run, report);
     return;
   }
   const RunningJob run = std::move(running_.extract(id).mapped());
   for (const std::string& notice : report.notices) log_.warn("notice", {{"job", id}, {"reason", notice}});
   scheduler_.finished(report.result.bytes_read, run.begin);
-  if (run.done) {
+  if (run.only_rendering) {
     if (report.end == TaskEnd::done || !stopping_)
       writes_.add([this, id, outputs = report.result.outputs] { store_.finish_rendering(id, outputs); });
   } else {
@@ -345,7 +345,7 @@ void JobRunner::abandon(std::int64_t id) {
 
 bool JobRunner::end_rendering(const Job& job) {
   const auto at = running_.find(job.id);
-  if (at == running_.end() || !at->second.done) return false;
+  if (at == running_.end() || !at->second.only_rendering) return false;
   log_.info("no-thumbnail", {{"job", job.id}, {"source", job.source}, {"reason", "cancelled"}});
   abandon(job.id);
   return true;

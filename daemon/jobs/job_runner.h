@@ -37,7 +37,7 @@ struct RunningJob {
   std::chrono::steady_clock::time_point begin;
   std::unique_ptr<ConversionJob> work;
   bool stall_said = false;
-  bool done = false;  ///< as its thumbnails are rendered
+  bool only_rendering = false;  ///< the job is done, its thumbnails are to come
 };
 
 class JobRunner {
@@ -86,7 +86,7 @@ class JobRunner {
 
  private:
   bool start_next();
-  bool render_left();
+  bool start_next_rendering();
   void start(const WatchConfig& watch, const Job& job);
   void run(const Job& job, ConversionTask task);
   void ended(std::int64_t id, const TaskReport& report);

@@ -80,7 +80,7 @@ bool names_living_process(const fs::path& picture) {
 }
 
 // The file's lock is its writer's.
-bool is_written(const std::string& path) {
+bool is_locked_by_writer(const std::string& path) {
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
   return file && ::flock(file.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
 }
@@ -95,9 +95,12 @@ void remove_spills(const fs::path& work) {
   }
 }
 
-fs::path canonical(const fs::path& path) {
-  std::error_code ignored;
-  return fs::weakly_canonical(path, ignored);
+// Throws Error(io) where that cannot be known.
+bool is_missing(const fs::path& path) {
+  std::error_code error;
+  const bool exists = fs::exists(path, error);
+  if (error) throw io_error(path.string(), "look at it", error.value());
+  return !exists;
 }
 
 std::string entry_of(const Checkpoint& checkpoint, const char* name) {
@@ -153,7 +156,11 @@ class Cleaner {
           remove(path);
         }
       }
-      was_there ? remove(lock_path) : files->remove(lock_path);
+      if (was_there) {
+        remove(lock_path);
+      } else {
+        files->remove(lock_path);
+      }
     } catch (const Error& error) {
       leave(paths.front(), error.what());
     }
@@ -171,7 +178,7 @@ class Cleaner {
         return files->open(lock_path);
       } catch (const Error&) {
         // Its writer may have ended since: a free file that cannot be opened twice is another matter.
-        const bool is_free = !is_written(lock_path);
+        const bool is_free = !is_locked_by_writer(lock_path);
         if (is_free && was_free) throw;
         was_free = is_free;
         if (is_free) continue;
@@ -210,17 +217,20 @@ class Cleaner {
 
   // The sidecar of the volume that was to be replaced: see the numbered steps in format/output/output_files.cpp. It
   // comes back where its volume is still there, also in place of the one that the killed commit put beside it.
+  // Where one of them cannot be read, all stay as they are.
   void restore(const fs::path& path) {
     const fs::path record = fs::path(path).replace_extension();  // without .previous
     const std::string volume = fs::path(record).replace_extension().string();
-    std::error_code error;
-    if (!fs::exists(record, error) || belongs_back(*files, path.string(), record.string(), volume)) {
-      fs::rename(path, record, error);
-      if (error) leave(path, error.message());
-    } else if (!fs::exists(volume, error) || describes(*files, record.string(), volume)) {
-      remove(path);
-    } else {
-      leave(path, cat("may be the sidecar of ", volume, ", which cannot be told; compare it by weir verify"));
+    try {
+      if (is_missing(record) || belongs_back(*files, path.string(), record.string(), volume)) {
+        files->rename(path.string(), record.string());
+      } else if (is_missing(volume) || describes(*files, record.string(), volume)) {
+        remove(path);
+      } else {
+        leave(path, cat("may be the sidecar of ", volume, ", which cannot be told; compare it by weir verify"));
+      }
+    } catch (const Error& error) {
+      leave(path, error.what());
     }
   }
 
@@ -249,7 +259,7 @@ void list(const std::string& directory, std::map<fs::path, std::vector<fs::path>
 CleaningReport clean_outputs(const std::string& directory, const std::string& sources, bool recursive,
                              std::chrono::milliseconds patience) {
   Cleaner cleaner(patience);
-  const fs::path own = canonical(sources);
+  const fs::path own = real_path(sources);
   const auto worthless = [&](const fs::path& work, const fs::path& output) {
     const std::optional<Checkpoint> interrupted = read_journal(*cleaner.files, output);
     if (!interrupted) return true;
@@ -262,8 +272,11 @@ CleaningReport clean_outputs(const std::string& directory, const std::string& so
   };
   // Listed first: what is removed while a directory is read may be listed or not.
   std::map<fs::path, std::vector<fs::path>> by_output;
-  recursive ? list<fs::recursive_directory_iterator>(directory, by_output)
-            : list<fs::directory_iterator>(directory, by_output);
+  if (recursive) {
+    list<fs::recursive_directory_iterator>(directory, by_output);
+  } else {
+    list<fs::directory_iterator>(directory, by_output);
+  }
   for (auto& [output, paths] : by_output) {
     std::sort(paths.begin(), paths.end());
     cleaner.clean(output, paths, worthless);
@@ -273,7 +286,7 @@ CleaningReport clean_outputs(const std::string& directory, const std::string& so
 
 CleaningReport discard_interrupted(const std::string& directory, const std::string& source) {
   Cleaner cleaner(std::chrono::milliseconds(0));
-  const std::string place = canonical(source).string();
+  const std::string place = real_path(source).string();
   const auto of_source = [&](const fs::path& work) {
     const std::optional<Checkpoint> interrupted = glance_at_journal(work);
     return interrupted && entry_of(*interrupted, "source") == place;

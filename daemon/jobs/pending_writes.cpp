@@ -22,11 +22,11 @@ void PendingWrites::write() {
   } catch (const CorruptDatabase&) {
     throw;
   } catch (const Error& error) {
-    say_fault(error);
+    log_fault(error);
   }
 }
 
-void PendingWrites::say_fault(const Error& error) {
+void PendingWrites::log_fault(const Error& error) {
   if (fault_.empty()) log_.error("state-file-fault", {{"reason", error.what()}});
   fault_ = error.what();
 }

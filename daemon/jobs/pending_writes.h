@@ -24,9 +24,9 @@ class PendingWrites {
   /// Why the state file cannot be written, one line; empty: it can.
   const std::string& fault() const { return fault_; }
   /// A step that can be done later failed: logged once.
-  void say_fault(const Error& error);
-  /// The state file was written, where nothing is kept.
-  void say_written() {
+  void log_fault(const Error& error);
+  /// The state file was written: there is no fault, where nothing is kept.
+  void clear_fault() {
     if (empty()) fault_.clear();
   }
 

@@ -132,19 +132,23 @@ class WorkerProcess::Running : public std::enable_shared_from_this<Running> {
     do {
       told = ::read(failure.read.get(), &reason, sizeof reason);
     } while (told < 0 && errno == EINTR);
-    const int exit = told == 0 ? static_cast<int>(::syscall(SYS_pidfd_open, pid_, 0)) : -1;
-    if (exit < 0) {
+    Descriptor exit(told == 0 ? static_cast<int>(::syscall(SYS_pidfd_open, pid_, 0)) : -1);
+    if (!exit) {
       if (told == 0) reason = errno;
       kill_and_reap();
       pid_ = -1;
       throw io_error(program, "start it", reason);
     }
-    exit_.assign(exit);
-    log_pipe_.assign(::dup(log.read.get()));
-    announce_pipe_.assign(::dup(announce.read.get()));
-    for (auto* pipe : {&log_pipe_, &announce_pipe_}) {
-      ::fcntl(pipe->native_handle(), F_SETFD, FD_CLOEXEC);
-      pipe->non_blocking(true);
+    error_code error = hand_over(exit, exit_);
+    for (auto [pipe, end] : {std::pair(&log_pipe_, &log.read), std::pair(&announce_pipe_, &announce.read)}) {
+      if (!error) error = hand_over(*end, *pipe);
+      if (!error) pipe->non_blocking(true, error);
+    }
+    if (error) {
+      abandon();
+      if (pid_ > 0 && exit_.is_open()) await_end();  // reaped when it ends
+      throw Error(ErrorKind::io, cat(program, ": cannot watch its process: ", error.message(),
+                                     "; raise fs.epoll.max_user_watches, or free memory"));
     }
     watch(log_pipe_, &Running::take_log);
     watch(announce_pipe_, &Running::take_announcement);
@@ -171,6 +175,14 @@ class WorkerProcess::Running : public std::enable_shared_from_this<Running> {
 
  private:
   using Take = void (Running::*)(std::string_view);
+
+  // `from` stays its owner where the system cannot watch it.
+  static error_code hand_over(Descriptor& from, asio::posix::stream_descriptor& to) {
+    error_code error;
+    to.assign(from.get(), error);
+    if (!error) from.release();
+    return error;
+  }
 
   void watch(asio::posix::stream_descriptor& pipe, Take take) {
     pipe.async_wait(asio::posix::stream_descriptor::wait_read,

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <system_error>
 #include <utility>
 
 #include "format/base/error.h"
@@ -21,20 +22,29 @@ constexpr int MADV_POPULATE_READ = 22;  // Linux 5.14; unknown to older C librar
 
 constexpr std::uint64_t kSampledPages = 16;
 
-[[noreturn]] void fail_input(const std::string& path, const std::string& action, int errno_value) {
-  const Error error = io_error(path, action, errno_value);
-  throw Error(ErrorKind::input, error.message(), error.system_failure());
+// What is wrong with the name is wrong with the input, as InputFile has it; rights, devices, servers, descriptors and
+// memory may come back, and say nothing of what the file holds.
+Error refused_open(const std::string& path, int errno_value) {
+  const bool name = errno_value == ENOENT || errno_value == ENOTDIR || errno_value == EISDIR || errno_value == ELOOP ||
+                    errno_value == ENAMETOOLONG || errno_value == EINVAL;
+  const char* remedy = errno_value == EMFILE || errno_value == ENFILE ? "; raise the limit of open files (ulimit -n)"
+                       : errno_value == EACCES || errno_value == EPERM
+                           ? "; give this user the right to read it and to enter its directories"
+                           : "";
+  return Error(name ? ErrorKind::input : ErrorKind::io,
+               cat(path, ": cannot open: ", std::generic_category().message(errno_value), remedy),
+               SystemFailure{errno_value, path});
 }
 
 Descriptor open_to_read(const std::string& path) {
   Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));  // a pipe must not block
-  if (!file) fail_input(path, "open", errno);
+  if (!file) throw refused_open(path, errno);
   return file;
 }
 
 struct stat status_of(const Descriptor& file, const std::string& path) {
   struct stat status {};
-  if (::fstat(file.get(), &status) != 0) fail_input(path, "stat", errno);
+  if (::fstat(file.get(), &status) != 0) throw io_error(path, "look at it", errno);
   return status;
 }
 
@@ -63,7 +73,7 @@ FileMapping::FileMapping(Descriptor file, const std::string& path, const std::st
   changed_ = status.st_mtim;
   const auto bytes = static_cast<std::size_t>(status.st_size);
   void* address = map(file_, bytes);
-  if (address == MAP_FAILED) fail_input(path, "map", errno);
+  if (address == MAP_FAILED) throw io_error(path, "map", errno);
   bytes_ = {static_cast<const std::byte*>(address), bytes};
 }
 
@@ -108,14 +118,14 @@ void FileMapping::populate(std::uint64_t offset, std::uint64_t bytes) const {
   if (failure == 0 || failure == EINVAL || failure == ENOSYS) return;  // the latter two: an older system
   check_unchanged();
   // EFAULT is what the kernel says for pages that it could not read.
-  fail_input(path_, cat("read bytes ", offset, " to ", offset + bytes), failure == EFAULT ? EIO : failure);
+  throw io_error(path_, cat("read bytes ", offset, " to ", offset + bytes), failure == EFAULT ? EIO : failure);
 }
 
 void FileMapping::read(std::uint64_t offset, std::span<std::byte> into) const {
   while (!into.empty()) {
     const ssize_t got = ::pread(file_.get(), into.data(), into.size(), static_cast<off_t>(offset));
     if (got < 0 && errno == EINTR) continue;
-    if (got < 0) fail_input(path_, cat("read at byte ", offset), errno);
+    if (got < 0) throw io_error(path_, cat("read at byte ", offset), errno);
     if (got == 0) {
       check_unchanged();
       throw Error(ErrorKind::input, cat(path_, ": ends at byte ", offset, ", before what was asked for"));

@@ -16,6 +16,7 @@ namespace weir {
 class FileMapping {
  public:
   /// Throws Error(input) for a missing, empty or no regular file; `suffix`, ".nvdb", is what should have been given.
+  /// Error(io) where it cannot be opened or mapped although it may be a good one: no right, no memory, a file server.
   FileMapping(const std::string& path, const std::string& suffix);
   /// The same of `file`, open for reading, whatever has `path` now, which messages name.
   FileMapping(Descriptor file, const std::string& path, const std::string& suffix);
@@ -38,9 +39,10 @@ class FileMapping {
   /// Starts to read what is not in the page cache; returns before it is there.
   void prefetch(std::uint64_t offset, std::uint64_t bytes) const;
   /// Reads and maps the pages of [offset, offset + bytes) at once, where the system can (Linux 5.14), else does
-  /// nothing. Throws Error(input) where that fails: the file was truncated, or the disk cannot be read.
+  /// nothing. Throws Error(input) where the file was truncated, Error(io) where the disk cannot be read.
   void populate(std::uint64_t offset, std::uint64_t bytes) const;
-  /// The file's bytes from `offset` on, by pread. Throws Error(input) where it ends before or cannot be read.
+  /// The file's bytes from `offset` on, by pread. Throws Error(input) where it ends before, Error(io) where it cannot
+  /// be read.
   void read(std::uint64_t offset, std::span<std::byte> into) const;
   /// Throws Error(input) where the file's size or time of change is not that at opening. A change through another
   /// mapping may be noticed late.

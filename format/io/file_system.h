@@ -50,6 +50,9 @@ class FileSystem {
   virtual std::unique_ptr<File> create(const std::string& path) = 0;
   /// The same, but what the file holds stays, and it may have further names.
   virtual std::unique_ptr<File> open(const std::string& path) = 0;
+  /// An existing file to read, without a lock and whoever else has it open; symbolic links are followed. A missing one
+  /// is Error(io) of ENOENT. By default open(), of what exists.
+  virtual std::unique_ptr<File> open_to_read(const std::string& path);
   /// A file in `directory` without a name: nothing of it outlives the process.
   virtual std::unique_ptr<File> create_unnamed(const std::string& directory) = 0;
   virtual void rename(const std::string& from, const std::string& to) = 0;

@@ -38,6 +38,7 @@ class LimitedFileSystem final : public FileSystem {
 
   std::unique_ptr<File> create(const std::string& path) override { return limit(files_.create(path)); }
   std::unique_ptr<File> open(const std::string& path) override { return limit(files_.open(path)); }
+  std::unique_ptr<File> open_to_read(const std::string& path) override { return limit(files_.open_to_read(path)); }
   std::unique_ptr<File> create_unnamed(const std::string& directory) override {
     return limit(files_.create_unnamed(directory));
   }

@@ -140,6 +140,11 @@ std::unique_ptr<File> MemoryFileSystem::open(const std::string& path) {
   return std::make_unique<PagesFile>(pages, path);
 }
 
+std::unique_ptr<File> MemoryFileSystem::open_to_read(const std::string& path) {
+  const std::scoped_lock lock(mutex_);
+  return std::make_unique<PagesFile>(find(path), path);
+}
+
 std::unique_ptr<File> MemoryFileSystem::create_unnamed(const std::string& directory) {
   return std::make_unique<PagesFile>(std::make_shared<Pages>(), directory + " (temporary file in memory)");
 }

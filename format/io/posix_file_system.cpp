@@ -126,7 +126,7 @@ class PosixFileSystem final : public FileSystem {
                     cat(path, ": is being written by another process; wait for it or choose another output"),
                     SystemFailure{EWOULDBLOCK, path});
       } else {
-        tell_that_locks_fail(path, errno);
+        warn_once_unlockable(path, errno);
       }
       // Between open and lock the writer before us may have renamed this very file to its result:
       // writing to it then would destroy that.
@@ -137,6 +137,16 @@ class PosixFileSystem final : public FileSystem {
       if (::lstat(path.c_str(), &named) != 0 || mine.st_ino != named.st_ino || mine.st_dev != named.st_dev) continue;
       return file;
     }
+  }
+
+  std::unique_ptr<File> open_to_read(const std::string& path) override {
+    const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    if (descriptor < 0) throw io_error(path, "open for reading", errno);
+    auto file = std::make_unique<PosixFile>(descriptor, path, false);
+    struct stat status {};
+    if (::fstat(descriptor, &status) != 0) throw io_error(path, "look at", errno);
+    if (!S_ISREG(status.st_mode)) refuse_foreign(path, "is no regular file");
+    return file;
   }
 
   std::unique_ptr<File> create_unnamed(const std::string& directory) override {
@@ -223,17 +233,22 @@ class PosixFileSystem final : public FileSystem {
     return (options_.lock != nullptr ? options_.lock : ::flock)(descriptor, LOCK_EX | LOCK_NB);
   }
 
-  void tell_that_locks_fail(const std::string& path, int reason) {
-    if (told_.exchange(true) || !options_.notice) return;
+  void warn_once_unlockable(const std::string& path, int reason) {
+    if (warned_.exchange(true) || !options_.notice) return;
     options_.notice(cat(path, ": cannot be locked: ", std::generic_category().message(reason),
                         "; see to it that no other process writes this output"));
   }
 
   PosixFileSystemOptions options_;
-  std::atomic<bool> told_{false};
+  std::atomic<bool> warned_{false};
 };
 
 }  // namespace
+
+std::unique_ptr<File> FileSystem::open_to_read(const std::string& path) {
+  if (!exists(path)) throw io_error(path, "open for reading", ENOENT);
+  return open(path);
+}
 
 std::unique_ptr<FileSystem> make_posix_file_system(PosixFileSystemOptions options) {
   return std::make_unique<PosixFileSystem>(std::move(options));

@@ -14,7 +14,8 @@ fs::path real_path(const std::string& path) {
 }
 
 bool lies_below(const fs::path& path, const fs::path& directory) {
-  return std::mismatch(directory.begin(), directory.end(), path.begin(), path.end()).first == directory.end();
+  return !directory.empty() &&
+         std::mismatch(directory.begin(), directory.end(), path.begin(), path.end()).first == directory.end();
 }
 
 bool is_there(const std::string& path) {

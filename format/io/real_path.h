@@ -9,7 +9,8 @@ namespace weir {
 /// Symbolic links resolved, as far as the path exists; lexically normal where even that cannot be looked at.
 std::filesystem::path real_path(const std::string& path);
 
-/// Whether `path` is `directory` or lies below it, by their components: both are absolute and normal.
+/// Whether `path` is `directory` or lies below it, by their components: both are absolute and normal. False
+/// where `directory` is empty.
 bool lies_below(const std::filesystem::path& path, const std::filesystem::path& directory);
 
 /// Whether something exists at `path`, links followed; false, too, where that cannot be known, as for a name that is

@@ -13,7 +13,7 @@ namespace weir {
 
 class NvdbFile {
  public:
-  /// Maps and validates. Throws Error(input) for a missing, empty or invalid file.
+  /// Maps and validates. Throws Error(input) for a missing, empty or invalid file, Error(io) where it cannot be read.
   explicit NvdbFile(const std::string& path) : NvdbFile(FileMapping(path, ".nvdb")) {}
   /// The same of what is mapped.
   explicit NvdbFile(FileMapping mapping)

@@ -1,8 +1,7 @@
 #include "format/output/commit_leftovers.h"
 
-#include <array>
+#include <cerrno>
 #include <cstdint>
-#include <cstring>
 #include <memory>
 #include <span>
 
@@ -16,12 +15,28 @@ namespace {
 
 constexpr std::uint64_t kMostText = 64ULL << 20U;  // bytes of a sidecar; more is somebody else's file
 
+// Throws Error(input) where it is too long for a text of weir.
 std::string text_of(File& file) {
   const std::uint64_t bytes = file.size();
   if (bytes > kMostText) throw Error(ErrorKind::input, file.path() + ": is no sidecar");
   std::string text(bytes, '\0');
   file.read_at(0, std::as_writable_bytes(std::span(text)));
   return text;
+}
+
+std::string text_at(FileSystem& files, const std::string& path) { return text_of(*files.open_to_read(path)); }
+
+// Of `check`, which reads files: false where one of them is missing or none of weir's. Where one is there and cannot be
+// read, that is no answer, and the Error(io) goes on.
+template <typename Check>
+bool unless_foreign(const Check& check) {
+  try {
+    return check();
+  } catch (const Error& error) {
+    const bool missing = error.system_failure() && error.system_failure()->errno_value == ENOENT;
+    if (!missing && error.kind() != ErrorKind::input && error.kind() != ErrorKind::usage) throw;
+    return false;
+  }
 }
 
 }  // namespace
@@ -31,25 +46,19 @@ std::string commit_record(const std::string& sidecar_text) {
 }
 
 bool describes(FileSystem& files, const std::string& sidecar, File& volume) {
-  try {
-    if (!files.exists(sidecar)) return false;
-    const Sidecar::File record = parse_sidecar(text_of(*files.open(sidecar)), sidecar).file;
-    const std::uint64_t at = record.grid_offset + nvdb::grid::kChecksum;
+  return unless_foreign([&] {
+    const Sidecar::File record = parse_sidecar(text_at(files, sidecar), sidecar).file;
+    constexpr std::uint64_t kHeadBytes = nvdb::grid::kChecksum + sizeof(std::uint32_t);
+    if (volume.size() != record.bytes || record.grid_offset > record.bytes) return false;
+    if (record.bytes - record.grid_offset < kHeadBytes) return false;
     std::uint32_t checksum = 0;
-    if (volume.size() != record.bytes || at + sizeof checksum > record.bytes) return false;
-    volume.read_at(at, std::as_writable_bytes(std::span(&checksum, 1)));
+    volume.read_at(record.grid_offset + nvdb::grid::kChecksum, std::as_writable_bytes(std::span(&checksum, 1)));
     return checksum == record.head_checksum;
-  } catch (const Error&) {
-    return false;
-  }
+  });
 }
 
 bool describes(FileSystem& files, const std::string& sidecar, const std::string& volume) {
-  try {
-    return files.exists(volume) && describes(files, sidecar, *files.open(volume));
-  } catch (const Error&) {
-    return false;
-  }
+  return unless_foreign([&] { return describes(files, sidecar, *files.open_to_read(volume)); });
 }
 
 bool belongs_back(FileSystem& files, const std::string& previous, const std::string& sidecar,
@@ -58,26 +67,21 @@ bool belongs_back(FileSystem& files, const std::string& previous, const std::str
 }
 
 bool placed_by_commit(FileSystem& files, const std::string& sidecar, File& partial) {
-  try {
-    const std::string text = text_of(*files.open(sidecar));
-    const std::string record = commit_record(text);
+  return unless_foreign([&] {
+    const std::string record = commit_record(text_at(files, sidecar));
     if (partial.size() == record.size() && text_of(partial) == record) return true;
-  } catch (const Error&) {
-    return false;
-  }
-  return describes(files, sidecar, partial);
+    return describes(files, sidecar, partial);
+  });
 }
 
 bool is_committed(FileSystem& files, const std::string& output) {
   const std::string partial = output + ".partial";
-  const std::string sidecar = sidecar_path(output);
-  for (const std::string& path : {output, sidecar, partial}) {
-    if (!files.exists(path)) return false;
-  }
+  if (!files.exists(output)) return false;
   try {
-    const std::string record = commit_record(text_of(*files.open(sidecar)));
-    const std::unique_ptr<File> lock = files.open(partial);
-    return lock->size() == record.size() && text_of(*lock) == record;
+    const std::string record = commit_record(text_at(files, sidecar_path(output)));
+    // Read before it is locked, which would make it where it is missing.
+    if (text_at(files, partial) != record) return false;
+    return text_of(*files.open(partial)) == record;
   } catch (const Error&) {
     return false;
   }

@@ -11,7 +11,8 @@ namespace weir {
 std::string commit_record(const std::string& sidecar_text);
 
 /// Whether `sidecar` is a sidecar of weir and `volume` the file that it describes, by length and head checksum. False
-/// where one of them cannot be read.
+/// where one of them is missing. Throws Error(io) where one is there and cannot be read: then nothing is known, and all
+/// must stay as it is. So do the two below.
 bool describes(FileSystem& files, const std::string& sidecar, File& volume);
 bool describes(FileSystem& files, const std::string& sidecar, const std::string& volume);
 
@@ -24,7 +25,7 @@ bool belongs_back(FileSystem& files, const std::string& previous, const std::str
 bool placed_by_commit(FileSystem& files, const std::string& sidecar, File& partial);
 
 /// Whether OUT.nvdb.partial is the lock of a commit that was completed, but was killed before it removed what the
-/// output was made from.
+/// output was made from. False where that cannot be known.
 bool is_committed(FileSystem& files, const std::string& output);
 
 }  // namespace weir

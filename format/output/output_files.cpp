@@ -1,5 +1,7 @@
 #include "format/output/output_files.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <cerrno>
@@ -9,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "format/base/ascii.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "format/output/commit_leftovers.h"
@@ -24,12 +27,6 @@ constexpr std::array<std::string_view, 34> kOthersExtensions{
     ".csv", ".exr", ".gz",   ".h5",   ".hdf", ".hdf5", ".he5", ".jpeg",   ".jpg", ".json", ".mha", ".mhd",
     ".mp4", ".nc",  ".nc4",  ".nhdr", ".nii", ".npy",  ".npz", ".nrrd",   ".pdf", ".png",  ".ppm", ".raw",
     ".svg", ".tif", ".tiff", ".toml", ".txt", ".vti",  ".vtk", ".vtkhdf", ".vtu", ".zarr"};
-
-std::string lower_case(std::string text) {
-  std::ranges::transform(text, text.begin(),
-                         [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return text;
-}
 
 std::string previous_of(const std::string& sidecar) { return cat(sidecar, kPrevious); }
 
@@ -83,8 +80,24 @@ void require_alone(const File& partial) {
                                  "remove it if there is none"));
 }
 
+void place_new(FileSystem& files, const std::string& written, const std::string& path) {
+  try {
+    files.rename_new(written, path);
+  } catch (const Error& error) {
+    if (!error.system_failure() || error.system_failure()->errno_value != EEXIST) throw;
+    throw Error(ErrorKind::io,
+                compose(path, ": appeared while it was written; choose another output or pass ", option("overwrite")),
+                SystemFailure{EEXIST, path});
+  }
+}
+
 OutputFiles::OutputFiles(FileSystem& files, const std::string& path, bool overwrite)
-    : files_(files), path_(path), sidecar_(sidecar_path(path)), directory_(directory_of(path)), overwrite_(overwrite) {
+    : files_(files),
+      owner_(::getpid()),
+      path_(path),
+      sidecar_(sidecar_path(path)),
+      directory_(directory_of(path)),
+      overwrite_(overwrite) {
   require_volume_name(path_);
   require_place(files_, path_, previous_of(sidecar_).size() - path_.size());
   require_place(files_, sidecar_, kPrevious.size());
@@ -135,7 +148,7 @@ void OutputFiles::keep_previous(const std::string& previous) {
   files_.remove(previous);  // of an earlier crash
   if (files_.link(sidecar_, previous)) return;
   try {
-    const std::unique_ptr<File> from = files_.open(sidecar_);
+    const std::unique_ptr<File> from = files_.open_to_read(sidecar_);
     std::vector<std::byte> text(from->size());
     from->read_at(0, text);
     const std::unique_ptr<File> to = files_.create(previous);
@@ -175,6 +188,11 @@ void OutputFiles::clear_for(std::uint64_t bytes) {
 }
 
 OutputFiles::~OutputFiles() {
+  if (owner_ != ::getpid()) {
+    // Not destroyed: that would wait for a thread of the parent.
+    static_cast<void>(std::make_unique<std::future<bool>>(std::move(ahead_)).release());
+    return;
+  }
   if (ahead_.valid()) ahead_.wait();
   if (committed_) {
     // The lock of a volume in another place: gone only now that what the volume was made from is.
@@ -231,9 +249,9 @@ void OutputFiles::commit(const std::string& sidecar_text) {
       sidecar_placed = true;
       files_.rename(volume_partial, path_);  // 5
     } else {
-      files_.rename_new(sidecar_partial, sidecar_);
+      place_new(files_, sidecar_partial, sidecar_);
       sidecar_placed = true;
-      files_.rename_new(volume_partial, path_);
+      place_new(files_, volume_partial, path_);
     }
   } catch (const Error&) {
     if (replaces) {

@@ -3,6 +3,8 @@
 // that was there before, and a failure leaves the directory as it was.
 #pragma once
 
+#include <sys/types.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <future>
@@ -19,10 +21,11 @@ class OutputFiles {
   /// Checks the place and takes the lock on OUT.nvdb.partial. Throws Error(io) where the directory is
   /// missing or not writable or another process writes the output, Error(usage) where it exists and `overwrite` is
   /// false, where its name is too long for the names beside it, or where something else than a regular file would be
-  /// replaced. A sidecar that a killed commit left without its volume is no output, and is removed; one that it put
+  /// replaced, Error(io) where what a killed commit left cannot be read, and so not be told from the output's own. A
+  /// sidecar that a killed commit left without its volume is no output, and is removed; one that it put
   /// beside the previous volume is replaced by that volume's own.
   OutputFiles(FileSystem& files, const std::string& path, bool overwrite);
-  /// Removes what was not committed.
+  /// Removes what was not committed; in a process that was forked since, nothing: the output is its parent's.
   ~OutputFiles();
   OutputFiles(const OutputFiles&) = delete;
   OutputFiles& operator=(const OutputFiles&) = delete;
@@ -57,6 +60,7 @@ class OutputFiles {
   void remove_quietly(const std::string& path) noexcept;
 
   FileSystem& files_;
+  pid_t owner_;
   std::string path_;
   std::string sidecar_;
   std::string directory_;
@@ -79,6 +83,10 @@ void require_volume_name(const std::string& path);
 
 /// Throws Error(io) where `partial`, PATH.partial, was there before and may have a writer that no lock tells of.
 void require_alone(const File& partial);
+
+/// FileSystem::rename_new of what was written to the name `path`; Error(io) of EEXIST with a remedy where something has
+/// got that name meanwhile.
+void place_new(FileSystem& files, const std::string& written, const std::string& path);
 
 /// Directory part of a path, "." where there is none.
 std::string directory_of(const std::string& path);

@@ -1,5 +1,7 @@
 #include "format/output/partial_file.h"
 
+#include <unistd.h>
+
 #include <cerrno>
 #include <string_view>
 
@@ -10,7 +12,7 @@
 namespace weir {
 
 PartialFile::PartialFile(FileSystem& files, const std::string& path, bool overwrite)
-    : files_(files), path_(path), overwrite_(overwrite) {
+    : files_(files), owner_(::getpid()), path_(path), overwrite_(overwrite) {
   require_place(files_, path, std::string_view(".partial").size());
   if (!overwrite && files_.exists(path)) {
     throw Error(ErrorKind::usage, compose(path, ": exists; choose another output or pass ", option("overwrite")));
@@ -20,7 +22,7 @@ PartialFile::PartialFile(FileSystem& files, const std::string& path, bool overwr
 }
 
 PartialFile::~PartialFile() {
-  if (committed_) return;
+  if (committed_ || owner_ != ::getpid()) return;
   try {
     files_.remove(path_ + ".partial");
   } catch (const Error&) {
@@ -40,7 +42,7 @@ void PartialFile::commit() {
   if (overwrite_) {
     files_.rename(partial, path_);  // 2
   } else {
-    files_.rename_new(partial, path_);
+    place_new(files_, partial, path_);
   }
   committed_ = true;
   files_.sync_directory(directory_of(path_));  // 3

@@ -1,6 +1,8 @@
 // One output file that is complete or absent: its bytes are in FILE.partial until `commit`.
 #pragma once
 
+#include <sys/types.h>
+
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -15,7 +17,7 @@ class PartialFile {
   /// file or has too long a name, Error(io) where its directory is missing or not writable or another process writes
   /// it. `files` must outlive the object.
   PartialFile(FileSystem& files, const std::string& path, bool overwrite);
-  /// Removes what was not committed.
+  /// Removes what was not committed; in a process that was forked since, nothing.
   ~PartialFile();
   PartialFile(const PartialFile&) = delete;
   PartialFile& operator=(const PartialFile&) = delete;
@@ -31,6 +33,7 @@ class PartialFile {
 
  private:
   FileSystem& files_;
+  pid_t owner_;
   std::string path_;
   bool overwrite_;
   bool committed_ = false;

@@ -93,6 +93,7 @@ DatasetInfo described(const Hdf5Object& object, const DatasetFacts& facts) {
   add_axes(axes, info.attributes);
   info.components = facts.components.count;
   info.obstacle = facts.obstacle;
+  info.over_time = facts.over_time;
   info.by_name_only = facts.marks;
   info.leading_axes = facts.obstacle.empty() ? leading_axes(facts.axes) : 0;
   return info;

@@ -159,12 +159,77 @@ std::unique_ptr<VolumeSource> open_chunked(Opening opening) {
                                          opening.options.memory);
 }
 
+/// Values that a file does not have: "4 of its 8 chunks" " were never written".
+struct Absent {
+  std::string what;
+  bool one = false;
+  std::string first = {};  ///< " (the first at 0, 0, 16)", where that is known
+  bool no_source = false;  ///< of a virtual dataset; else never written
+};
+
+// Refuses them, or notes the fill value that they read as.
+void note_filled(Opening& opening, const Absent& absent) {
+  const bool one = absent.one;
+  const std::string are = absent.no_source ? (one ? " has no source" : " have no source")
+                                           : (one ? " was never written" : " were never written");
+  if (opening.options.missing_chunks == MissingChunks::error) {
+    throw input_error(
+        opening.object.where(),
+        compose(absent.what, are, absent.first, ", and with ", option("missing-chunks", "error"),
+                absent.no_source ? " all must have one; map one to them, or use " : " all must be; write them, or use ",
+                option("missing-chunks", "fill")));
+  }
+  std::array<float, 1> fill{};
+  const StoredType& type = *opening.facts.type;
+  const auto decode = [&](const ValueMapping& mapping) {
+    decode_values(opening.facts.storage->fill, type.scalar, type.big_endian, mapping, fill);
+  };
+  decode(opening.facts.meaning.mapping);
+  if (!std::isfinite(fill[0])) decode({});  // it stands for no data: as it is stored
+  opening.info.details.chunks_note =
+      cat(absent.what, are, " and ", one ? "reads" : "read", " as its fill value, ", fill[0]);
+}
+
+// Says, or refuses, chunks that read as the fill value. Of a volume whose axes are not the array's last three it counts
+// those of the whole array.
+void note_unwritten(Opening& opening) {
+  const Storage& storage = *opening.facts.storage;
+  if (opening.all_fill()) return note_filled(opening, {"its values"});
+  if (storage.kind != StorageKind::chunked || storage.chunk.empty()) return;
+  const bool behind = !opening.slice.planar && !opening.slice.roles.interleaved();
+  const std::string where = opening.object.where();
+  const UnwrittenChunks unwritten = unwritten_chunks(
+      opening.object.handle.get(), storage,
+      behind ? std::span<const std::int64_t>(opening.slice.positions) : std::span<const std::int64_t>(), where);
+  if (unwritten.count == 0) return;
+  const std::string count = cat(unwritten.count, " of its ", unwritten.all, unwritten.all == 1 ? " chunk" : " chunks");
+  const std::string first = unwritten.first.empty() ? "" : cat(" (the first at ", corner_text(unwritten.first), ")");
+  note_filled(opening, {count, unwritten.count == 1, first});
+}
+
+// The same of elements of a virtual dataset that no source is mapped to.
+void note_unmapped(Opening& opening, const Uncovered& unmapped) {
+  if (unmapped.count == 0) return;
+  const std::uint64_t all = opening.slice_bytes() / scalar_bytes(opening.facts.type->scalar);
+  note_filled(opening, {cat(unmapped.count, " of its ", all, " values"), unmapped.count == 1,
+                        cat(" (the first at ", corner_text(unmapped.first), ")"), true});
+}
+
+std::unique_ptr<StoredBoxes> open_mapped(Opening& opening, const std::string& parent) {
+  VirtualVolume mapped =
+      make_virtual_boxes(std::move(opening.object.handle), opening.slice.positions, opening.slice.extent,
+                         opening.slice.components.count, parent, opening.object.where());
+  note_unmapped(opening, mapped.unmapped);
+  return std::move(mapped.boxes);
+}
+
 // Volumes one behind the other, the components of the vectors whose magnitude is asked for.
 std::unique_ptr<VolumeSource> open_planar(Opening opening) {
   const StorageKind kind = opening.facts.storage->kind;
   const std::string parent = file_of(opening.object.handle.get());
   const std::string where = opening.object.where();
   std::vector<std::unique_ptr<StoredBoxes>> parts;
+  Uncovered unmapped;
   if (kind == StorageKind::external) {
     throw Error(ErrorKind::input, compose(where, ": its components lie behind each other in files of their own; ",
                                           "convert them one by one, with ", option("component", 0)));
@@ -174,11 +239,16 @@ std::unique_ptr<VolumeSource> open_planar(Opening opening) {
     index.push_back(c);
     H5Iinc_ref(opening.object.handle.get());
     Hdf5Handle dataset(opening.object.handle.get());
-    parts.push_back(
-        kind == StorageKind::mapped
-            ? make_virtual_boxes(std::move(dataset), index, opening.slice.extent, 1, parent, where)
-            : make_library_boxes(std::move(dataset), *opening.facts.storage, ArrayPlace::behind(index), where));
+    if (kind == StorageKind::mapped) {
+      VirtualVolume part = make_virtual_boxes(std::move(dataset), index, opening.slice.extent, 1, parent, where);
+      unmapped.count += part.unmapped.count;
+      if (unmapped.first.empty()) unmapped.first = part.unmapped.first;
+      parts.push_back(std::move(part.boxes));
+    } else {
+      parts.push_back(make_library_boxes(std::move(dataset), *opening.facts.storage, ArrayPlace::behind(index), where));
+    }
   }
+  note_unmapped(opening, unmapped);
   auto boxes = make_planar_boxes(std::move(parts), scalar_bytes(opening.facts.type->scalar));
   std::vector<std::string> files = boxes->files();
   files.push_back(parent);
@@ -193,42 +263,6 @@ std::unique_ptr<VolumeSource> open_interleaved(Opening opening) {
   throw Error(ErrorKind::input, cat(opening.object.where(), ": its axes are ", axes_text(opening.facts.axes),
                                     ", the time not before those of space, and its values lie in other files; write "
                                     "it with the time first, or into one file"));
-}
-
-// That `what` of the values was never written: refused, or noted with the fill value that they read as.
-void note_filled(Opening& opening, const std::string& what, bool one, const std::string& first) {
-  const char* const was = one ? " was" : " were";
-  if (opening.options.missing_chunks == MissingChunks::error) {
-    throw input_error(opening.object.where(),
-                      compose(what, was, " never written", first, ", and with ", option("missing-chunks", "error"),
-                              " all must be; write them, or use ", option("missing-chunks", "fill")));
-  }
-  std::array<float, 1> fill{};
-  const StoredType& type = *opening.facts.type;
-  const auto decode = [&](const ValueMapping& mapping) {
-    decode_values(opening.facts.storage->fill, type.scalar, type.big_endian, mapping, fill);
-  };
-  decode(opening.facts.meaning.mapping);
-  if (!std::isfinite(fill[0])) decode({});  // it stands for no data: as it is stored
-  opening.info.details.chunks_note =
-      cat(what, was, " never written and ", one ? "reads" : "read", " as its fill value, ", fill[0]);
-}
-
-// Says, or refuses, chunks that read as the fill value. Of a volume whose axes are not the array's last three it counts
-// those of the whole array.
-void note_unwritten(Opening& opening) {
-  const Storage& storage = *opening.facts.storage;
-  if (opening.all_fill()) return note_filled(opening, "its values", false, "");
-  if (storage.kind != StorageKind::chunked || storage.chunk.empty()) return;
-  const bool behind = !opening.slice.planar && !opening.slice.roles.interleaved();
-  const std::string where = opening.object.where();
-  const UnwrittenChunks unwritten = unwritten_chunks(
-      opening.object.handle.get(), storage,
-      behind ? std::span<const std::int64_t>(opening.slice.positions) : std::span<const std::int64_t>(), where);
-  if (unwritten.count == 0) return;
-  const std::string count = cat(unwritten.count, " of its ", unwritten.all, unwritten.all == 1 ? " chunk" : " chunks");
-  const std::string first = unwritten.first.empty() ? "" : cat(" (the first at ", corner_text(unwritten.first), ")");
-  note_filled(opening, count, unwritten.count == 1, first);
 }
 
 std::unique_ptr<VolumeSource> open_stored(Opening opening) {
@@ -248,8 +282,7 @@ std::unique_ptr<VolumeSource> open_stored(Opening opening) {
       break;
   }
   const std::string parent = file_of(opening.object.handle.get());
-  auto boxes = make_virtual_boxes(std::move(opening.object.handle), opening.slice.positions, opening.slice.extent,
-                                  opening.slice.components.count, parent, opening.object.where());
+  auto boxes = open_mapped(opening, parent);
   std::vector<std::string> files = boxes->files();
   files.push_back(parent);
   opening.note_files(files);

@@ -8,6 +8,7 @@
 #include "format/base/ascii.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "ingest/raw/foreign_format.h"
 #include "ingest/raw/raw_name.h"
 #include "ingest/source/extent.h"
 #include "ingest/values/raw_values.h"
@@ -60,7 +61,8 @@ void refuse_packed(InputFile& file) {
   }
 }
 
-RawShape resolve_shape(const std::string& path, const SourceOptions& options) {
+RawShape resolve_shape(InputFile& file, const SourceOptions& options) {
+  const std::string& path = file.path();
   const auto name = parse_raw_name(path);
   if (const std::string lower = lower_case(path); lower.ends_with(".npy") || lower.ends_with(".npz")) {
     throw input_error(
@@ -71,6 +73,7 @@ RawShape resolve_shape(const std::string& path, const SourceOptions& options) {
     throw contradiction(path, "dims", dims_text(*options.extent), extent_text(name->extent));
   }
   if (!name && !options.extent) {
+    refuse_foreign_format(file);
     throw usage_error(path, compose("extent unknown; give ", option("dims", "X,Y,Z"), " and ", option("type"),
                                     " or name the file NAME_XxYxZ_TYPE.raw"));
   }
@@ -111,7 +114,7 @@ void check_size(const InputFile& file, const RawShape& shape, std::uint64_t offs
 std::unique_ptr<VolumeSource> open_raw(const std::string& path, const SourceOptions& options) {
   auto file = std::make_unique<InputFile>(path, options.direct_io);
   refuse_packed(*file);
-  const RawShape shape = resolve_shape(path, options);
+  const RawShape shape = resolve_shape(*file, options);
   RawLayout layout{options.offset.value_or(0), shape.type, shape.big_endian, {}};
   check_size(*file, shape, layout.offset);
   options.complete(layout.mapping);

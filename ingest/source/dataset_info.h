@@ -28,6 +28,7 @@ struct DatasetInfo {
   std::int64_t components = 1;                 ///< more: --component must choose among them
   bool by_name_only = false;                   ///< read only where --dataset names it: a coarser one of several scales
   std::string obstacle;                        ///< why it cannot be converted; empty where it can
+  bool over_time = false;  ///< the obstacle is that it has planes over time, and no third axis of space
 };
 
 /// The axes of `dataset` that options.index_choices give positions on. The last axis of an array of components is x

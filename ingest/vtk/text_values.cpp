@@ -53,8 +53,19 @@ bool parse(std::string_view word, T& value) {
   return result.ec == std::errc() && result.ptr == end;
 }
 
-template <typename T>
-void spool_values(Words& words, std::uint64_t count, SpoolFile& spool, const std::string& where) {
+bool parse_fraction(std::string_view word, std::uint8_t& value) {
+  float fraction = 0;
+  if (!parse(word, fraction)) return false;
+  const double shifted = 255.0 * fraction + 0.5;
+  if (!(shifted >= 0 && shifted < 256)) return false;  // NaN neither
+  value = static_cast<std::uint8_t>(shifted);
+  return true;
+}
+
+/// `parse_word`: puts what a word says into a T; false where it is none. `kind`: what each word must be.
+template <typename T, typename ParseWord>
+void spool_words(Words& words, std::uint64_t count, SpoolFile& spool, const std::string& where,
+                 const ParseWord& parse_word, std::string_view kind) {
   std::vector<T> values;
   values.reserve(kValuesAtATime);
   for (std::uint64_t i = 0; i < count; ++i) {
@@ -64,9 +75,8 @@ void spool_values(Words& words, std::uint64_t count, SpoolFile& spool, const std
                                         "; the file is cut or damaged"));
     }
     T value{};
-    if (!parse(word, value)) {
-      throw Error(ErrorKind::input, cat(where, ": value ", i, " of its text is ", in_quotes(word),
-                                        ", no number of its type; correct it, or the type in the header"));
+    if (!parse_word(word, value)) {
+      throw Error(ErrorKind::input, cat(where, ": value ", i, " of its text is ", in_quotes(word), ", no ", kind));
     }
     values.push_back(value);
     if (values.size() == kValuesAtATime || i + 1 == count) {
@@ -74,6 +84,11 @@ void spool_values(Words& words, std::uint64_t count, SpoolFile& spool, const std
       values.clear();
     }
   }
+}
+
+template <typename T>
+void spool_values(Words& words, std::uint64_t count, SpoolFile& spool, const std::string& where) {
+  spool_words<T>(words, count, spool, where, parse<T>, "number of its type; correct it, or the type in the header");
 }
 
 void spool_values(Words& words, std::uint64_t count, ScalarType type, SpoolFile& spool, const std::string& where) {
@@ -116,6 +131,12 @@ void spool_text_values(FileText& text, std::uint64_t count, ScalarType type, boo
     throw Error(ErrorKind::input, cat(where, ": ", in_quotes(more), " follows the ", count,
                                       " values that its header asks for; one of the two is damaged"));
   }
+}
+
+void spool_text_fractions(FileText& text, std::uint64_t count, SpoolFile& spool, const std::string& where) {
+  Words words(text);
+  spool_words<std::uint8_t>(words, count, spool, where, parse_fraction,
+                            "number from 0 to 1, as COLOR_SCALARS in text have them; correct it");
 }
 
 }  // namespace weir

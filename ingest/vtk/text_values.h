@@ -16,4 +16,8 @@ namespace weir {
 void spool_text_values(FileText& text, std::uint64_t count, ScalarType type, bool all, SpoolFile& spool,
                        const std::string& where);
 
+/// Reads `count` numbers from 0 to 1 and writes 0 to 255 for them, as vtkDataReader::ReadCoScalars reads COLOR_SCALARS:
+/// each as float32, times 255, plus 0.5, cut to an integer. Throws as spool_text_values, also for other numbers.
+void spool_text_fractions(FileText& text, std::uint64_t count, SpoolFile& spool, const std::string& where);
+
 }  // namespace weir

@@ -5,9 +5,11 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "format/base/scalar_type.h"
 #include "ingest/files/input_file.h"
+#include "ingest/source/left_out.h"
 #include "ingest/source/source_options.h"
 #include "ingest/source/volume_source.h"
 #include "ingest/vectors/voxel_components.h"
@@ -36,6 +38,19 @@ struct VtkVolume {
 /// where the image has no place, the components asked for are not there, or the values are too many.
 VtkVolume vtk_volume(const InputFile& file, const char* format, const VtkImage& image, const VtkArray& array,
                      const SourceOptions& options);
+
+/// Says to options.notice which of `arrays` cannot be converted, where `taken` is one that options.dataset does not
+/// name.
+template <typename Array>
+void say_vtk_left_out(const std::string& path, const std::vector<Array>& arrays, const Array& taken,
+                      const SourceOptions& options) {
+  std::vector<LeftOut> left_out;
+  for (const VtkArray& array : arrays) {
+    if (!array.obstacle.empty()) left_out.push_back({array.name, array.obstacle});
+  }
+  if (!options.dataset.empty() || left_out.empty() || !options.notice) return;
+  options.notice(left_out_notice(path, taken.name, left_out));
+}
 
 /// Throws Error(usage): there is nothing that --index could choose.
 void refuse_vtk_index(const std::string& path, const SourceOptions& options);

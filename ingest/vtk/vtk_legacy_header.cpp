@@ -161,8 +161,10 @@ class LegacyParser {
       if (!next_line() || words_[0] != "lookup_table") wrong("LOOKUP_TABLE belongs behind SCALARS");
       add(std::move(array), components, tuples);
     } else if (key == "color_scalars") {
-      const std::uint64_t components = count(2);
-      skip(header_.binary ? *type_of("unsigned_char") : *type_of("float"), components, tuples);
+      VtkLegacyArray array = named_array();
+      array.type_name = "unsigned_char";
+      array.fractions = !header_.binary;
+      add(std::move(array), count(2), tuples);
     } else if (key == "lookup_table") {
       skip(header_.binary ? *type_of("unsigned_char") : *type_of("float"), 4, count(2));
     } else if (key == "texture_coordinates") {

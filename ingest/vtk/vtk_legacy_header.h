@@ -16,6 +16,8 @@ namespace weir {
 
 struct VtkLegacyArray : VtkArray {
   std::uint64_t offset = 0;  ///< of the first value or, in text, of the first word, in the file
+  /// COLOR_SCALARS as text: uint8 written as numbers from 0 to 1 (text_values.h).
+  bool fractions = false;
 };
 
 struct VtkLegacyHeader {

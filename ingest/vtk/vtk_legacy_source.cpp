@@ -27,7 +27,11 @@ std::unique_ptr<InputFile> spool_text(InputFile& file, const VtkLegacyArray& arr
   const auto files = make_posix_file_system();
   SpoolFile spool(*files, options, file.path(), bytes);
   FileText text(file, array.offset, file.size());
-  spool_text_values(text, bytes / scalar_bytes(array.type), array.type, false, spool, where);
+  if (array.fractions) {
+    spool_text_fractions(text, bytes, spool, where);
+  } else {
+    spool_text_values(text, bytes / scalar_bytes(array.type), array.type, false, spool, where);
+  }
   return spool.finish();
 }
 
@@ -44,6 +48,7 @@ std::unique_ptr<VolumeSource> open_vtk_legacy(const std::string& path, const Sou
   const VtkLegacyHeader header = read_legacy_header(*file);
   const std::vector<NamedVolume> volumes = vtk_volumes(header.arrays, options);
   const VtkLegacyArray& array = header.arrays[choose_volume(path, "array", volumes, options.dataset)];
+  say_vtk_left_out(path, header.arrays, array, options);
   VtkVolume volume = vtk_volume(*file, "vtk-legacy", header.image, array, options);
   if (header.time) volume.info.details.time = TimePoint{*header.time, {}, {}};
   volume.info.details.values_note = marks_note_of(array, header.arrays);

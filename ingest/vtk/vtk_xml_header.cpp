@@ -78,7 +78,9 @@ class XmlParser {
 
   void read_file(const pugi::xml_node& file) {
     if (!file) throw Error(ErrorKind::input, cat(path_, ": its XML has no VTKFile; this is no VTK image file"));
-    if (std::string_view(file.attribute("type").value()) != "ImageData") {
+    const std::string_view type = file.attribute("type").value();
+    if (type == "PImageData") wrong(file, "type", "write its pieces as one .vti file, or name one of them");
+    if (type != "ImageData") {
       wrong(file, "type", "ImageData can be read; resample other grids to an image");
     }
     const std::string_view order = file.attribute("byte_order").value();

@@ -60,6 +60,7 @@ std::unique_ptr<VolumeSource> open_vtk_xml(const std::string& path, const Source
   auto file = std::make_unique<InputFile>(path, options.direct_io);
   const VtkXmlHeader header = read_xml_header(*file);
   const VtkXmlArray& array = choose_array(header, path, options);
+  say_vtk_left_out(path, header.arrays, array, options);
   VtkVolume volume = vtk_volume(*file, "vtk-xml", header.image, array, options);
   volume.info.details.time = vtk_xml_time(*file, header, options);
   volume.info.details.values_note = marks_note_of(array, header.arrays);

@@ -10,6 +10,7 @@
 #include "ingest/axes/axis_details.h"
 #include "ingest/headers/header_text.h"
 #include "ingest/source/convert_command.h"
+#include "ingest/source/left_out.h"
 #include "ingest/values/value_notes.h"
 #include "ingest/zarr/meaning/multiscales.h"
 #include "ingest/zarr/meaning/outer_store.h"
@@ -153,6 +154,7 @@ DatasetInfo describe_array(ZarrStore& store, const ZarrNode& node, Surroundings&
     add_note(chosen.meaning.values.note, notes);
     if (!notes.empty()) info.attributes.emplace_back("note", std::move(notes));
     info.obstacle = chosen.meaning.obstacle;
+    info.over_time = chosen.meaning.over_time;
     info.index_axes = chosen.meaning.leading();
     info.component_index_axes = chosen.meaning.leading_before(asked_component_axis(chosen.meaning.axes.places));
     info.vector_index_axes = chosen.meaning.leading_before({});
@@ -188,6 +190,15 @@ ListedArrays listed_arrays(ZarrStore& store, const std::string& path, Surroundin
   return listed;
 }
 
+void say_left_out(const std::string& path, const std::string& taken, const std::vector<DatasetInfo>& infos,
+                  const Notice& notice) {
+  std::vector<LeftOut> left_out;
+  for (const DatasetInfo& info : infos) {
+    if (is_unread_volume(info)) left_out.push_back({info.name, info.obstacle});
+  }
+  if (notice && !left_out.empty()) notice(left_out_notice(path, taken, left_out));
+}
+
 ChosenArray only_array(ZarrStore& store, const std::string& path, const SourceOptions& options, Surroundings& around) {
   ListedArrays listed = listed_arrays(store, path, around);
   const auto has_components = [](const DatasetInfo& info) { return info.components > 1 && info.obstacle.empty(); };
@@ -206,7 +217,10 @@ ChosenArray only_array(ZarrStore& store, const std::string& path, const SourceOp
     }
   }
   if (volumes.size() > 1) throw several_arrays(path, volumes);
-  if (only) return meant_array(store, std::move(listed.nodes[*only]), around);
+  if (only) {
+    say_left_out(path, listed.infos[*only].name, listed.infos, options.notice);
+    return meant_array(store, std::move(listed.nodes[*only]), around);
+  }
   throw input_error(path, listed.nodes.size() == 1
                               ? obstacle
                               : cat("none of its ", listed.nodes.size(), " arrays is a volume; the first is ", obstacle,

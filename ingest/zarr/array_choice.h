@@ -23,7 +23,8 @@ struct ChosenArray {
 /// options.dataset, a key or, where that is an image of several scales, its finest level. Empty: the finest level of
 /// the image that the root is, or the only array that is a volume, levels other than the finest aside; with
 /// options.component the only one of vectors, where there are some. Throws Error(usage),
-/// with the commands, where there are several; Error(input) where there is none of that name or none is a volume.
+/// with the commands, where there are several; arrays that cannot be converted are said to options.notice; Error(input)
+/// where there is none of that name or none is a volume.
 ChosenArray choose_array(ZarrStore& store, const std::string& path, const SourceOptions& options);
 
 /// What `weir inspect` lists of all arrays. Damaged metadata are the obstacle of their array. Throws Error(input) where

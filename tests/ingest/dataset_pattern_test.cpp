@@ -37,5 +37,34 @@ TEST(DatasetPattern, OfNothingButThoseIsAnErrorThatSaysWhy) {
             "--dataset names it");
 }
 
+// Of a volume whose type weir does not read, of coordinates, and of planes over time.
+TEST(DatasetPattern, VolumesWithAnObstacleAreNamed) {
+  std::vector<DatasetInfo> all = datasets();
+  all.resize(6);
+  const auto refuse = [&](std::size_t i, const char* name, std::vector<std::int64_t> extents, const char* why) {
+    all[i].name = name;
+    all[i].extents = std::move(extents);
+    all[i].obstacle = why;
+  };
+  refuse(3, "label", {2, 3, 4}, "its type is text of 3 bytes");
+  refuse(4, "lat", {3}, "1 axis (3); a volume has three");
+  refuse(5, "rain", {2, 3, 4}, "2 axes and time");
+  all[5].over_time = true;
+  const auto matches = [&](const std::string& pattern, std::vector<std::string>& said) {
+    return matching_datasets("a.vti", all, pattern, {}, [&](const Message& line) { said.push_back(line.text()); });
+  };
+  std::vector<std::string> said;
+  EXPECT_EQ(matches("*", said), (Names{"rho", "T"}));
+  EXPECT_EQ(said, (Names{"a.vti: left out: label: its type is text of 3 bytes"}));
+  EXPECT_EQ(message_of_error(ErrorKind::input, [&] { matches("la*", said); }),
+            "a.vti: --dataset la* stands for no volume: label: its type is text of 3 bytes; lat: 1 axis (3); a volume "
+            "has three");
+  EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { matches("[vl]*", said); }),
+            "a.vti: --dataset [vl]* stands for no volume with these options: vtkGhostType: it is read only where "
+            "--dataset names it; label: its type is text of 3 bytes");
+  EXPECT_EQ(message_of_error(ErrorKind::input, [&] { matches("x*", said); }),
+            "a.vti: no dataset's name matches x*; weir inspect lists what there is");
+}
+
 }  // namespace
 }  // namespace weir::dataset_pattern_test

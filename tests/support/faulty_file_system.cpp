@@ -82,6 +82,11 @@ std::unique_ptr<File> FaultyFileSystem::open(const std::string& path) {
   return std::make_unique<FaultyFile>(*this, real_.open(path));
 }
 
+std::unique_ptr<File> FaultyFileSystem::open_to_read(const std::string& path) {
+  count("open_to_read", path);
+  return std::make_unique<FaultyFile>(*this, real_.open_to_read(path));
+}
+
 std::unique_ptr<File> FaultyFileSystem::create_unnamed(const std::string& directory) {
   count("create_unnamed", directory);
   return std::make_unique<FaultyFile>(*this, real_.create_unnamed(directory));

@@ -39,6 +39,7 @@ class FaultyFileSystem final : public FileSystem {
 
   std::unique_ptr<File> create(const std::string& path) override;
   std::unique_ptr<File> open(const std::string& path) override;
+  std::unique_ptr<File> open_to_read(const std::string& path) override;
   std::unique_ptr<File> create_unnamed(const std::string& directory) override;
   void rename(const std::string& from, const std::string& to) override;
   void rename_new(const std::string& from, const std::string& to) override;

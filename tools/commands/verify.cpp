@@ -63,15 +63,26 @@ Json to_json(const std::string& path, bool ok, const std::vector<VolumeCheck>& c
   return report;
 }
 
-// What holds of one volume; what does not goes to stderr.
-Json verify_one(const std::string& path, const VerifyArguments& arguments) {
-  const std::vector<VolumeCheck> checks = verify(path, arguments);
+// What holds of one volume; what does not goes to stderr, and raises `status` from 0 to its exit code. A file that cannot
+// be read may be sound.
+Json verify_one(const std::string& path, const VerifyArguments& arguments, int& status) {
+  const auto raise = [&](ErrorKind kind) { status = status == 0 ? static_cast<int>(kind) : status; };
+  std::vector<VolumeCheck> checks;
+  try {
+    checks = verify(path, arguments);
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::io) throw;
+    print_error_line(error.what());
+    raise(ErrorKind::io);
+    return to_json(path, false, {{"readable", error.what(), "", false}});
+  }
   bool ok = true;
   for (const VolumeCheck& check : checks) {
     if (check.ok) continue;
     ok = false;
     print_error_line(failure_text(path, check));
   }
+  if (!ok) raise(ErrorKind::input);
   if (ok && !arguments.json) std::cout << cat(one_line(path), ": all ", checks.size(), " checks hold\n");
   return to_json(path, ok, checks);
 }
@@ -82,16 +93,13 @@ void run(const VerifyArguments& arguments) {
     throw usage_error(cat("--trace is of one volume, and ", paths.size(), " are given"));
   }
   Json volumes = Json::array();
-  bool ok = true;
-  for (const std::string& path : paths) {
-    volumes.push_back(verify_one(path, arguments));
-    ok = ok && volumes.back()["ok"].get<bool>();
-  }
+  int status = 0;
+  for (const std::string& path : paths) volumes.push_back(verify_one(path, arguments, status));
   if (arguments.json) {
-    const Json report = volumes.size() == 1 ? volumes.front() : Json{{"ok", ok}, {"volumes", volumes}};
+    const Json report = volumes.size() == 1 ? volumes.front() : Json{{"ok", status == 0}, {"volumes", volumes}};
     std::cout << report.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
   }
-  if (!ok) throw ExitStatus{static_cast<int>(ErrorKind::input)};
+  if (status != 0) throw ExitStatus{status};
 }
 
 }  // namespace

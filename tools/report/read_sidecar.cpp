@@ -18,14 +18,24 @@ namespace {
 // A histogram of 1,024 bins and two paths take some 50 KB; JSON takes up to 40 times its bytes in memory.
 constexpr std::uintmax_t kMaxBytes = 4U << 20U;
 
+// Whether there is no file of that name; all else says nothing of what the sidecar holds.
+bool says_missing(const std::error_code& error) {
+  return error == std::errc::no_such_file_or_directory || error == std::errc::not_a_directory ||
+         error == std::errc::is_a_directory || error == std::errc::too_many_symbolic_link_levels ||
+         error == std::errc::filename_too_long || error == std::errc::not_supported;  // the last: a pipe, a device
+}
+
 }  // namespace
 
 Sidecar read_sidecar(const std::string& path) {
   std::error_code error;
   const std::uintmax_t bytes = std::filesystem::file_size(path, error);
   if (error) {
-    throw Error(ErrorKind::input, cat(path, ": cannot read the sidecar: ", error.message(),
-                                      "; write it with weir convert, or look at the volume alone with weir inspect"));
+    const bool missing = says_missing(error);
+    throw Error(missing ? ErrorKind::input : ErrorKind::io,
+                cat(path, ": cannot read the sidecar: ", error.message(),
+                    missing ? "; write it with weir convert, or look at the volume alone with weir inspect"
+                            : "; check its disk or file server and the permissions, and try again"));
   }
   if (bytes > kMaxBytes) {
     throw Error(ErrorKind::input, cat(path, ": ", bytes, " bytes are no sidecar; write it again with weir convert"));
@@ -33,7 +43,8 @@ Sidecar read_sidecar(const std::string& path) {
   std::string text(bytes, '\0');
   std::ifstream in(path, std::ios::binary);
   if (!in.read(text.data(), static_cast<std::streamsize>(bytes))) {
-    throw Error(ErrorKind::input, path + ": cannot read the sidecar; check the permissions");
+    if (in.eof()) throw input_error(path, cat("has become shorter than ", bytes, " bytes while it was read"));
+    throw Error(ErrorKind::io, path + ": cannot read the sidecar; check the permissions");
   }
   return parse_sidecar(text, path);
 }

@@ -21,7 +21,8 @@ struct VerificationWatch {
 };
 
 /// Checks the .nvdb at `path` and the sidecar beside it: structure, checksum, digest, and what one says of the other.
-/// What cannot be read at all is a check that failed. Throws Error(interrupted) when cancelled.
+/// What is missing or makes no sense is a check that failed. Throws Error(io) where a file is there and cannot be read,
+/// which says nothing of what it holds, and Error(interrupted) when cancelled.
 std::vector<VolumeCheck> verify_volume(const std::string& path, const VerificationWatch& watch);
 
 }  // namespace weir

@@ -172,6 +172,16 @@ std::vector<StoredValue> stored_value_attribute(hid_t object, const char* name) 
   return values;
 }
 
+std::vector<StoredValue> enumerated_value_attribute(hid_t object, const char* name) {
+  const Attribute attribute(object, name);
+  if (attribute.kind != H5T_ENUM || !attribute.fits()) return stored_value_attribute(object, name);
+  const Hdf5Handle base(H5Tget_super(attribute.type.get()));
+  if (H5Tget_sign(base.get()) == H5T_SGN_NONE) {
+    return stored(attribute.read_as<std::uint64_t>(H5T_NATIVE_UINT64));
+  }
+  return stored(attribute.read_as<std::int64_t>(H5T_NATIVE_INT64));
+}
+
 std::vector<std::string> text_attribute(hid_t object, const char* name) {
   const Attribute attribute(object, name);
   if (!attribute.fits() || attribute.kind != H5T_STRING) return {};

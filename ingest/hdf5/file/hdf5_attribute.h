@@ -32,6 +32,8 @@ void check_attribute_bytes(hid_t object);
 std::vector<double> number_attribute(hid_t object, const char* name);
 /// The same without loss for 64-bit integers; a text that is a number counts as one.
 std::vector<StoredValue> stored_value_attribute(hid_t object, const char* name);
+/// The same; names of an enumeration count as the integers that they stand for.
+std::vector<StoredValue> enumerated_value_attribute(hid_t object, const char* name);
 /// Texts of fixed or any length, without the blanks and zeros at their ends.
 std::vector<std::string> text_attribute(hid_t object, const char* name);
 bool has_attribute(hid_t object, const char* name);

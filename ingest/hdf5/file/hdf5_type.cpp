@@ -60,6 +60,12 @@ std::optional<StoredType> stored_type(hid_t type) {
   return std::nullopt;
 }
 
+std::optional<StoredType> enumerated_type(hid_t type) {
+  if (H5Tget_class(type) != H5T_ENUM) return std::nullopt;
+  const Hdf5Handle base(H5Tget_super(type));
+  return stored_type(base.get());
+}
+
 std::string type_text(hid_t type) {
   if (const auto stored = stored_type(type)) {
     return cat(stored->big_endian ? "big-endian " : "", scalar_name(stored->scalar));

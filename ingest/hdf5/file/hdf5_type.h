@@ -19,6 +19,10 @@ struct StoredType {
 /// nullopt for any other type. The caller holds Hdf5Lock.
 std::optional<StoredType> stored_type(hid_t type);
 
+/// The integers that the values of an enumeration are, as h5py's truth values are; nullopt for any other type. The
+/// caller holds Hdf5Lock.
+std::optional<StoredType> enumerated_type(hid_t type);
+
 /// "float32", "big-endian int16", "compound of 3 members", "float of 80 bits in 16 bytes". The caller holds
 /// Hdf5Lock.
 std::string type_text(hid_t type);

@@ -17,12 +17,12 @@ namespace {
 
 struct Link {
   std::string name;
-  bool external = false;
+  H5L_type_t type;
 };
 
 herr_t collect_link(hid_t /*group*/, const char* name, const H5L_info_t* info, void* links) {
-  if (info->type == H5L_TYPE_HARD || info->type == H5L_TYPE_EXTERNAL) {
-    static_cast<std::vector<Link>*>(links)->push_back({name, info->type == H5L_TYPE_EXTERNAL});
+  if (info->type == H5L_TYPE_HARD || info->type == H5L_TYPE_SOFT || info->type == H5L_TYPE_EXTERNAL) {
+    static_cast<std::vector<Link>*>(links)->push_back({name, info->type});
   }
   return 0;
 }
@@ -93,7 +93,9 @@ class GroupWalk {
     }
     for (const Link& link : links) {
       std::string path = group.name + '/' + link.name;
-      if (!link.external) {
+      if (link.type == H5L_TYPE_SOFT) {
+        look_at_soft(group, link.name, path);
+      } else if (link.type == H5L_TYPE_HARD) {
         Hdf5Handle object(H5Oopen(group.handle.get(), link.name.c_str(), H5P_DEFAULT));
         if (!object) {
           say_damaged(path, "cannot be opened");
@@ -107,6 +109,14 @@ class GroupWalk {
         unread_({path, cat("is a link to another file, and ", kMaxExternalLinks, " of these are followed")});
       }
     }
+  }
+
+  // What it leads to is found by its own name, if it is there.
+  void look_at_soft(const Group& group, const std::string& name, const std::string& path) {
+    if (H5Oexists_by_name(group.handle.get(), name.c_str(), H5P_DEFAULT) > 0) return;
+    std::array<char, 4096> target{};
+    H5Lget_val(group.handle.get(), name.c_str(), target.data(), target.size() - 1, H5P_DEFAULT);
+    unread_({path, cat("is a soft link to ", target.data(), ", which is not there"), true});
   }
 
   void take(const std::string& path, Hdf5Handle object, int depth) {

@@ -18,15 +18,16 @@ inline constexpr int kMaxGroupDepth = 256;
 struct UnreadObject {
   std::string name;
   std::string why;
-  bool elsewhere = false;  ///< a link to another file that leads nowhere: nothing is wrong with this one
+  bool elsewhere = false;  ///< a link that leads nowhere: nothing of the file itself is missing
 };
 
 /// Calls `visit` with the name ("/a/b c") and the open handle of each dataset and each openPMD constant at or
 /// below the group `name` of `file`, sorted by name within a group, its datasets before its groups'. What
 /// several links lead to is visited once, by a link of its own file where there is one; links that lead in
 /// circles end there. Soft links are not followed: what they lead to has a name of its own. Calls `unread` for what
-/// cannot be opened, a group that cannot be listed whole, and the first link to another file that is one too many.
-/// Throws Error(input) for groups nested deeper than kMaxGroupDepth. The caller holds Hdf5Lock.
+/// cannot be opened, soft links that lead nowhere included, a group that cannot be listed whole, and the first link to
+/// another file that is one too many. Throws Error(input) for groups nested deeper than kMaxGroupDepth. The caller
+/// holds Hdf5Lock.
 void walk_datasets(hid_t file, const std::string& name,
                    const std::function<void(std::string name, Hdf5Handle object)>& visit,
                    const std::function<void(const UnreadObject&)>& unread);

@@ -13,6 +13,7 @@
 #include "ingest/hdf5/meaning/hdf5_lookup.h"
 #include "ingest/hdf5/meaning/volume_slice.h"
 #include "ingest/source/convert_command.h"
+#include "ingest/source/left_out.h"
 #include "ingest/vtk/vtk_marks.h"
 
 namespace weir {
@@ -55,17 +56,24 @@ std::pair<std::size_t, double> size_of(std::span<const AxisPlace> axes) {
   return {std::min(axes.size(), kVolumeRank), values};
 }
 
+// Why a dataset is left out that would be a volume else; empty where it is none, or is one.
+std::string volume_obstacle(const DatasetFacts& facts) {
+  return facts.axes.size() < kVolumeRank || facts.over_time || facts.marks ? std::string() : facts.obstacle;
+}
+
 }  // namespace
 
 Hdf5Object only_volume(hid_t file, const std::string& path, const SourceOptions& options) {
   std::vector<DatasetCandidate> candidates;
   std::size_t datasets = 0;
+  std::vector<LeftOut> left_out;
   std::string obstacle;  // of the one that comes nearest to a volume: the most axes, then the most values
   std::pair<std::size_t, double> nearest;
   const auto look_at = [&](std::string name, Hdf5Handle handle) {
     if (is_bare_dimension(handle.get())) return;
     ++datasets;
     DatasetFacts facts = dataset_facts(file, {std::move(handle), path, name});
+    if (const std::string why = volume_obstacle(facts); !why.empty()) left_out.push_back({name, why});
     if (facts.obstacle.empty() && facts.marks) facts.obstacle = kMarkObstacle;
     if (facts.obstacle.empty()) {
       DatasetCandidate& candidate = candidates.emplace_back();
@@ -95,7 +103,9 @@ Hdf5Object only_volume(hid_t file, const std::string& path, const SourceOptions&
   std::erase_if(fitting, [&](const DatasetCandidate& c) { return !takes(c, options); });
   const std::vector<DatasetCandidate>& left = fitting.empty() ? candidates : fitting;
   if (left.size() > 1) throw several(path, left);
-  return find_dataset(file, path, left.front().info.name);
+  const std::string& taken = left.front().info.name;
+  if (options.notice && !left_out.empty()) options.notice(left_out_notice(path, taken, left_out));
+  return find_dataset(file, path, taken);
 }
 
 }  // namespace weir

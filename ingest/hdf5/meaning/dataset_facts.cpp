@@ -34,6 +34,10 @@ std::vector<std::int64_t> extents_of(hid_t dataset) {
 
 std::string type_obstacle(const DatasetFacts& facts) {
   if (facts.type) return {};
+  if (facts.type_text.starts_with("integer")) {
+    return cat("its type is ", facts.type_text,
+               "; an integer's precision must be 8, 16, 32 or 64 bits, all that its bytes hold");
+  }
   const bool labels = facts.type_text == "boolean" || facts.type_text.starts_with("enumeration");
   return cat("its type is ", facts.type_text, "; a volume has integers of 8 to 64 bits or floats of 16, 32 or 64",
              labels ? ", so store it as uint8" : "");
@@ -96,6 +100,11 @@ DatasetFacts dataset_facts(hid_t file, const Hdf5Object& object) {
     const Hdf5Handle type(H5Dget_type(handle));
     facts.type = stored_type(type.get());
     facts.type_text = type_text(type.get());
+    if (const auto integers = enumerated_type(type.get())) {
+      facts.type = integers;
+      facts.type_text =
+          cat(integers->big_endian ? "big-endian " : "", scalar_name(integers->scalar), " (", facts.type_text, ')');
+    }
     const auto stored_as = facts.type;
     if (stored_as) facts.type = type_as_meant(handle, *stored_as);
     if (stored_as && facts.type->scalar != stored_as->scalar) {

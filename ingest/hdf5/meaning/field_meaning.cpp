@@ -53,7 +53,7 @@ std::optional<TimePoint> time_of(hid_t file, const Hdf5Object& object, std::span
   if (position.extent == 0) {  // elements of an axis of time have their own, or none
     if (auto time = position.in(vtk_hdf_time(object, groups))) return time;
   }
-  if (const auto seconds = openpmd_time(groups)) return TimePoint{*seconds, "s", {}};
+  if (const auto seconds = openpmd_time(object.handle.get(), groups)) return TimePoint{*seconds, "s", {}};
   return std::nullopt;
 }
 

@@ -28,6 +28,14 @@ hid_t mesh_record(hid_t object, std::span<const Hdf5Handle> groups) {
   return !groups.empty() && has_attribute(groups[0].get(), "gridSpacing") ? groups[0].get() : H5I_INVALID_HID;
 }
 
+// How long after its iteration the record is defined, `object` or the group around it, as those of staggered meshes
+// are.
+double time_offset(hid_t object, std::span<const Hdf5Handle> groups) {
+  std::vector<double> offset = number_attribute(object, "timeOffset");
+  if (offset.empty() && !groups.empty()) offset = number_attribute(groups[0].get(), "timeOffset");
+  return offset.size() == 1 && std::isfinite(offset[0]) ? offset[0] : 0;
+}
+
 }  // namespace
 
 void place_by_openpmd(hid_t object, std::span<const Hdf5Handle> groups, std::span<AxisPlace> axes) {
@@ -76,11 +84,11 @@ std::optional<double> openpmd_unit_si(hid_t object) {
   return unit[0];
 }
 
-std::optional<double> openpmd_time(std::span<const Hdf5Handle> groups) {
+std::optional<double> openpmd_time(hid_t object, std::span<const Hdf5Handle> groups) {
   for (const Hdf5Handle& group : groups) {
     const std::vector<double> time = number_attribute(group.get(), "time");
     const std::vector<double> seconds = number_attribute(group.get(), "timeUnitSI");
-    if (time.size() == 1 && seconds.size() == 1) return time[0] * seconds[0];
+    if (time.size() == 1 && seconds.size() == 1) return (time[0] + time_offset(object, groups)) * seconds[0];
   }
   return std::nullopt;
 }

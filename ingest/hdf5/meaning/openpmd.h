@@ -27,8 +27,9 @@ std::string openpmd_obstacle(hid_t object, std::span<const Hdf5Handle> groups);
 /// unitSI of `object`: values times it are in SI units.
 std::optional<double> openpmd_unit_si(hid_t object);
 
-/// The time of the iteration among `groups`, in seconds: its attributes time and timeUnitSI.
-std::optional<double> openpmd_time(std::span<const Hdf5Handle> groups);
+/// The time of `object` in seconds: the attributes time and timeUnitSI of the iteration among `groups`, and timeOffset
+/// of the record, which is in units of timeUnitSI, too ("Required for each Record").
+std::optional<double> openpmd_time(hid_t object, std::span<const Hdf5Handle> groups);
 
 /// Extents of a constant component (is_openpmd_constant), slowest first; empty where they are no extents.
 std::vector<std::int64_t> openpmd_shape(hid_t object);

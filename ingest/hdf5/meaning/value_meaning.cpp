@@ -104,7 +104,7 @@ ValueMeaning value_meaning(hid_t object, const StoredType& type, std::span<const
   ValueMeaning meaning;
   const bool meant_otherwise = !unsigned_text(object).empty();
   for (const char* name : {"_FillValue", "missing_value"}) {
-    const std::vector<StoredValue> values = stored_value_attribute(object, name);
+    const std::vector<StoredValue> values = enumerated_value_attribute(object, name);
     std::string unheld;
     for (const StoredValue& value : values) {
       const StoredValue meant = meant_otherwise ? as_meant(value, type.scalar) : value;

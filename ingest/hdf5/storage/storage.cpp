@@ -71,7 +71,7 @@ Storage storage_of(hid_t dataset) {
   }
   // Of text and other types without a fixed size it is of no use.
   const H5T_class_t kind = H5Tget_class(type.get());
-  if (kind == H5T_INTEGER || kind == H5T_FLOAT) look_at_fill(creation.get(), type.get(), storage);
+  if (kind == H5T_INTEGER || kind == H5T_FLOAT || kind == H5T_ENUM) look_at_fill(creation.get(), type.get(), storage);
   if (storage.obstacle.empty() && H5Sget_simple_extent_npoints(space.get()) > 0 &&
       (storage.kind == StorageKind::contiguous || storage.kind == StorageKind::chunked) &&
       H5Dget_storage_size(dataset) == 0) {

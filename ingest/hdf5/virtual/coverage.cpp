@@ -8,11 +8,16 @@ namespace {
 
 using Covers = std::vector<const AxisBox*>;
 
-// Sweeps along `axis` through the edges of `covers`, which hold `point` on all axes before; true where an element
-// is left, which is then in `point`.
-bool find_gap(const AxisBox& whole, std::size_t axis, Covers covers, std::vector<hsize_t>& point) {
-  if (axis == whole.lo.size()) return covers.empty();
-  std::vector<hsize_t> edges{whole.lo[axis]};
+// Sweeps along `axis` through the edges of `covers`, which hold `point` on all axes before, and counts the elements
+// that none of them holds; `found` has the first of all.
+std::uint64_t count_gaps(const AxisBox& whole, std::size_t axis, Covers covers, std::vector<hsize_t>& point,
+                         Uncovered& found) {
+  if (axis == whole.lo.size()) {
+    if (!covers.empty()) return 0;
+    if (found.first.empty()) found.first = point;
+    return 1;
+  }
+  std::vector<hsize_t> edges{whole.lo[axis], whole.hi[axis]};
   for (const AxisBox* box : covers) {
     for (const hsize_t edge : {box->lo[axis], box->hi[axis]}) {
       if (edge > whole.lo[axis] && edge < whole.hi[axis]) edges.push_back(edge);
@@ -23,29 +28,30 @@ bool find_gap(const AxisBox& whole, std::size_t axis, Covers covers, std::vector
   std::sort(covers.begin(), covers.end(),
             [&](const AxisBox* a, const AxisBox* b) { return a->lo[axis] < b->lo[axis]; });
 
+  std::uint64_t count = 0;
   Covers active;
   auto next = covers.begin();
-  for (const hsize_t edge : edges) {
+  for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
+    const hsize_t edge = edges[i];
     std::erase_if(active, [&](const AxisBox* box) { return box->hi[axis] <= edge; });
     for (; next != covers.end() && (*next)->lo[axis] <= edge; ++next) {
       if ((*next)->hi[axis] > edge) active.push_back(*next);
     }
     point[axis] = edge;
-    std::copy(whole.lo.begin() + static_cast<std::ptrdiff_t>(axis) + 1, whole.lo.end(),
-              point.begin() + static_cast<std::ptrdiff_t>(axis) + 1);
-    if (active.empty() || find_gap(whole, axis + 1, active, point)) return true;
+    count += (edges[i + 1] - edge) * count_gaps(whole, axis + 1, active, point, found);
   }
-  return false;
+  return count;
 }
 
 }  // namespace
 
-std::optional<std::vector<hsize_t>> first_uncovered(const AxisBox& whole, std::span<const AxisBox> covers) {
+Uncovered uncovered(const AxisBox& whole, std::span<const AxisBox> covers) {
   Covers all;
   for (const AxisBox& box : covers) all.push_back(&box);
+  Uncovered found;
   std::vector<hsize_t> point = whole.lo;
-  if (find_gap(whole, 0, std::move(all), point)) return point;
-  return std::nullopt;
+  found.count = count_gaps(whole, 0, std::move(all), point, found);
+  return found;
 }
 
 }  // namespace weir

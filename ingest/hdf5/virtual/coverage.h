@@ -2,7 +2,8 @@
 #pragma once
 
 #include <hdf5.h>
-#include <optional>
+
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -14,8 +15,14 @@ struct AxisBox {
   std::vector<hsize_t> hi;
 };
 
-/// The first element (in row-major order of the cells that the boxes' edges make) of `whole` that none of
-/// `covers` holds; nullopt where they cover it. All have as many axes; `whole` is not empty.
-std::optional<std::vector<hsize_t>> first_uncovered(const AxisBox& whole, std::span<const AxisBox> covers);
+/// Elements of a box that no other holds.
+struct Uncovered {
+  std::uint64_t count = 0;
+  std::vector<hsize_t> first;  ///< in row-major order; empty where there is none
+};
+
+/// The elements of `whole` that none of `covers` holds. All have as many axes; `whole` is not empty, and 64 bits count
+/// its elements.
+Uncovered uncovered(const AxisBox& whole, std::span<const AxisBox> covers);
 
 }  // namespace weir

@@ -7,6 +7,7 @@
 #include "format/base/text.h"
 #include "ingest/hdf5/file/hdf5_error.h"
 #include "ingest/hdf5/file/hdf5_file.h"
+#include "ingest/hdf5/storage/storage.h"
 #include "ingest/hdf5/virtual/library_boxes.h"
 #include "ingest/hdf5/virtual/virtual_mappings.h"
 #include "ingest/source/extent.h"
@@ -52,20 +53,20 @@ class VirtualBoxes final : public StoredBoxes {
         crash_line_(hdf5_crash_line(where_)),
         type_(H5Dget_type(dataset_.get())),
         space_(H5Dget_space(dataset_.get())),
-        mappings_(
-            virtual_mappings(dataset_.get(), axis_box(index_, {{0, 0, 0}, extent}, components_), parent, where_)) {
-    for (const VirtualMapping& mapping : mappings_) {
+        mapped_(virtual_mappings(dataset_.get(), axis_box(index_, {{0, 0, 0}, extent}, components_), parent, where_)) {
+    if (mapped_.unmapped.count > 0) fill_ = storage_of(dataset_.get()).fill;
+    for (const VirtualMapping& mapping : mapped_.mappings) {
       if (mapping.chunk.empty()) continue;
       std::uint64_t bytes = kSourceChunkCopies * mapping.value_bytes;
       for (const hsize_t elements : mapping.chunk) bytes *= elements;  // the library checks: below 2^32
       chunk_bytes_ = std::max(chunk_bytes_, bytes);
     }
     // Sources are alike as a rule: what fits the first one serves all.
-    if (mappings_.empty() || mappings_[0].chunk.empty()) return;
-    const AxisBox& bounds = mappings_[0].bounds;
+    if (mapped_.mappings.empty() || mapped_.mappings[0].chunk.empty()) return;
+    const AxisBox& bounds = mapped_.mappings[0].bounds;
     const std::size_t rank = bounds.lo.size();
     const auto at = [&](std::size_t from_end) {
-      const std::vector<hsize_t>& chunk = mappings_[0].chunk;
+      const std::vector<hsize_t>& chunk = mapped_.mappings[0].chunk;
       const hsize_t wide = bounds.hi[rank - from_end] - bounds.lo[rank - from_end];
       return static_cast<std::int64_t>(
           from_end > chunk.size() ? 1 : std::min<hsize_t>(chunk[chunk.size() - from_end], wide));
@@ -76,15 +77,16 @@ class VirtualBoxes final : public StoredBoxes {
     chunk_origin_ = {corner(x), corner(x + 1), corner(x + 2)};
   }
 
+  const Uncovered& unmapped() const { return mapped_.unmapped; }
   Index3 chunk() const override { return chunk_; }
   Index3 chunk_origin() const override { return chunk_origin_; }
   std::vector<std::string> files() const override {
     std::vector<std::string> files;
-    for (const VirtualMapping& mapping : mappings_) files.push_back(mapping.file);
+    for (const VirtualMapping& mapping : mapped_.mappings) files.push_back(mapping.file);
     return files;
   }
   std::uint64_t working_bytes() const override {
-    return chunk_bytes_ + mappings_.size() * kBytesPerMapping + (kOpenSources + 1) * kHdf5MetadataBytes;
+    return chunk_bytes_ + mapped_.mappings.size() * kBytesPerMapping + (kOpenSources + 1) * kHdf5MetadataBytes;
   }
 
   void read(const Box& box, std::span<std::byte> stored) override {
@@ -93,8 +95,9 @@ class VirtualBoxes final : public StoredBoxes {
     const AxisBox placed = axis_box(index_, box, components_);
     std::vector<hsize_t> dims;
     for (std::size_t i = 0; i < placed.lo.size(); ++i) dims.push_back(placed.hi[i] - placed.lo[i]);
+    fill(stored);
     const std::vector<hssize_t> corner(placed.lo.begin(), placed.lo.end());
-    for (const VirtualMapping& mapping : mappings_) {
+    for (const VirtualMapping& mapping : mapped_.mappings) {
       if (!overlap(mapping.bounds, placed)) continue;
       // Both selections list their elements in row-major order of the virtual dataset.
       const Hdf5Handle part(H5Scombine_select(mapping.in_virtual.get(), H5S_SELECT_AND, wanted.get()));
@@ -117,6 +120,12 @@ class VirtualBoxes final : public StoredBoxes {
     Hdf5Handle dataset;
   };
 
+  // What no source is mapped to keeps it.
+  void fill(std::span<std::byte> stored) const {
+    if (fill_.empty()) return;
+    for (std::size_t at = 0; at < stored.size(); at += fill_.size()) std::ranges::copy(fill_, &stored[at]);
+  }
+
   hid_t source_of(const VirtualMapping& mapping) {
     const auto found = std::ranges::find(open_, &mapping, &OpenSource::mapping);
     if (found != open_.end()) {
@@ -135,8 +144,9 @@ class VirtualBoxes final : public StoredBoxes {
   std::string crash_line_;
   Hdf5Handle type_;
   Hdf5Handle space_;
-  std::vector<VirtualMapping> mappings_;
-  std::list<OpenSource> open_;  ///< the last one used first
+  VirtualMappings mapped_;
+  std::vector<std::byte> fill_;  ///< a stored value; empty where every element has a source
+  std::list<OpenSource> open_;   ///< the last one used first
   Index3 chunk_{0, 0, 0};
   Index3 chunk_origin_{0, 0, 0};
   std::uint64_t chunk_bytes_ = 0;
@@ -144,10 +154,11 @@ class VirtualBoxes final : public StoredBoxes {
 
 }  // namespace
 
-std::unique_ptr<StoredBoxes> make_virtual_boxes(Hdf5Handle dataset, std::vector<std::int64_t> index,
-                                                const Index3& extent, std::int64_t components,
-                                                const std::string& parent, const std::string& where) {
-  return std::make_unique<VirtualBoxes>(std::move(dataset), std::move(index), extent, components, parent, where);
+VirtualVolume make_virtual_boxes(Hdf5Handle dataset, std::vector<std::int64_t> index, const Index3& extent,
+                                 std::int64_t components, const std::string& parent, const std::string& where) {
+  auto boxes = std::make_unique<VirtualBoxes>(std::move(dataset), std::move(index), extent, components, parent, where);
+  Uncovered unmapped = boxes->unmapped();
+  return {std::move(boxes), std::move(unmapped)};
 }
 
 }  // namespace weir

@@ -8,14 +8,19 @@
 #include "format/base/index.h"
 #include "ingest/hdf5/file/hdf5_handle.h"
 #include "ingest/hdf5/storage/stored_boxes.h"
+#include "ingest/hdf5/virtual/coverage.h"
 
 namespace weir {
+
+struct VirtualVolume {
+  std::unique_ptr<StoredBoxes> boxes;
+  Uncovered unmapped;  ///< elements of the volume without a source, which read as the dataset's fill value
+};
 
 /// The three axes of `dataset` (in the file `parent`) behind the leading ones, `extent` voxels, at `index`, one
 /// position per leading axis; of several `components` a voxel these are the last axis. Throws what virtual_mappings
 /// throws. The caller holds Hdf5Lock.
-std::unique_ptr<StoredBoxes> make_virtual_boxes(Hdf5Handle dataset, std::vector<std::int64_t> index,
-                                                const Index3& extent, std::int64_t components,
-                                                const std::string& parent, const std::string& where);
+VirtualVolume make_virtual_boxes(Hdf5Handle dataset, std::vector<std::int64_t> index, const Index3& extent,
+                                 std::int64_t components, const std::string& parent, const std::string& where);
 
 }  // namespace weir

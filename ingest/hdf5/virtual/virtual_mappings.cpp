@@ -10,6 +10,7 @@
 #include "ingest/hdf5/file/hdf5_file.h"
 #include "ingest/hdf5/file/side_files.h"
 #include "ingest/hdf5/storage/storage.h"
+#include "ingest/hdf5/virtual/coverage.h"
 #include "ingest/hdf5/virtual/selection_blocks.h"
 
 namespace weir {
@@ -94,15 +95,17 @@ class MappingReader {
   MappingReader(hid_t dataset, const AxisBox& wanted, const std::string& parent, const std::string& where)
       : dataset_(dataset), wanted_(wanted), parent_(parent), where_(where), space_(H5Dget_space(dataset)) {}
 
-  std::vector<VirtualMapping> run() {
+  VirtualMappings run() {
     const Hdf5Handle creation(H5Dget_create_plist(dataset_));
     std::size_t count = 0;
     H5Pget_virtual_count(creation.get(), &count);
     for (std::size_t i = 0; i < count; ++i) take(stored(creation.get(), i));
-    if (const auto gap = first_uncovered(wanted_, blocks_)) {
-      throw error(cat("no source is mapped to its element ", list_text(*gap), "; the dataset is incomplete"));
+    if (mappings_.empty()) {
+      throw error(cat("no source is mapped to its element ", list_text(wanted_.lo),
+                      ", nor to any other of the volume; the dataset is incomplete"));
     }
-    return std::move(mappings_);
+    Uncovered unmapped = uncovered(wanted_, blocks_);
+    return {std::move(mappings_), std::move(unmapped)};
   }
 
  private:
@@ -249,8 +252,8 @@ class MappingReader {
 
 }  // namespace
 
-std::vector<VirtualMapping> virtual_mappings(hid_t dataset, const AxisBox& wanted, const std::string& parent,
-                                             const std::string& where) {
+VirtualMappings virtual_mappings(hid_t dataset, const AxisBox& wanted, const std::string& parent,
+                                 const std::string& where) {
   return MappingReader(dataset, wanted, parent, where).run();
 }
 

@@ -1,6 +1,6 @@
 // A virtual dataset's mappings: which elements of it lie where in which other
 // dataset. The library silently reads what it cannot find as fill values; here every source is found, or named in an
-// error.
+// error, and elements that no source is mapped to are counted.
 #pragma once
 
 #include <hdf5.h>
@@ -25,13 +25,18 @@ struct VirtualMapping {
   std::size_t value_bytes = 0;  ///< of the source's type
 };
 
+struct VirtualMappings {
+  std::vector<VirtualMapping> mappings;
+  Uncovered unmapped;  ///< elements that the library gives the fill value for
+};
+
 /// The mappings of `dataset` (in the file `parent`) that have elements in `wanted`, in the file's order; those
 /// that go on without end are cut to what there is, those with a block number in the source's name become one
 /// for each block. Every source is opened once and closed again. Throws Error(input), beginning with `where`:
 /// naming the source where it is missing, too small, never written, behind a missing filter, or itself spread over
-/// files, and the first element of `wanted` that no mapping has. The caller holds Hdf5Lock.
-std::vector<VirtualMapping> virtual_mappings(hid_t dataset, const AxisBox& wanted, const std::string& parent,
-                                             const std::string& where);
+/// files; and where no element of `wanted` has a mapping. The caller holds Hdf5Lock.
+VirtualMappings virtual_mappings(hid_t dataset, const AxisBox& wanted, const std::string& parent,
+                                 const std::string& where);
 
 /// The source dataset of a mapping. Throws as above. The caller holds Hdf5Lock.
 Hdf5Handle open_virtual_source(hid_t virtual_dataset, const std::string& file, const std::string& dataset,

@@ -279,6 +279,21 @@ TEST_F(ConversionJobTest, ADamagedOutputIsRemovedAndMadeAgainByTheNextAttempt) {
   EXPECT_TRUE(again.converted);
 }
 
+// Of sysfs, whose files cannot be mapped: as where a file server answers with an error for a moment.
+TEST_F(ConversionJobTest, OutputThatVerifyCannotRead_StaysAndTheAttemptFails) {
+  const ConversionTask work = task(write_source("a_48x40x32_uint8.raw", 48 * 40 * 32));
+  ConversionTask disturbed = work;
+  disturbed.program = directory_ / "weir.sh";
+  write_file(disturbed.program, cat("#!/bin/sh\n[ $1 = verify ] && exec ", work.program, " verify ",
+                                    directory_ / "unreadable.nvdb", "\nexec ", work.program, " \"$@\"\n"));
+  fs::permissions(disturbed.program, fs::perms::owner_all);
+  fs::create_symlink("/sys/devices/system/cpu/online", directory_ / "unreadable.nvdb");
+  const TaskReport report = run(disturbed);
+  EXPECT_EQ(report.end, TaskEnd::failed);
+  EXPECT_EQ(report.result.exit_code, 5) << report.result.reason;
+  EXPECT_FALSE(run(work).converted) << "volume and sidecar are there";
+}
+
 TEST_F(ConversionJobTest, StopsWhenAsked) {
   const std::string source = directory_ / "zeros_1024x1024x512_uint8.raw";
   write_file(source, "");

@@ -82,6 +82,38 @@ TEST(OutputCleaning, KillBetweenTheRenames_TheOldVolumeGetsItsSidecarBack) {
   EXPECT_EQ(read_file(directory / "out.nvdb.json.previous"), old);
 }
 
+// A reader that has the sidecar open and locked must not make it look like another volume's.
+TEST(OutputCleaning, SidecarThatAnotherProcessHasOpen_IsNotReplaced) {
+  const TemporaryDirectory directory;
+  const std::string source = directory / "a_16x16x16_uint8.raw";
+  write_file(source, std::string(16 * 16 * 16, 'a'));
+  const std::string output = directory / "a.nvdb";
+  const CommandResult made = run_weir({"convert", source, "-o", output, "--progress", "never"});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const std::string sidecar = output + ".json";
+  fs::copy_file(sidecar, sidecar + ".previous");
+  const auto live = identify(sidecar);
+  const auto other = make_posix_file_system()->open(sidecar);
+  const CleaningReport report = clean(directory);
+  EXPECT_EQ(report.left, Names{});
+  EXPECT_EQ(report.removed, Names{sidecar + ".previous"});
+  EXPECT_EQ(identify(sidecar), live);
+}
+
+// What it describes is not known then, and may be known at the next start.
+TEST(OutputCleaning, SidecarThatCannotBeLookedAt_StaysWithThePreviousOne) {
+  const TemporaryDirectory directory;
+  const std::string sidecar = directory / "a.nvdb.json";
+  write_file(directory / "a.nvdb", "volume");
+  write_file(sidecar + ".previous", "previous");
+  fs::create_symlink(std::string(300, 'x'), sidecar);  // leads to a name that no file can have
+  const CleaningReport report = clean(directory);
+  EXPECT_EQ(report.left, Names{cat(sidecar, ".previous: ", sidecar, ": cannot look at it: File name too long")});
+  EXPECT_TRUE(fs::is_symlink(sidecar));
+  EXPECT_EQ(read_file(sidecar + ".previous"), "previous");
+  EXPECT_FALSE(fs::exists(directory / "a.nvdb.partial")) << "the lock";
+}
+
 // What an interrupted conversion of `source` to "a.nvdb" leaves, spill files in `spills` or beside it.
 void leave_interrupted(const TemporaryDirectory& directory, const std::string& source, const std::string& spills = "",
                        const ConversionIdentity& more = {}) {
@@ -163,6 +195,16 @@ TEST(OutputCleaning, KeepsResumableWorkOfStacksAndOfSourcesElsewhere) {
   expect_kept();
   leave_interrupted(directory, sources / "gone.raw");
   EXPECT_EQ(clean(directory, sources).removed, Names{directory / ".a.nvdb.work"});
+}
+
+TEST(OutputCleaning, SourcesThatCannotBeLookedAt_OwnNothing) {
+  const TemporaryDirectory directory;
+  const TemporaryDirectory elsewhere;
+  leave_interrupted(directory, elsewhere / "gone.raw");
+  make_old(directory);
+  const std::string unusable = elsewhere / std::string(300, 'x');
+  EXPECT_EQ(clean_outputs(directory.path().string(), unusable, false, milliseconds(0)).removed, Names{});
+  EXPECT_EQ(list_directory(directory.path()), kKept);
 }
 
 // Conversions that begin while it cleans keep what they make.

@@ -34,12 +34,12 @@ class PendingWritesTest : public testing::Test {
 
 TEST_F(PendingWritesTest, FaultStaysUntilSomethingIsWritten) {
   const Error full(ErrorKind::io, "full");
-  writes_.say_fault(full);
+  writes_.log_fault(full);
   writes_.write();  // nothing
   EXPECT_EQ(writes_.fault(), "full");
-  writes_.say_fault(full);
+  writes_.log_fault(full);
   EXPECT_EQ(faults_said(), 1U);
-  writes_.say_written();
+  writes_.clear_fault();
   EXPECT_EQ(writes_.fault(), "");
 }
 
@@ -54,7 +54,7 @@ TEST_F(PendingWritesTest, StepsThatFail_AreKeptInOrderAndTriedAgain) {
   }
   EXPECT_FALSE(writes_.empty());
   EXPECT_EQ(writes_.fault(), "full");
-  writes_.say_written();
+  writes_.clear_fault();
   EXPECT_EQ(writes_.fault(), "full") << "steps are kept";
   has_room = true;
   writes_.write();

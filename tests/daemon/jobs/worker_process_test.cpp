@@ -1,17 +1,28 @@
 #include "daemon/jobs/worker_process.h"
 
 #include <gtest/gtest.h>
+#include <linux/filter.h>
+#include <linux/seccomp.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
+#include <array>
 #include <boost/asio/local/connect_pair.hpp>
 #include <boost/asio/local/stream_protocol.hpp>
+#include <boost/asio/posix/stream_descriptor.hpp>
+#include <cerrno>
 #include <csignal>
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <thread>
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "tests/support/child_answer.h"
+#include "tests/support/message_of_error.h"
 #include "tests/support/run_command.h"
 
 namespace weir::worker_process_test {
@@ -201,6 +212,34 @@ TEST(WorkerProcess, SaysWhyAProgramDoesNotStart) {
   }
   EXPECT_EQ(open[1], open[0]);
   EXPECT_EQ(open[2], open[0]);
+}
+
+// From here on this process and its children can give nothing to epoll, as at the limit fs.epoll.max_user_watches.
+bool refuse_epoll() {
+  std::array<sock_filter, 4> steps{{BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
+                                    BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_epoll_ctl, 0, 1),
+                                    BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | ENOSPC),
+                                    BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW)}};
+  const sock_fprog filter{static_cast<unsigned short>(steps.size()), steps.data()};
+  return ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 && ::prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &filter) == 0;
+}
+
+TEST(WorkerProcess, ProcessThatCannotBeWatched_IsAnIoErrorAndReaped) {
+  const std::string answer = answer_of_child([] {
+    boost::asio::io_context io;
+    const boost::asio::posix::stream_descriptor before(io);  // makes Asio's own epoll
+    const std::size_t open = open_descriptors();
+    if (!refuse_epoll()) return std::string("no seccomp");
+    const std::string message = message_of_error(ErrorKind::io, [&] {
+      const WorkerProcess worker(io, {"/bin/sh", {"sh", "-c", "sleep 60"}, 0, IoClass::none}, {}, {});
+    });
+    if (::waitpid(-1, nullptr, WNOHANG) >= 0 || errno != ECHILD) return std::string("a child is left");
+    return open_descriptors() == open ? message : std::string("a descriptor is left");
+  });
+  if (answer == "no seccomp") GTEST_SKIP() << answer;
+  EXPECT_EQ(
+      answer,
+      "/bin/sh: cannot watch its process: No space left on device; raise fs.epoll.max_user_watches, or free memory");
 }
 
 TEST(WorkerProcess, DiesWithTheDaemon) {

@@ -1,6 +1,9 @@
 #include "format/io/file_mapping.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -44,6 +47,38 @@ TEST(FileMapping, RefusesMissingEmptyAndNonRegularFiles) {
   EXPECT_EQ(refusal(directory / "none"), directory / "none" + ": cannot open: No such file or directory");
   EXPECT_EQ(refusal(directory / "empty"), directory / "empty" + ": the file is empty; give a .nvdb file");
   EXPECT_EQ(refusal(directory.path().string()), directory.path().string() + ": not a regular file; give a .nvdb file");
+}
+
+// The right to read may come back, and says nothing of what the file holds.
+TEST(FileMapping, FileWithoutReadPermission_IsAnIoError) {
+  const TemporaryDirectory directory;
+  const std::string path = directory / "locked";
+  std::ofstream(path) << "bytes";
+  ASSERT_EQ(::chmod(path.c_str(), 0), 0);
+  const uid_t self = ::geteuid();
+  ASSERT_EQ(::seteuid(self == 0 ? 65534 : self), 0);  // root may read everything
+  EXPECT_EQ(
+      message_of_error(ErrorKind::io, [&] { const FileMapping mapping(path, ".nvdb"); }),
+      path + ": cannot open: Permission denied; give this user the right to read it and to enter its directories");
+  ASSERT_EQ(::seteuid(self), 0);
+}
+
+TEST(FileMapping, FileThatCannotBeMapped_IsAnIoError) {
+  const TemporaryDirectory directory;
+  const std::string path = directory / "a";
+  std::ofstream(path) << "bytes";
+  Descriptor write_only(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
+  const std::string message =
+      message_of_error(ErrorKind::io, [&] { const FileMapping mapping(std::move(write_only), path, ".nvdb"); });
+  EXPECT_TRUE(message.starts_with(path + ": cannot map: Permission denied")) << message;
+}
+
+TEST(FileMapping, ErrorsOfTheName_AreInputErrors) {
+  const TemporaryDirectory directory;
+  std::ofstream(directory / "file") << "bytes";
+  EXPECT_EQ(refusal(directory / "file/a"), directory / "file/a" + ": cannot open: Not a directory");
+  const std::string longer = directory / std::string(300, 'x');
+  EXPECT_EQ(refusal(longer), longer + ": cannot open: File name too long");
 }
 
 TEST(FileMapping, ReadsAndPopulatesAnyRange) {

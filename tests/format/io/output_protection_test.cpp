@@ -189,6 +189,47 @@ TEST_F(OutputProtection, KillBetweenTheRenamesAndAFailureAfterwards_KeepTheOldCe
   }
 }
 
+TEST_F(OutputProtection, SidecarThatAnotherProcessHasOpen_DescribesItsVolume) {
+  put("out.nvdb", volume('o'));
+  put("out.nvdb.json", sidecar_of(volume('o'), "old"));
+  const auto other = real_->open(output() + ".json");
+  EXPECT_TRUE(describes(*real_, output() + ".json", output()));
+  EXPECT_FALSE(belongs_back(*real_, output() + ".json", output() + ".json", output()));
+}
+
+TEST_F(OutputProtection, Sidecar_DescribesNothingWhereItIsMissingOrNoSidecar) {
+  put("out.nvdb", volume('o'));
+  EXPECT_FALSE(describes(*real_, output() + ".json", output()));
+  put("out.nvdb.json", "no sidecar");
+  EXPECT_FALSE(describes(*real_, output() + ".json", output()));
+  put("out.nvdb.json", sidecar_of(volume('o'), "old"));
+  EXPECT_TRUE(describes(*real_, output() + ".json", output()));
+  fs::remove(output());
+  EXPECT_FALSE(describes(*real_, output() + ".json", output()));
+  EXPECT_EQ(listing().size(), 1U) << "nothing was made";
+}
+
+// Which of the two is the volume's own cannot be told then: the next attempt can.
+TEST_F(OutputProtection, SidecarThatCannotBeRead_StaysAndSoDoesThePreviousOne) {
+  put("out.nvdb", volume('o'));
+  put("out.nvdb.json", sidecar_of(volume('o'), "live"));
+  put("out.nvdb.json.previous", sidecar_of(volume('o'), "previous"));
+  const Listing before = listing();
+  const std::vector<std::string> expected{"create", "open_to_read", "open_to_read", "read"};
+  for (int call = 1; call <= 3; ++call) {  // after the lock: opens the volume, opens and reads the sidecar
+    FaultyFileSystem files(*real_, call, EIO);
+    const std::string message = write_output(files, true, volume('n'), ErrorKind::io);
+    EXPECT_EQ(files.calls().at(static_cast<std::size_t>(call)), expected[static_cast<std::size_t>(call)]);
+    EXPECT_NE(message.find("Input/output error"), std::string::npos) << call;
+    EXPECT_EQ(listing(), before) << call;
+  }
+  put("out.nvdb.partial", volume('o'));
+  fs::remove(output());
+  FaultyFileSystem files(*real_, 1, EIO);
+  EXPECT_NE(write_output(files, false, volume('n'), ErrorKind::io), "") << "the sidecar of a commit that was killed?";
+  EXPECT_EQ(listing().at("out.nvdb.json"), before.at("out.nvdb.json"));
+}
+
 TEST_F(OutputProtection, WithoutHardLinks_OverwritingSucceeds) {
   for (const auto& [name, text] : Listing{{"out.nvdb", "old"}, {"out.nvdb.json", "old sidecar"}}) put(name, text);
   FaultyFileSystem files(*real_, -1, 0);

@@ -12,7 +12,9 @@
 
 #include "format/base/error.h"
 #include "format/output/commit_leftovers.h"
+#include "tests/support/child_answer.h"
 #include "tests/support/faulty_file_system.h"
+#include "tests/support/message_of_error.h"
 #include "tests/support/temporary_directory.h"
 
 namespace weir::output_files_test {
@@ -198,10 +200,53 @@ TEST_F(OutputFilesTest, KeepsAFileThatAppearedBeforeTheCommit) {
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::io);
-    EXPECT_NE(std::string(error.what()).find("File exists"), std::string::npos) << error.what();
+    EXPECT_EQ(std::string(error.what()),
+              output() + ": appeared while it was written; choose another output or pass --overwrite");
+    ASSERT_TRUE(error.system_failure());
+    EXPECT_EQ(error.system_failure()->errno_value, EEXIST);
   }
   EXPECT_EQ(listing().at("out.nvdb"), "somebody else's");
   EXPECT_EQ(listing().count("out.nvdb.json"), 0U);
+}
+
+TEST_F(OutputFilesTest, SidecarThatAppearedBeforeTheCommit_IsKeptAndNamed) {
+  OutputFiles output_files(*real_, output(), false);
+  put("out.nvdb.json", "somebody else's");
+  EXPECT_EQ(message_of_error(ErrorKind::io, [&] { output_files.commit("sidecar"); }),
+            output() + ".json: appeared while it was written; choose another output or pass --overwrite");
+  EXPECT_EQ(listing().at("out.nvdb.json"), "somebody else's");
+  EXPECT_EQ(listing().count("out.nvdb"), 0U);
+}
+
+// As where a program in Python forks a pool while it pushes.
+TEST_F(OutputFilesTest, ForkedChildThatDestroysIt_RemovesNothing) {
+  auto output_files = std::make_unique<OutputFiles>(*real_, output(), false);
+  output_files->reserve_ahead(6);
+  EXPECT_EQ(answer_of_child([&] {
+              output_files.reset();
+              return std::string("destroyed");
+            }),
+            "destroyed");
+  EXPECT_EQ(listing().count("out.nvdb.partial"), 1U);
+  output_files->clear_for(6);
+  output_files->reserve(6);
+  output_files->volume().write_at(0, std::as_bytes(std::span("volume", 6)));
+  output_files->commit("sidecar");
+  output_files.reset();
+  EXPECT_EQ(listing(), written_);
+}
+
+TEST_F(OutputFilesTest, OpenToRead_NeitherCreatesNorLocksNorWrites) {
+  const std::string file = directory_ / "file";
+  EXPECT_EQ(message_of_error(ErrorKind::io, [&] { real_->open_to_read(file); }),
+            file + ": cannot open for reading: No such file or directory");
+  EXPECT_EQ(listing(), Listing{});
+  put("file", "content");
+  const auto writer = real_->open(file);
+  const auto reader = real_->open_to_read(file);
+  EXPECT_EQ(reader->size(), 7U);
+  EXPECT_EQ(real_->open_to_read(file)->size(), 7U);
+  EXPECT_THROW(reader->write_at(0, std::as_bytes(std::span("x", 1))), Error);
 }
 
 TEST_F(OutputFilesTest, SecondWriterOfTheSameOutputIsRefused) {

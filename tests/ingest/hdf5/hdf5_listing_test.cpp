@@ -17,6 +17,29 @@ class Hdf5Listing : public ::testing::Test {
   Scratch scratch_;
 };
 
+// A soft link to something of the same file has no entry: what it leads to has one.
+TEST_F(Hdf5Listing, LinksThatLeadNowhere_AreListedWithTheirTarget) {
+  write_by_h5py(scratch_, R"(
+with h5py.File("a.h5", "w") as f:
+    f["v"] = values("f4"); expect("v", f["v"][()])
+    f["good"] = h5py.SoftLink("/v")
+    f["lost"] = h5py.SoftLink("/gone/v")
+    f["round"] = h5py.SoftLink("/round")
+    f.create_group("g")["near"] = h5py.SoftLink("none")
+)");
+  SourceOptions options;
+  options.lists_damaged = true;
+  std::vector<std::string> listed;
+  for (const DatasetInfo& info : list_hdf5(scratch_.path("a.h5"), options)) {
+    listed.push_back(info.name + ": " + info.obstacle);
+  }
+  EXPECT_EQ(listed, (std::vector<std::string>{"/lost: is a soft link to /gone/v, which is not there",
+                                              "/round: is a soft link to /round, which is not there",
+                                              "/v: ", "/g/near: is a soft link to none, which is not there"}));
+  EXPECT_EQ(list_hdf5(scratch_.path("a.h5"), {}).size(), 1U);
+  expect_reads(scratch_, "a.h5", {}, "v");
+}
+
 TEST_F(Hdf5Listing, SaysShapeTypeLayoutAndObstacle) {
   write_by_h5py(scratch_, R"(
 with h5py.File("a.h5", "w") as f:

@@ -95,6 +95,35 @@ with h5py.File("types.h5", "w") as f:
   }
 }
 
+// h5py stores truth values as an enumeration of int8, and NetCDF-4 flags as one of any integer.
+TEST_F(Hdf5Source, Enumerations_ReadAsTheirIntegers) {
+  write_by_h5py(scratch_, R"(
+truth = rng.integers(0, 2, SHAPE).astype(bool); expect("truth", truth)
+flags = rng.integers(0, 3, SHAPE) * 100; expect("flags", flags)
+with h5py.File("a.h5", "w") as f:
+    f["plain"] = truth
+    f.create_dataset("packed", data=truth, chunks=(2, 3, 4), compression="gzip")
+    kind = h5py.enum_dtype({"dry": 0, "wet": 100, "ice": 200, "none": 300}, basetype=">i2")
+    f.create_dataset("flags", data=flags.astype(">i2"), dtype=kind)
+    d = f.create_dataset("partly", (4, 5, 6), dtype=kind, chunks=(2, 5, 6), fillvalue=100)
+    d[:2] = 200
+    expect("partly", d[()].astype("i2"))
+    f["flags"].attrs.create("_FillValue", 300, dtype=kind)
+)");
+  expect_reads(scratch_, "a.h5", dataset_options("plain"), "truth");
+  expect_reads(scratch_, "a.h5", dataset_options("packed"), "truth");
+  expect_reads(scratch_, "a.h5", dataset_options("flags"), "flags");
+  expect_reads(scratch_, "a.h5", dataset_options("partly"), "partly");
+  const auto flags = open_source(scratch_.path("a.h5"), dataset_options("flags"));
+  EXPECT_EQ(flags->info().type, ScalarType::int16);
+  EXPECT_EQ(flags->info().mapping.missing, std::vector<StoredValue>{std::int64_t{300}});
+  const std::vector<DatasetInfo> list = list_hdf5(scratch_.path("a.h5"), {});
+  ASSERT_EQ(list.size(), 4U);
+  EXPECT_EQ(list[0].type, "big-endian int16 (enumeration of 4 names)");
+  EXPECT_EQ(list[3].type, "int8 (boolean)");
+  for (const DatasetInfo& listed : list) EXPECT_EQ(listed.obstacle, "") << listed.name;
+}
+
 TEST_F(Hdf5Source, InfoDescribesTheDataset) {
   write_by_h5py(scratch_, R"(
 with h5py.File("a.h5", "w") as f:

@@ -107,6 +107,24 @@ with h5py.File("pmd.h5", "w") as f:
   EXPECT_EQ(pmd->units, "s");
 }
 
+// openPMD 1.1, "Required for each Record": timeOffset is in the unit of the iteration's time.
+TEST_F(Hdf5Time, OffsetOfAnOpenPmdRecord_IsAddedToTheTime) {
+  write_by_h5py(scratch_, R"(
+with h5py.File("pmd.h5", "w") as f:
+    f["data/100/fields/rho"] = values("f4")
+    f["data/100/fields/rho"].attrs["timeOffset"] = np.float32(0.25)
+    f["data/100/fields/B/x"] = values("f4")
+    f["data/100/fields/B"].attrs["timeOffset"] = -0.5
+    f["data/100/fields/E/x"] = values("f4")
+    f["data/100"].attrs.update({"time": 5.0, "timeUnitSI": 1e-15})
+)");
+  for (const auto& [name, time] : {std::pair("rho", 5.25), std::pair("B/x", 4.5), std::pair("E/x", 5.0)}) {
+    const auto found = details_of("pmd.h5", cat("/data/100/fields/", name)).time;
+    ASSERT_TRUE(found.has_value()) << name;
+    EXPECT_EQ(found->value, time * 1e-15) << name;
+  }
+}
+
 TEST_F(Hdf5Time, AuxiliaryCoordinateOfSeveralAxes_IsNoTime) {
   write_by_h5py(scratch_, R"(
 with h5py.File("a.h5", "w") as f:

@@ -145,6 +145,81 @@ TEST(VtkLegacySource, ComponentOfVectorsIsTheVolume) {
   }
 }
 
+// As VTK writes scalars of unsigned char (vtkDataWriter::WriteScalarData).
+TEST(VtkLegacySource, ColorScalars_AreReadAsUint8) {
+  const Scratch scratch;
+  std::string bytes;
+  std::string text;
+  std::vector<float> expected;
+  for (int i = 0; i < 24; ++i) {
+    const int value = i * 11;  // 0 to 253
+    bytes += static_cast<char>(value);
+    text += cat(static_cast<float>(value) / 255.0F, ' ');
+    expected.push_back(static_cast<float>(value));
+  }
+  for (const std::string& file : {head("BINARY", "POINT_DATA 24\nCOLOR_SCALARS c 1\n") + bytes + "\n",
+                                  head("ASCII", "POINT_DATA 24\nCOLOR_SCALARS c 1\n") + text + "\n"}) {
+    const std::string path = write_headed(scratch, "a.vtk", file);
+    const auto source = open_source(path, {});
+    EXPECT_EQ(source->info().dataset, "c");
+    EXPECT_EQ(source->info().type, ScalarType::uint8);
+    EXPECT_EQ(read_volume(*source), expected);
+    const auto list = list_vtk_legacy(path, {});
+    ASSERT_EQ(list.size(), 1U);
+    EXPECT_EQ(list[0].type, "uint8");
+    EXPECT_EQ(list[0].obstacle, "");
+  }
+  const std::string path = write_headed(scratch, "two.vtk",
+                                        head("BINARY", "POINT_DATA 24\nCOLOR_SCALARS c 1\n") + bytes + "\n" +
+                                            scalars("other", "float", std::string(96, '\0')));
+  EXPECT_EQ(refusal(path, ErrorKind::usage),
+            path + ": holds 2 arrays that can be converted; name an array with --dataset: 'c', 'other'");
+}
+
+// 0.25 and 0.75 are 63.75 and 191.25, 2e-3 is 0.51: VTK rounds to the nearest.
+TEST(VtkLegacySource, ColorScalarsOfSeveralComponents_TakeComponent) {
+  const Scratch scratch;
+  std::string text;
+  for (int i = 0; i < 24; ++i) text += "0.25 0.75 2e-3\n";
+  const std::string path = write_headed(scratch, "a.vtk", head("ASCII", "POINT_DATA 24\nCOLOR_SCALARS rgb 3\n") + text);
+  for (const auto& [choice, value] : {std::pair("0", 64.0F), std::pair("1", 191.0F), std::pair("2", 1.0F)}) {
+    SourceOptions options;
+    options.component = parse_component(choice);
+    EXPECT_EQ(read_volume(*open_source(path, options)), std::vector<float>(24, value)) << choice;
+  }
+  EXPECT_EQ(refusal(path, ErrorKind::usage),
+            path + ": array 'rgb': has 3 components a voxel; give --component: 0 to 2, x, y, z or magnitude");
+}
+
+TEST(VtkLegacySource, ColorScalarsInTextBeyondOne_AreRefused) {
+  const Scratch scratch;
+  for (const char* const wrong : {"1.5", "-0.1", "nan", "red"}) {
+    std::string text = "1 1 ";
+    text += wrong;
+    for (int i = 3; i < 24; ++i) text += " 0";
+    const std::string path =
+        write_headed(scratch, "a.vtk", head("ASCII", "POINT_DATA 24\nCOLOR_SCALARS c 1\n") + text + "\n");
+    EXPECT_EQ(refusal(path), cat(path, ": array 'c': value 2 of its text is '", wrong,
+                                 "', no number from 0 to 1, as COLOR_SCALARS in text have them; correct it"));
+  }
+}
+
+TEST(VtkLegacySource, ArraysThatCannotBeRead_AreNamedBesideTheOneThatIsTaken) {
+  const Scratch scratch;
+  const std::string path = write_headed(
+      scratch, "a.vtk",
+      head("ASCII", "POINT_DATA 24\n") + scalars("mask", "bit", ramp_text()) + scalars("a", "float", ramp_text()));
+  std::vector<std::string> said;
+  SourceOptions options;
+  options.notice = [&](const Message& line) { said.push_back(line.text()); };
+  EXPECT_EQ(open_source(path, options)->info().dataset, "a");
+  EXPECT_EQ(said, (std::vector<std::string>{
+                      path + ": a is converted; left out: mask: its type is 'bit', and char to double can be read"}));
+  options.dataset = "a";
+  open_source(path, options);
+  EXPECT_EQ(said.size(), 1U) << "where it is named, nothing is said";
+}
+
 TEST(VtkLegacySource, FindsArraysBehindText) {
   const Scratch scratch;
   const std::string text = head("ASCII", "POINT_DATA 24\nVECTORS v float\n") + ramp_text() + ramp_text() + ramp_text() +

@@ -73,6 +73,8 @@ TEST(VtkXmlHeader, ParsesPlacementAndStorage) {
 }
 
 TEST(VtkXmlHeader, RefusesUnsupportedFiles) {
+  EXPECT_EQ(refusal(replaced(kWhole, "\"ImageData\"", "\"PImageData\"")),
+            "a.vti: type of VTKFile is 'PImageData'; write its pieces as one .vti file, or name one of them");
   EXPECT_EQ(refusal(replaced(kWhole, "\"ImageData\"", "\"RectilinearGrid\"")),
             "a.vti: type of VTKFile is 'RectilinearGrid'; ImageData can be read; resample other grids to an image");
   EXPECT_EQ(refusal(replaced(kWhole, "LittleEndian\"", "LittleEndian\" compressor=\"vtkLZ4DataCompressor\"")),

@@ -351,6 +351,24 @@ TEST(ZarrSource, ArraysThatCannotBeRead_AreListedWithTheReason) {
       "64 bits or floats of 16, 32 or 64; weir inspect lists them");
 }
 
+TEST(ZarrSource, ArraysThatCannotBeRead_AreNamedBesideTheOneThatIsTaken) {
+  const ZarrFiles files;
+  files.write("zarr.json", kGroup);
+  files.write("a/zarr.json", zarr_json("[1,1,1]", "[1,1,1]"));
+  files.write("b/zarr.json", zarr_json("[1,1,1]", "[1,1,1]", R"([{"name":"bytes"}])", "complex64", "[0,0]"));
+  files.write("line/zarr.json", zarr_json("[1]", "[1]"));
+  std::vector<std::string> said;
+  SourceOptions options;
+  options.notice = [&](const Message& line) { said.push_back(line.text()); };
+  EXPECT_EQ(open_source(files.path(), options)->info().dataset, "a");
+  ASSERT_EQ(said.size(), 1U);
+  EXPECT_EQ(said[0].find(files.path() + ": a is converted; left out: b: its type is "), 0U) << said[0];
+  EXPECT_EQ(said[0].find("line"), std::string::npos) << said[0];
+  options.dataset = "a";
+  open_source(files.path(), options);
+  EXPECT_EQ(said.size(), 1U) << "where it is named, nothing is said";
+}
+
 TEST(ZarrSource, ExtentsThatNoVolumeHas_AreListedAsTheReason) {
   const ZarrFiles files;
   files.write("zarr.json", kGroup);

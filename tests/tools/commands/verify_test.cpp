@@ -64,6 +64,21 @@ TEST_F(Verify, FileThatIsNotThere_IsOneLine) {
   EXPECT_EQ(result.err, "weir: structure: " + none + ": cannot open: No such file or directory\n");
 }
 
+// Of sysfs, whose files cannot be mapped: as of a disk or file server that fails, that says nothing of the content.
+TEST_F(Verify, FileThatCannotBeRead_EndsWithExitCode5) {
+  const std::string unreadable = directory_ / "unreadable.nvdb";
+  fs::create_symlink("/sys/devices/system/cpu/online", unreadable);
+  const CommandResult result = run_weir({"verify", unreadable, "--progress", "never"});
+  EXPECT_EQ(result.exit_code, 5);
+  EXPECT_EQ(result.out, "");
+  EXPECT_EQ(result.err, "weir: " + unreadable + ": cannot map: No such device\n");
+  const CommandResult several = run_weir({"verify", unreadable, volume_, "--json", "--progress", "never"});
+  EXPECT_EQ(several.exit_code, 5);
+  const auto report = nlohmann::json::parse(several.out);
+  EXPECT_EQ(report.at("volumes").at(0).at("checks").at(0).at("name"), "readable");
+  EXPECT_EQ(report.at("volumes").at(1).at("ok"), true) << "the others are looked at";
+}
+
 TEST_F(Verify, FileOfAnotherFormat_IsSaidWithTheCommandThatConvertsIt) {
   const std::string raw = directory_ / "v_40x30x20_float32.raw";
   const CommandResult result = run_weir({"verify", raw, "--progress", "never"});

@@ -2,14 +2,24 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
+
 namespace weir::coverage_test {
 namespace {
 
 using Element = std::vector<hsize_t>;
 constexpr auto kCovered = std::nullopt;
 
+std::optional<Element> first_uncovered(const AxisBox& whole, const std::vector<AxisBox>& covers) {
+  const Uncovered found = uncovered(whole, covers);
+  EXPECT_EQ(found.count == 0, found.first.empty());
+  if (found.count == 0) return std::nullopt;
+  return found.first;
+}
+
 TEST(Coverage, WithoutBoxesTheFirstElementIsUncovered) {
   EXPECT_EQ(first_uncovered({{3, 4}, {5, 6}}, {}), (Element{3, 4}));
+  EXPECT_EQ(uncovered({{3, 4}, {5, 6}}, {}).count, 4U);
 }
 
 TEST(Coverage, OneBoxCoversItselfAndWhatIsInside) {
@@ -30,6 +40,7 @@ TEST(Coverage, TilesThatTouchOrOverlapCover) {
 TEST(Coverage, TheHoleOfAFrameIsFound) {
   const std::vector<AxisBox> frame{{{0, 0}, {1, 5}}, {{4, 0}, {5, 5}}, {{0, 0}, {5, 1}}, {{0, 4}, {5, 5}}};
   EXPECT_EQ(first_uncovered({{0, 0}, {5, 5}}, frame), (Element{1, 1}));
+  EXPECT_EQ(uncovered({{0, 0}, {5, 5}}, frame).count, 9U);
   EXPECT_EQ(first_uncovered({{0, 0}, {5, 1}}, frame), kCovered);
 }
 
@@ -55,9 +66,13 @@ TEST(Coverage, RandomBoxesAgreeWithCountedElements) {
       boxes.push_back(std::move(box));
     }
     std::optional<Element> first;
+    std::uint64_t count = 0;
     for (hsize_t i = 64; i-- > 0;) {
-      if (!held[i / 16][i / 4 % 4][i % 4]) first = Element{i / 16, i / 4 % 4, i % 4};
+      if (held[i / 16][i / 4 % 4][i % 4]) continue;
+      first = Element{i / 16, i / 4 % 4, i % 4};
+      ++count;
     }
+    EXPECT_EQ(uncovered({{0, 0, 0}, {4, 4, 4}}, boxes).count, count) << round;
     EXPECT_EQ(first_uncovered({{0, 0, 0}, {4, 4, 4}}, boxes), first) << round;
   }
 }

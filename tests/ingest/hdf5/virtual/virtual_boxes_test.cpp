@@ -122,6 +122,42 @@ make("numbered.h5", numbered)
   expect_reads(scratch_, "numbered.h5", {}, "four");
 }
 
+// As a detector's frames have between its modules: the library gives the fill value there.
+TEST_F(VirtualDataset, ElementsWithoutASource_ReadAsTheFillValueAndAreCounted) {
+  write_by_h5py(scratch_, R"(
+v = values("f4", (5, 7, 9))
+with h5py.File("source.h5", "w") as f: f["d"] = v
+layout = h5py.VirtualLayout((5, 7, 9), "f4")
+layout[:, :3, :4] = h5py.VirtualSource("source.h5", "d", v.shape)[:, :3, :4]
+layout[:, 4:, 5:] = h5py.VirtualSource("source.h5", "d", v.shape)[:, 4:, 5:]
+steps = h5py.VirtualLayout((2, 5, 7, 9), "f4")
+steps[0] = h5py.VirtualSource("source.h5", "d", v.shape)
+with h5py.File("a.h5", "w") as f:
+    f.create_virtual_dataset("v", layout, fillvalue=-1.5)
+    f.create_virtual_dataset("steps", steps)
+    expect("v", f["v"][()])
+    expect("whole", v)
+)");
+  const std::string path = scratch_.path("a.h5");
+  expect_reads(scratch_, "a.h5", dataset_options("v"), "v");
+  expect_reads(scratch_, "a.h5", dataset_options("steps", {0}), "whole");
+  const auto note = [&](const SourceOptions& options) {
+    return open_source(path, options)->info().details.chunks_note;
+  };
+  EXPECT_EQ(note(dataset_options("v")), "195 of its 315 values have no source and read as its fill value, -1.5");
+  EXPECT_EQ(note(dataset_options("steps", {0})), "");
+  SourceOptions all = dataset_options("v");
+  all.missing_chunks = MissingChunks::error;
+  EXPECT_EQ(refused("a.h5", all), path +
+                                      ": /v: 195 of its 315 values have no source (the first at 0, 0, 4), and with "
+                                      "--missing-chunks error all must have one; map one to them, or use "
+                                      "--missing-chunks fill");
+  EXPECT_EQ(refused("a.h5", dataset_options("steps", {1})),
+            path +
+                ": /steps: no source is mapped to its element 1, 0, 0, 0, nor to any other of the volume; the "
+                "dataset is incomplete");
+}
+
 TEST_F(VirtualDataset, NamesTheSourceOrTheElementThatIsMissing) {
   const LeaksOfLibraries of_plugins;
   write_by_h5py(scratch_, R"(
@@ -141,7 +177,9 @@ with h5py.File("source.h5", "w") as f:
 half = V("source.h5", "half", (2, 4, 4))
 S = np.s_
 whole("gap.h5", [(S[:2], half)])
-whole("hole.h5", [(S[:2], half), (S[2:, :3], V("source.h5", "half", (2, 4, 4))[:, :3])])
+with h5py.File("bare.h5", "w") as f:
+    made = h5py.h5p.create(h5py.h5p.DATASET_CREATE); made.set_layout(h5py.h5d.VIRTUAL)
+    h5py.h5d.create(f.id, b"v", h5py.h5t.IEEE_F32LE, h5py.h5s.create_simple((4, 4, 4)), made)
 whole("no file.h5", [(S[:2], half), (S[2:], V("other.h5", "half", (2, 4, 4)))])
 whole("no dataset.h5", [(S[:2], half), (S[2:], V("source.h5", "none", (2, 4, 4)))])
 whole("small.h5", [(S[:2], half), (S[2:], V("source.h5", "small", (2, 4, 4)))])
@@ -161,8 +199,7 @@ whole("bad source.h5", [(S[...], V("bad.h5", "v", (4, 4, 4)))])
   };
   const std::string source = "its source " + scratch_.path("source.h5") + ": ";
   const std::string incomplete = "; the dataset is incomplete";
-  EXPECT_EQ(said("gap.h5"), "no source is mapped to its element 2, 0, 0" + incomplete);
-  EXPECT_EQ(said("hole.h5"), "no source is mapped to its element 2, 3, 0" + incomplete);
+  EXPECT_EQ(said("bare.h5"), "no source is mapped to its element 0, 0, 0, nor to any other of the volume" + incomplete);
   EXPECT_EQ(said("cut.h5"), source + "half: has extents 2, 4, 4, fewer than the mapping needs");
   EXPECT_EQ(said("no file.h5"), "its source file other.h5 is not there; put it beside " + scratch_.path("no file.h5") +
                                     " or set HDF5_VDS_PREFIX");
