@@ -277,7 +277,8 @@ function(weir_brick_tests)
   set(root ${PROJECT_SOURCE_DIR})
   file(GLOB sources CONFIGURE_DEPENDS ${root}/tests/fake_bricks/*.cpp ${root}/gpu/cuda/load/*.cpp ${root}/gpu/cuda/render/*.cpp)
   add_executable(weir_tests_bricks ${sources} ${root}/tests/fake_cuda/fake_runtime.cpp ${root}/tests/fake_cuda/fake_calls.cpp
-                                   ${root}/gpu/cuda/runtime/check.cpp ${root}/gpu/cuda/grid_loader.cpp
+                                   ${root}/gpu/cuda/runtime/check.cpp ${root}/gpu/cuda/runtime/driver_context.cpp
+                                   ${root}/gpu/cuda/grid_loader.cpp
                                    ${root}/gpu/cuda/volume/texture.cpp ${root}/gpu/cuda/volume/device_memory.cpp
                                    ${root}/tests/cuda/refused_memory_test.cpp ${root}/tests/cuda/paging_leak_test.cpp)
   set_target_properties(weir_tests_bricks PROPERTIES UNITY_BUILD OFF)  # some name in unnamed namespaces what instead/ has

@@ -10,7 +10,7 @@
 
 #include "compressor/conversion_control.h"
 #include "compressor/conversion_memory.h"
-#include "compressor/outlook/look_ahead.h"
+#include "compressor/look_ahead.h"
 #include "compressor/plan/memory_plan.h"
 #include "compressor/plan/startable_threads.h"
 #include "compressor/resume.h"

@@ -310,6 +310,7 @@ class SurveyedConversion {
     const FilePlan& file = encoded.file;
     const GridType type = grid_type_of(file.encoding);
     head_.type = type;
+    head_.grid_class = info_.grid_class;
     head_.breadth_first = type != GridType::fpn;
     head_.name = grid_name(info_.dataset);
     if (head_.name != info_.dataset && !info_.dataset.empty() && parts_.control.notice) {

@@ -26,7 +26,7 @@ using namespace weir::c;
 
 namespace {
 
-// Values that were expected do not come: that ends the push.
+// Makes the call. If it throws, the values that it was to bring never come, so the whole push fails, too.
 template <typename Call>
 void ending_with_failures(PushedVolume& volume, const Call& call) {
   try {

@@ -167,6 +167,7 @@ float paper_edge(std::size_t bin, float min, float max) {
 
 Background find_background(const Survey& survey, const RowStore& rows, VolumeSource& source, const BlockPlan& plan,
                            const StreamOptions& options) {
+  if (const auto& said = source.info().background) return {*said, "source", 0};
   if (survey.finite == 0) return {0, "none", 0};
   const std::vector<std::uint64_t> counts = survey.histogram.counts();
   const std::size_t bin = fullest(counts);

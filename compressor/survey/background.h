@@ -15,9 +15,9 @@ namespace weir {
 
 struct Background {
   float value = 0;
-  /// "user"; "mode": the most frequent value of the fullest bin, counted; "sampled-mode": the same from
-  /// one voxel a leaf; "bin": the middle of the fullest bin, where no value occurs twice; "paper";
-  /// "none": there is no finite value.
+  /// "user"; "source": what the file says of a level set; "mode": the most frequent value of the fullest bin, counted;
+  /// "sampled-mode": the same from one voxel a leaf; "bin": the middle of the fullest bin, where no value occurs twice;
+  /// "paper"; "none": there is no finite value.
   std::string method;
   double share = 0;  ///< of the finite voxels that have this value (of the samples for "sampled-mode", of the bin for
                      ///< "bin" and "paper")
@@ -29,7 +29,8 @@ inline constexpr std::int64_t kExactModeVoxels = std::int64_t{1} << 21;
 /// Larger ones: at most this many leaves, evenly spaced, take part with one sampled voxel each.
 inline constexpr std::int64_t kModeSamples = std::int64_t{1} << 21;
 
-/// Equal counts go to the lowest bin and the lowest value; -0.0 counts as 0.0.
+/// What the source says, if it says one. Else equal counts go to the lowest bin and the lowest value; -0.0 counts as
+/// 0.0.
 Background find_background(const Survey& survey, const RowStore& rows, VolumeSource& source, const BlockPlan& plan,
                            const StreamOptions& options);
 

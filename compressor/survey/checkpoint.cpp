@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "format/base/json_text.h"
 #include "format/base/text.h"
 
 namespace weir {
@@ -158,7 +159,7 @@ std::string to_text(const Checkpoint& c) {
     if (c.attempt->met) json["attempt"]["met"] = bits(*c.attempt->met);
   }
   // A path may hold any byte.
-  const std::string body = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  const std::string body = json_text(json);
   return cat(kFormat, digest_of(body).hex(), '\n', body);
 }
 

@@ -1,12 +1,11 @@
 #include "daemon/config/watch_options.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <filesystem>
 #include <map>
 
 #include "compressor/options/conversion_request.h"
+#include "format/base/exact_text.h"
 
 namespace weir {
 namespace {
@@ -16,16 +15,10 @@ std::string key_of(std::string name) {
   return name;
 }
 
-/// The shortest text that parses back to `value`.
-std::string number_text(double value) {
-  std::array<char, 32> text{};
-  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
-}
-
 std::string value_text(const toml::node& node, const std::string& key, const char* between, const TomlReader& reader) {
   if (const auto* text = node.as_string()) return text->get();
   if (const auto* number = node.as_integer()) return std::to_string(number->get());
-  if (const auto* number = node.as_floating_point()) return number_text(number->get());
+  if (const auto* number = node.as_floating_point()) return exact_text(number->get());
   const toml::array* array = node.as_array();
   if (array == nullptr || array->empty()) {
     reader.fail(node, cat(key, " must be a string, a number or an array of them"));

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/store/problem_key.h"
+#include "format/base/json_text.h"
 
 namespace weir {
 namespace {
@@ -141,8 +142,6 @@ OrderedJson to_json(const ViewerView& viewer) {
 
 OrderedJson to_json(const ProblemPage& page) { return {{"total", page.total}, {"groups", array_of(page.groups)}}; }
 
-std::string json_line(const OrderedJson& json) {
-  return json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace) + '\n';
-}
+std::string json_line(const OrderedJson& json) { return json_text(json) + '\n'; }
 
 }  // namespace weir

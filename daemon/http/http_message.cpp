@@ -1,4 +1,5 @@
 #include "daemon/http/http_message.h"
+#include "format/base/json_text.h"
 
 #include <nlohmann/json.hpp>
 
@@ -8,7 +9,7 @@ HttpResponse error_response(unsigned status, const std::string& message) {
   const nlohmann::json body{{"error", message}};
   HttpResponse response;
   response.status = status;
-  response.body = body.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
+  response.body = json_text(body) + '\n';
   return response;
 }
 

@@ -1,13 +1,12 @@
 #include "daemon/http/metrics.h"
 
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <concepts>
 #include <initializer_list>
 #include <string_view>
 #include <utility>
 
+#include "format/base/exact_text.h"
 #include "format/base/text.h"
 
 namespace weir {
@@ -15,13 +14,10 @@ namespace {
 
 std::string number(std::uint64_t value) { return cat(value); }
 
-// The shortest text that reads back as the same value.
 std::string number(double value) {
   if (std::isnan(value)) return "NaN";
   if (std::isinf(value)) return value > 0 ? "+Inf" : "-Inf";
-  std::array<char, 32> text{};
-  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
-  return {text.data(), end};
+  return exact_text(value);
 }
 
 std::string escaped(std::string_view label) {

@@ -10,6 +10,7 @@
 #include "daemon/http/page_response.h"
 #include "daemon/http/request_target.h"
 #include "daemon/http/socket_token.h"
+#include "format/base/json_text.h"
 #include "format/base/text.h"
 
 namespace weir {
@@ -50,7 +51,7 @@ std::string why_none(const ViewerView& viewer) {
 HttpResponse answer_without_viewer(const ViewerView& viewer) {
   const nlohmann::json body{{"error", why_none(viewer)},
                             {"state", kViewerStateNames.at(static_cast<std::size_t>(viewer.state))}};
-  return {503, "application/json", body.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n", {}};
+  return {503, "application/json", json_text(body) + "\n", {}};
 }
 
 // For a person who opens the address by hand, or reads it after the viewer has ended. While one is being started, the

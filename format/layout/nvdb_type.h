@@ -1,4 +1,4 @@
-// The grid types of NanoVDB that weir reads.
+// The grid types of NanoVDB that weir reads, and the grid classes that it writes.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +7,10 @@ namespace weir {
 
 /// NanoVDB's grid types that hold scalars a renderer can use; values as on disk.
 enum class GridType : std::uint32_t { float32 = 1, fp4 = 13, fp8 = 14, fp16 = 15, fpn = 16 };
+
+/// NanoVDB's grid classes that a grid of scalars can have; values as on disk. Its validators take them for all of
+/// GridType, and a staggered one, 3, for vectors alone.
+enum class GridClass : std::uint32_t { unknown = 0, level_set = 1, fog_volume = 2 };
 
 /// "float32", "fp4", "fp8", "fp16" or "fpn".
 constexpr const char* grid_type_name(GridType type) {

@@ -157,6 +157,7 @@ void ExpandedTree::write(std::span<const LeafStatistics> leaves, const Sink& sin
     head.tiles.push_back({uppers_[i].origin, layout_.upper_offset(i), false, 0});
   }
   head.type = type_;
+  head.grid_class = static_cast<GridClass>(load<std::uint32_t>(grid_.data().data() + nvdb::grid::kGridClass));
   head.name = grid_.name();
   head.voxel_size = grid_.voxel_size();
   head.origin = grid_.world_origin();

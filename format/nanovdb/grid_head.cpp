@@ -125,7 +125,7 @@ void store_grid(Image grid, const GridHead& head, const TreeLayout& layout) {
   store_map<double>(grid, kMap + 88, head);
   store_world_box(grid, kWorldBBox, head);
   store3(grid, kVoxelSize, head.voxel_size);
-  store(grid, kGridClass, std::uint32_t{0});
+  store(grid, kGridClass, static_cast<std::uint32_t>(head.grid_class));
   store(grid, kGridType, static_cast<std::uint32_t>(head.type));
   store(grid, kBlindOffset, layout.blind_meta - layout.grid);
   store(grid, kBlindCount, layout.blind_records());
@@ -144,6 +144,7 @@ void store_file_meta(Image file, const GridHead& head, const TreeLayout& layout)
   store(file, meta::kNameKey, name_key(head.name));
   store(file, meta::kVoxelCount, head.statistics.count);
   store(file, meta::kGridType, static_cast<std::uint32_t>(head.type));
+  store(file, meta::kGridClass, static_cast<std::uint32_t>(head.grid_class));
   store_world_box(file, meta::kWorldBBox, head);
   store_index_box(file, meta::kIndexBBox, head.statistics.bbox);
   store3(file, meta::kVoxelSize, head.voxel_size);

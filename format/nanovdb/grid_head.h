@@ -28,6 +28,7 @@ inline constexpr std::size_t kMaxGridNameBytes = 255;
 
 struct GridHead {
   GridType type = GridType::float32;
+  GridClass grid_class = GridClass::unknown;
   std::string name;                           ///< 1 to kMaxGridNameBytes bytes
   std::array<double, 3> voxel_size{1, 1, 1};  ///< > 0
   std::array<double, 3> origin{0, 0, 0};      ///< world position of index (0, 0, 0)

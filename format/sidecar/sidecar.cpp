@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "format/base/error.h"
+#include "format/base/json_text.h"
 #include "format/base/text.h"
 #include "format/sidecar/json_archive.h"
 
@@ -196,7 +197,7 @@ std::string to_json_text(const Sidecar& sidecar) {
   std::string text = "{";
   const char* separator = "\n";
   for (const auto& [key, value] : writer.document().items()) {
-    text += cat(separator, "  \"", key, "\": ", value.dump(-1, ' ', false, JsonWriter::Json::error_handler_t::replace));
+    text += cat(separator, "  \"", key, "\": ", json_text(value));
     separator = ",\n";
   }
   return text + "\n}\n";

@@ -98,7 +98,7 @@ struct Sidecar {
 
   struct Background {
     double value = 0;
-    std::string method;  ///< how it was found: "modal", "fullest-bin", "user", ...
+    std::string method;  ///< how it was found: "mode", "bin", "user", "source", ...
     double share = 0;    ///< part of the voxels with that value, 0..1
   } background;
 

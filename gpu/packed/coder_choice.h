@@ -1,5 +1,8 @@
-// Who surveys and encodes packed blocks: --backend of a conversion. Needs no CUDA toolkit; a program with
-// weir_cuda_encode has the device.
+// Whether the CPU or a CUDA device surveys and encodes packed blocks: --backend of a conversion.
+//
+// All of it is inline because the answer depends on the program that includes it: one that links weir_cuda (which
+// defines WEIR_HAVE_CUDA) can take a device, and one that does not compiles this without the CUDA toolkit. A source
+// file of weir_gpu would be compiled once for both.
 #pragma once
 
 #include <cstdint>
@@ -17,10 +20,11 @@
 
 namespace weir {
 
-/// A device's driver takes some hundred MiB of the process: nobody who gives less memory gets one unasked.
+/// CoderChoice::automatic takes a device only if the conversion may use this much memory, because the device's driver
+/// alone takes some hundred MiB of the process.
 inline constexpr std::uint64_t kLeastMemoryOfDevice = std::uint64_t{1} << 30U;
 
-/// Says what a device has failed at, after which the CPU does its work.
+/// What to call when a device fails: tells `notice` (may be null) why, and that the CPU takes over.
 inline std::function<void(const Error&)> say_device_failure(const Notice& notice) {
   return [notice](const Error& error) {
     if (notice)
@@ -28,10 +32,15 @@ inline std::function<void(const Error&)> say_device_failure(const Notice& notice
   };
 }
 
-/// On the calling thread's current device, of a conversion whose blocks are `packed`, or may be no such ones, under a
-/// ceiling of `memory` bytes; null: the CPU. What fails later, and with CoderChoice::automatic before, is said to
-/// `notice`, once: the CPU goes on. Throws Error(usage) for CoderChoice::cuda where this build or this machine has no
-/// device, and Error(io) where that has no room.
+/// The coder that `choice` asks for: one on the calling thread's current device, or null for the CPU.
+///   - CoderChoice::cpu: null.
+///   - CoderChoice::automatic: the device, if the conversion writes `packed` blocks, may use kLeastMemoryOfDevice of
+///   its
+///     `memory` (bytes), and there is a device that works; a device that does not is told to `notice`.
+///   - CoderChoice::cuda: the device. Throws Error(usage) if this build or this machine has none, and Error(io) if it
+///   has
+///     no room.
+/// If the device fails later, `notice` is told once, and the CPU goes on.
 inline std::unique_ptr<BlockCoder> choose_coder(CoderChoice choice, bool packed, std::uint64_t memory,
                                                 const Notice& notice) {
   if (choice == CoderChoice::cpu) return nullptr;

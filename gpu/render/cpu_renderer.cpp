@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <mutex>
 #include <optional>
+#include <utility>
 
 #include "format/base/error.h"
 
@@ -22,6 +23,16 @@ oneapi::tbb::task_arena make_arena(int threads) {
   return oneapi::tbb::task_arena(threads > 0 ? threads : oneapi::tbb::task_arena::automatic);
 }
 
+// The picture that `options` go on with, or an empty one; without `kept` its pixels' samples are not counted.
+KeptPixels begun_picture(const RenderFrame& frame, const CpuRenderOptions& options) {
+  KeptPixels picture;
+  if (options.kept != nullptr) picture = std::exchange(*options.kept, {});
+  const bool same = picture.sums.width == frame.width && picture.sums.height == frame.height;
+  if (picture.samples.empty() || !same) picture = {Image(frame.width, frame.height), {}};
+  if (options.kept != nullptr) picture.samples.resize(picture.sums.pixels.size());
+  return picture;
+}
+
 }  // namespace
 
 std::size_t render_threads(int threads) { return static_cast<std::size_t>(make_arena(threads).max_concurrency()); }
@@ -34,7 +45,8 @@ Image render_cpu(const RenderTask<Volume>& task, const CpuRenderOptions& options
 template <class Volume>
 Image render_cpu(std::span<const RenderTask<Volume>> tasks, const CpuRenderOptions& options) {
   const RenderFrame& frame = tasks.front();
-  Image image(frame.width, frame.height);
+  KeptPixels picture = begun_picture(frame, options);
+  Image& image = picture.sums;
   std::atomic<std::uint64_t> done{0};
   std::mutex reporting;
   const auto cancelled = [&] { return options.cancel != nullptr && options.cancel->load(std::memory_order_relaxed); };
@@ -46,8 +58,12 @@ Image render_cpu(std::span<const RenderTask<Volume>> tasks, const CpuRenderOptio
     for (std::int32_t y = y0; y < y1; ++y) {
       for (std::int32_t x = x0; x < x1; ++x) {
         if (cancelled()) return;  // a pixel of a dense volume may take milliseconds
-        Float3& sum = image.pixels[image.index(x, y)];
-        for (std::uint32_t s = first; s < last; ++s) sum += render_sample(task, x, y, s);
+        const std::size_t pixel = image.index(x, y);
+        if (!picture.samples.empty()) {
+          if (picture.samples[pixel] >= last) continue;  // drawn before the picture was given up
+          picture.samples[pixel] = last;
+        }
+        for (std::uint32_t s = first; s < last; ++s) image.pixels[pixel] += render_sample(task, x, y, s);
       }
       done += static_cast<std::uint64_t>(x1 - x0) * (last - first);
       if (!options.progress) continue;
@@ -76,10 +92,13 @@ Image render_cpu(std::span<const RenderTask<Volume>> tasks, const CpuRenderOptio
       });
     });
   }
-  if (cancelled()) throw Error(ErrorKind::interrupted, "interrupted; no image was written");
+  if (cancelled()) {
+    if (options.kept != nullptr) *options.kept = std::move(picture);
+    throw Error(ErrorKind::interrupted, "interrupted; no image was written");
+  }
   const float scale = 1.0F / static_cast<float>(std::max(options.samples, 1U));
   for (Float3& pixel : image.pixels) pixel = pixel * scale;
-  return image;
+  return std::move(picture.sums);
 }
 
 template <class Fine>

@@ -22,8 +22,9 @@ struct CpuRenderOptions : SampleOptions {
 /// Most threads that render, of those asked for.
 std::size_t render_threads(int threads);
 
-/// The mean of all samples. Throws Error(interrupted) where `cancel` was set, and what a look-up in the volume throws.
-/// Of VolumeSampler, DenseSampler and CachedSampler, with or without levels of detail in memory.
+/// The mean of all samples. Throws Error(interrupted) where `cancel` was set, after which `kept` has what was drawn,
+/// and what a look-up in the volume throws. Of VolumeSampler, DenseSampler and CachedSampler, with or without levels of
+/// detail in memory.
 template <class Volume>
 Image render_cpu(const RenderTask<Volume>& task, const CpuRenderOptions& options);
 /// The same of volumes that only one thread at a time may use: `tasks` are of the same picture, one for each of

@@ -74,6 +74,86 @@ void add_block(VoxelMean& mean, const BlockValues& values, bool one_value, const
   }
 }
 
+// Calls take(i) for all of [low, high).
+template <class Take>
+void for_each_in(const Int3& low, const Int3& high, const Take& take) {
+  for (std::int32_t x = low.x; x < high.x; ++x) {
+    for (std::int32_t y = low.y; y < high.y; ++y) {
+      for (std::int32_t z = low.z; z < high.z; ++z) take(Int3{x, y, z});
+    }
+  }
+}
+
+// The finest level of a pyramid, made from the voxels. It is filled by units: texels, or blocks where these are larger.
+template <class Blocks>
+struct FinestLevel {
+  const LevelLattice& lattice;
+  int level;
+  const Blocks& blocks;
+  std::vector<float>& texels;
+
+  int unit_level() const { return greater(level, 3); }
+  Int3 units() const { return lattice.texels(unit_level()); }
+
+  void fill_unit(const Int3& unit) const {
+    Int3 low;
+    Int3 high;
+    lattice.voxels(unit, unit_level(), low, high);
+    if (level < unit_level()) {
+      fill_block(unit, blocks_of(low));
+    } else {
+      fill_texel(unit, low, high);
+    }
+  }
+
+ private:
+  // A texel of the voxels [low, high), which are those of whole blocks but for the domain's bounds.
+  void fill_texel(const Int3& texel, const Int3& low, const Int3& high) const {
+    BlockValues values{};
+    VoxelMean mean;
+    const Int3 last = blocks_of({high.x - 1, high.y - 1, high.z - 1});
+    for_each_in(blocks_of(low), {last.x + 1, last.y + 1, last.z + 1}, [&](const Int3& block) {
+      const bool one_value = read(block, values);
+      add_block(mean, values, one_value, block, low, high);
+    });
+    texels[table_index(texel, lattice.texels(level))] = mean.value();
+  }
+
+  // The texels, 2^(3 - level) along an axis, whose voxels are in one block, which is a unit.
+  void fill_block(const Int3& unit, const Int3& block) const {
+    BlockValues values{};
+    const bool one_value = read(block, values);
+    const Int3 n = lattice.texels(level);
+    const Int3 first = first_texel(unit);
+    const std::int32_t edge = 1 << (unit_level() - level);
+    const Int3 low{greater(first.x, 0), greater(first.y, 0), greater(first.z, 0)};
+    const Int3 high{lesser(first.x + edge, n.x), lesser(first.y + edge, n.y), lesser(first.z + edge, n.z)};
+    for_each_in(low, high, [&](const Int3& texel) {
+      Int3 begin;
+      Int3 end;
+      lattice.voxels(texel, level, begin, end);
+      VoxelMean mean;
+      add_block(mean, values, one_value, block, begin, end);
+      texels[table_index(texel, n)] = mean.value();
+    });
+  }
+
+  // Of a unit, counted from the level's first; those before it are outside the domain.
+  Int3 first_texel(const Int3& unit) const {
+    const int parts = unit_level() - level;
+    const Int3 first_unit = lattice.first(unit_level());
+    const Int3 first = lattice.first(level);
+    return {((first_unit.x + unit.x) << parts) - first.x, ((first_unit.y + unit.y) << parts) - first.y,
+            ((first_unit.z + unit.z) << parts) - first.z};
+  }
+
+  // `block` counts from the first region's corner, the table from the domain's first block.
+  bool read(const Int3& block, BlockValues& values) const {
+    const Int3 corner = blocks_of(lattice.shift);
+    return blocks.read({block.x - corner.x, block.y - corner.y, block.z - corner.z}, values);
+  }
+};
+
 }  // namespace
 
 MeanPyramid::MeanPyramid(const Box& domain, const LeafTableView& table, int first, int threads)
@@ -92,76 +172,40 @@ MeanPyramid::MeanPyramid(const Box& domain, const DenseView& voxels, int first, 
   fill(DenseBlocks{voxels, {shift.x & 7, shift.y & 7, shift.z & 7}}, threads);
 }
 
-// Work is split by the blocks' columns in z, or by the texels of which they are parts, so that a block is read once.
 template <class Blocks>
 void MeanPyramid::fill(const Blocks& blocks, int threads) {
   const int count = level_count(lattice_, first_);
   for (int l = first_; l < first_ + count; ++l) levels_.emplace_back(lattice_.size(l));
-  const int unit = greater(first_, 3);  // level whose texels are filled together
-  const Int3 units = lattice_.texels(unit);
-  const Int3 corner = blocks_of(lattice_.shift);  // the table's first block
-  const Int3 first_unit = lattice_.first(unit);
-  const Int3 first_texel = lattice_.first(first_);
-  const Int3 texels = lattice_.texels(first_);
-  const int parts = unit - first_;  // 2^parts texels a unit, along an axis
-  std::vector<float>& finest = levels_.front();
-
-  const auto fill_unit = [&](const Int3& u) {
-    Int3 low;
-    Int3 high;
-    lattice_.voxels(u, unit, low, high);
-    const Int3 from = blocks_of(low);
-    const Int3 to = blocks_of({high.x - 1, high.y - 1, high.z - 1});
-    BlockValues values{};
-    VoxelMean whole;
-    for (std::int32_t x = from.x; x <= to.x; ++x) {
-      for (std::int32_t y = from.y; y <= to.y; ++y) {
-        for (std::int32_t z = from.z; z <= to.z; ++z) {
-          const Int3 block{x, y, z};
-          const bool one_value = blocks.read({x - corner.x, y - corner.y, z - corner.z}, values);
-          if (parts == 0) {
-            add_block(whole, values, one_value, block, low, high);
-            continue;
-          }
-          for (std::int32_t k = 0; k < 1 << (3 * parts); ++k) {
-            const std::int32_t mask = (1 << parts) - 1;
-            const Int3 texel{((first_unit.x + u.x) << parts) + (k & mask) - first_texel.x,
-                             ((first_unit.y + u.y) << parts) + (k >> parts & mask) - first_texel.y,
-                             ((first_unit.z + u.z) << parts) + (k >> 2 * parts) - first_texel.z};
-            if (texel.x < 0 || texel.y < 0 || texel.z < 0) continue;
-            if (texel.x >= texels.x || texel.y >= texels.y || texel.z >= texels.z) continue;
-            Int3 begin;
-            Int3 end;
-            lattice_.voxels(texel, first_, begin, end);
-            VoxelMean mean;
-            add_block(mean, values, one_value, block, begin, end);
-            finest[table_index(texel, texels)] = mean.value();
-          }
-        }
-      }
-    }
-    if (parts == 0) finest[table_index(u, texels)] = whole.value();
-  };
-
   oneapi::tbb::task_arena arena(threads > 0 ? threads : oneapi::tbb::task_arena::automatic);
   arena.execute([&] {
-    const std::int64_t columns = std::int64_t{units.x} * units.y;
-    oneapi::tbb::parallel_for(std::int64_t{0}, columns, [&](std::int64_t c) {
-      for (std::int32_t z = 0; z < units.z; ++z) {
-        fill_unit({static_cast<std::int32_t>(c % units.x), static_cast<std::int32_t>(c / units.x), z});
+    fill_finest(blocks);
+    for (int l = first_ + 1; l < first_ + count; ++l) reduce_level(l);
+  });
+}
+
+// Work is split into columns in z of units: cubes of one block at least, and of one texel at least, so that each block
+// is read once.
+template <class Blocks>
+void MeanPyramid::fill_finest(const Blocks& blocks) {
+  const FinestLevel<Blocks> level{lattice_, first_, blocks, levels_.front()};
+  const Int3 units = level.units();
+  oneapi::tbb::parallel_for(std::int64_t{0}, std::int64_t{units.x} * units.y, [&](std::int64_t column) {
+    const auto x = static_cast<std::int32_t>(column % units.x);
+    const auto y = static_cast<std::int32_t>(column / units.x);
+    for (std::int32_t z = 0; z < units.z; ++z) level.fill_unit({x, y, z});
+  });
+}
+
+void MeanPyramid::reduce_level(int level) {
+  const auto at = static_cast<std::size_t>(level - first_);
+  const std::vector<float>& finer = levels_[at - 1];
+  std::vector<float>& coarser = levels_[at];
+  const Int3 n = lattice_.texels(level);
+  oneapi::tbb::parallel_for(0, n.z, [&](std::int32_t z) {
+    for (std::int32_t y = 0; y < n.y; ++y) {
+      for (std::int32_t x = 0; x < n.x; ++x) {
+        coarser[table_index({x, y, z}, n)] = coarser_texel(lattice_, level - 1, finer.data(), {x, y, z});
       }
-    });
-    for (int l = first_ + 1; l < first_ + count; ++l) {
-      const std::vector<float>& finer = levels_[static_cast<std::size_t>(l - 1 - first_)];
-      std::vector<float>& coarser = levels_[static_cast<std::size_t>(l - first_)];
-      const Int3 n = lattice_.texels(l);
-      oneapi::tbb::parallel_for(0, n.z, [&](std::int32_t z) {
-        for (std::int32_t y = 0; y < n.y; ++y) {
-          for (std::int32_t x = 0; x < n.x; ++x) {
-            coarser[table_index({x, y, z}, n)] = coarser_texel(lattice_, l - 1, finer.data(), {x, y, z});
-          }
-        }
-      });
     }
   });
 }

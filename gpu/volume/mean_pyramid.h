@@ -32,6 +32,10 @@ class MeanPyramid {
  private:
   template <class Blocks>
   void fill(const Blocks& blocks, int threads);
+  template <class Blocks>
+  void fill_finest(const Blocks& blocks);
+  /// Makes `level` from the one below it.
+  void reduce_level(int level);
 
   LevelLattice lattice_;
   int first_;

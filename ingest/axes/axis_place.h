@@ -28,9 +28,16 @@ struct AxisPlace {
   std::string origin_from = {};   ///< the same of the origin
   std::string spacing_note = {};  ///< that it is by an attribute which programs may mean otherwise; else empty
   bool points_down = false;       ///< CF's attribute `positive` says that they rise downwards, as depths do
+  bool grows = false;             ///< its dimension may without limit, as NetCDF's does
+  /// How many elements more its dimension has, which grows and of which the file has none here: NetCDF writes a
+  /// variable up to its own last record.
+  std::int64_t unwritten = 0;
 };
 
 /// "Time=4 x bottom_top=14 x 48 x 48".
 std::string axes_text(std::span<const AxisPlace> axes);
+
+/// Which of `axes` are shorter than their dimensions are, and what positions count; else empty.
+std::string unwritten_note(std::span<const AxisPlace> axes);
 
 }  // namespace weir

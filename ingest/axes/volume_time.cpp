@@ -6,7 +6,7 @@ namespace weir {
 
 std::optional<TimePoint> TimePosition::in(const TimeValues& times) const {
   const std::size_t count = times.values.size();
-  if (count == 0 || (count != 1 && count != extent)) return std::nullopt;
+  if (count == 0 || (count != 1 && count != extent && count != dimension)) return std::nullopt;
   return TimePoint{times.values[count == 1 ? 0 : at], times.units, times.calendar};
 }
 
@@ -17,6 +17,7 @@ TimePosition time_position(std::span<const AxisPlace* const> leading, std::span<
     if (!axis.is_time) continue;
     position.at = static_cast<std::size_t>(index[i]);
     position.extent = static_cast<std::size_t>(axis.extent);
+    position.dimension = static_cast<std::size_t>(axis.extent + axis.unwritten);
     if (position.at < axis.coordinates.size()) {
       position.coordinate = TimePoint{axis.coordinates[position.at], axis.units, axis.calendar};
     } else if (axis.spacing) {

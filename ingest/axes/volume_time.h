@@ -24,9 +24,11 @@ struct TimeValues {
 struct TimePosition {
   std::size_t at = 0;
   std::size_t extent = 0;               ///< elements of the axis; 0 where there is none
+  std::size_t dimension = 0;            ///< the same and AxisPlace::unwritten ones
   std::optional<TimePoint> coordinate;  ///< what the axis itself says of the position
 
-  /// The one of `times` that is the volume's; nullopt where they are not as many as the axis has elements.
+  /// The one of `times` that is the volume's; nullopt where they are not as many as the axis or its dimension has
+  /// elements.
   std::optional<TimePoint> in(const TimeValues& times) const;
 };
 

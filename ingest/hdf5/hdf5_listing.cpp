@@ -43,7 +43,7 @@ void add_axes(std::span<const AxisPlace> axes, Attributes& attributes) {
 
 std::vector<LeadingAxis> axes_at(std::span<const AxisPlace> axes, const std::vector<std::size_t>& places) {
   std::vector<LeadingAxis> chosen;
-  for (const std::size_t i : places) chosen.push_back({axes[i].label, axes[i].extent});
+  for (const std::size_t i : places) chosen.push_back({axes[i].label, axes[i].extent, axes[i].unwritten});
   return chosen;
 }
 

@@ -48,11 +48,13 @@ std::pair<std::int64_t, std::int64_t> bounds_of(const AxisChoice& choice, std::i
 
 // The same, checked. `name` is the axis's.
 std::pair<std::int64_t, std::int64_t> checked_bounds(const std::string& where, const std::string& name,
-                                                     const AxisChoice& choice, std::int64_t extent) {
+                                                     const AxisChoice& choice, const LeadingAxis& axis) {
+  const std::int64_t extent = axis.extent;
   const auto [first, end] = bounds_of(choice, extent);
   if (first < 0 || end > extent) {
     throw usage_error(compose(where, ": ", option("index"), " has ", choice_text(choice), ", and ", name,
-                              " has the positions 0 to ", extent - 1, ", or from the end -", extent, " to -1"));
+                              " has the positions 0 to ", extent - 1, unwritten_text(axis), ", or from the end -",
+                              extent, " to -1"));
   }
   if (first >= end) {
     throw usage_error(compose(where, ": ", option("index"), " has ", choice_text(choice), " for ", name,
@@ -62,6 +64,13 @@ std::pair<std::int64_t, std::int64_t> checked_bounds(const std::string& where, c
 }
 
 }  // namespace
+
+std::string unwritten_text(const LeadingAxis& axis) {
+  if (axis.unwritten == 0) return {};
+  const std::int64_t last = axis.extent + axis.unwritten - 1;
+  return axis.unwritten == 1 ? cat(" (", last, " was not written)")
+                             : cat(" (", axis.extent, " to ", last, " were not written)");
+}
 
 std::optional<AxisChoice> parse_axis_choice(std::string_view text) {
   AxisChoice choice;
@@ -106,7 +115,7 @@ std::vector<std::vector<std::int64_t>> chosen_positions(const std::string& where
       throw usage_error(compose(where, ": ", option("index"), " says nothing of ", name,
                                 ", which has the positions 0 to ", extent - 1, "; add ", name, "=0"));
     }
-    const auto [first, end] = checked_bounds(where, name, of_axis[axis] == nullptr ? only : *of_axis[axis], extent);
+    const auto [first, end] = checked_bounds(where, name, of_axis[axis] == nullptr ? only : *of_axis[axis], axes[axis]);
     const auto along = static_cast<std::uint64_t>(end - first);
     if (along > kMostPositions / positions.size()) {
       throw usage_error(compose(where, ": ", option("index"), " stands for more than ", kMostPositions,

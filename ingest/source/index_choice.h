@@ -14,7 +14,11 @@ namespace weir {
 struct LeadingAxis {
   std::string name;  ///< empty where the file has none for it
   std::int64_t extent = 0;
+  std::int64_t unwritten = 0;  ///< elements that its dimension has behind these, and the file has not
 };
+
+/// Of an axis with unwritten elements, " (2 was not written)", " (2 to 4 were not written)"; else empty.
+std::string unwritten_text(const LeadingAxis& axis);
 
 /// What is asked of one leading axis: a position, or a range of them, half open. Below 0 counts from the axis's end.
 struct AxisChoice {

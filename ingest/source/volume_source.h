@@ -12,6 +12,7 @@
 
 #include "format/base/index.h"
 #include "format/base/scalar_type.h"
+#include "format/layout/nvdb_type.h"
 #include "ingest/files/file_state.h"
 #include "ingest/source/field_details.h"
 #include "ingest/source/repeated_part.h"
@@ -34,6 +35,8 @@ struct SourceInfo {
   std::optional<double> unit_si;           ///< openPMD unitSI: value * unit_si is in SI units
   Index3 extent;                           ///< voxels, each >= 1 and < 2^31
   Index3 index_origin;  ///< index of the first voxel; not zero for OpenVDB input or a region of interest
+  GridClass grid_class = GridClass::unknown;     ///< as an OpenVDB file says it
+  std::optional<float> background;               ///< what lies around the domain, where that matters: a level set's
   ScalarType type = ScalarType::float32;         ///< as stored
   bool lengths = false;                          ///< of vectors, whose components are of `type`
   ValueMapping mapping;                          ///< from stored values to the volume's

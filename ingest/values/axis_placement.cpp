@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 
 #include "format/base/text.h"
@@ -29,9 +30,9 @@ double length(const Vector3& step) { return std::sqrt(step[0] * step[0] + step[1
 
 }  // namespace
 
-AxisPlacement place_axes(std::span<const Vector3> steps, const Vector3& first) {
+AxisPlacement place_axes(std::span<const Vector3> steps, const Vector3& zero, const Index3& first) {
   AxisPlacement placement;
-  placement.origin = first;
+  placement.origin = zero;
   std::array<std::optional<std::size_t>, 3> along;
   std::array<bool, 3> taken{};
   bool oblique = false;
@@ -45,6 +46,7 @@ AxisPlacement place_axes(std::span<const Vector3> steps, const Vector3& first) {
     placement.orientation = "axes oblique to the file's world, ignored: spacing is the length of a step";
     return placement;
   }
+  const std::array<std::int64_t, 3> indices{first.x, first.y, first.z};
   std::string axes;
   for (std::size_t a = 0; a < 3; ++a) {
     // An axis without a step takes a world axis that is left, its own if it can.
@@ -54,8 +56,10 @@ AxisPlacement place_axes(std::span<const Vector3> steps, const Vector3& first) {
       along[a] = candidate;
       taken[candidate] = true;
     }
-    placement.origin[a] = first[*along[a]];
+    placement.origin[a] = zero[*along[a]];
     const bool against = a < steps.size() && steps[a][*along[a]] < 0;
+    // zero + index * step = origin + index * spacing at the first voxel, and spacing = -step.
+    if (against && indices[a] != 0) placement.origin[a] -= 2 * static_cast<double>(indices[a]) * placement.spacing[a];
     axes += (axes.empty() ? "" : ", ");
     axes += against ? '-' : '+';
     axes += "xyz"[*along[a]];

@@ -6,6 +6,8 @@
 #include <span>
 #include <string>
 
+#include "format/base/index.h"
+
 namespace weir {
 
 using Vector3 = std::array<double, 3>;
@@ -18,10 +20,12 @@ struct AxisPlacement {
 };
 
 /// `steps[a]` is the world step from voxel to voxel along axis a (x, y, z; at most three, an axis without one
-/// gets spacing 1), `first` the world position of the first voxel. Voxels keep the file's order: spacing[a] is
-/// the length of step a, and the origin is `first`, its components in the order of the axes where each axis runs
-/// along one of the world's. What that loses, flips and rotations, is in `orientation`.
-AxisPlacement place_axes(std::span<const Vector3> steps, const Vector3& first);
+/// gets spacing 1), `zero` the world position of index (0, 0, 0), and `first` the index of the first voxel. Voxels keep
+/// the file's order: spacing[a] is the length of step a, and the origin is `zero`, its components in the order of the
+/// axes where each axis runs along one of the world's. Along one that runs against it the origin is such that the first
+/// voxel lies where the file says; where `first` is 0, that is `zero`. What all this loses, flips and rotations, is in
+/// `orientation`.
+AxisPlacement place_axes(std::span<const Vector3> steps, const Vector3& zero, const Index3& first = {});
 
 /// "x,y,z", as spacings and origins are shown and given.
 std::string vector_text(const Vector3& v);

@@ -21,6 +21,10 @@ bool placeable(const std::array<Vector3, 3>& steps, const Vector3& first) {
          });
 }
 
+AxisPlacement place_grid(const std::array<Vector3, 3>& steps, const Vector3& zero, const Box& active) {
+  return place_axes(steps, zero, active.empty() ? Index3{} : active.lo);
+}
+
 void describe_box(const Box& active, DatasetInfo& info) {
   if (active.empty()) {
     info.obstacle = "it has no active voxel";

@@ -114,7 +114,7 @@ std::unique_ptr<VolumeSource> open_nvdb(const std::string& path, const SourceOpt
   info.extent = domain.extent();
   info.index_origin = domain.lo;
   options.complete(info.mapping);
-  const AxisPlacement placement = place_axes(steps_of(grid), grid.world_origin());
+  const AxisPlacement placement = place_grid(steps_of(grid), grid.world_origin(), domain);
   info.spacing = placement.spacing;
   info.origin = placement.origin;
   info.details.orientation = placement.orientation;
@@ -139,7 +139,9 @@ std::vector<DatasetInfo> list_nvdb(const std::string& path, const SourceOptions&
       const NvdbGrid& grid = *candidate.grid;
       info.type = cat(grid_type_name(grid.type()), grid.packed() != nullptr ? " packed" : "");
       describe_box(grid.index_bbox(), info);
-      if (info.obstacle.empty()) describe_placement(place_axes(steps_of(grid), grid.world_origin()), info);
+      if (info.obstacle.empty()) {
+        describe_placement(place_grid(steps_of(grid), grid.world_origin(), grid.index_bbox()), info);
+      }
       info.attributes.emplace_back("leaves", cat(grid.node_counts()[0]));
       info.attributes.emplace_back("memory", format_bytes(grid.data_bytes()));
     }

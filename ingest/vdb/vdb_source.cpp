@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "format/base/error.h"
 #include "format/base/process_memory.h"
@@ -84,6 +85,20 @@ std::string compression_text(std::uint32_t flags) {
 
 const OpenVdbLibrary& library_for(const std::string& path) { return openvdb_library(path + ": is an OpenVDB file"); }
 
+// What a grid of floats can be called: NanoVDB's validators take no other class. A level set of integers is none.
+GridClass class_of(const VdbGrid& grid, const VdbType& type) {
+  if (type.components > 1) return GridClass::unknown;
+  if (grid.grid_class == "fog volume") return GridClass::fog_volume;
+  return grid.grid_class == "level set" && type.real ? GridClass::level_set : GridClass::unknown;
+}
+
+// Beyond the narrow band a level set is its background outside: any other one may read as inside.
+std::optional<float> background_of(GridClass grid_class, double background) {
+  const auto value = static_cast<float>(background);
+  if (grid_class != GridClass::level_set || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
 void require_memory(const std::string& where, std::uint64_t tree_bytes, const SourceOptions& options) {
   const std::uint64_t resident = resident_bytes();
   if (tree_bytes <= options.memory && resident + kConversionBytes <= options.memory - tree_bytes) return;
@@ -127,11 +142,13 @@ std::unique_ptr<VolumeSource> open_vdb(const std::string& path, const SourceOpti
   info.dataset = grid.name;
   info.extent = topology.active.extent();
   info.index_origin = topology.active.lo;
+  info.grid_class = class_of(grid, type);
+  info.background = background_of(info.grid_class, topology.background);
   info.type = type.scalar;
   info.lengths = components.count > 1 && components.choice.magnitude;
   if (components.count > 1) info.details.component = component_text(components.choice);
   options.complete(info.mapping);
-  const AxisPlacement placement = place_axes(grid.steps, grid.first);
+  const AxisPlacement placement = place_grid(grid.steps, grid.first, topology.active);
   info.spacing = placement.spacing;
   info.origin = placement.origin;
   info.details.orientation = placement.orientation;
@@ -159,7 +176,7 @@ std::vector<DatasetInfo> list_vdb(const std::string& path, const SourceOptions&)
       const VdbGrid& owner = *tree_owner(header, grid);
       const VdbTopology topology = walk_vdb_tree(reader, owner, *vdb_type(owner.tree));
       describe_box(topology.active, info);
-      describe_placement(place_axes(grid.steps, grid.first), info);
+      describe_placement(place_grid(grid.steps, grid.first, topology.active), info);
       info.attributes.emplace_back("leaves", cat(topology.nodes[0]));
       info.attributes.emplace_back("memory",
                                    format_bytes(library_for(path).tree_bytes(*vdb_type(owner.tree), topology)));

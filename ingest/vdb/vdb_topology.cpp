@@ -66,7 +66,7 @@ class TreeWalk {
 
  private:
   void root() {
-    reader_.skip(type_.bytes);  // background
+    background();
     const auto tiles = reader_.get<std::uint32_t>();
     const auto children = reader_.get<std::uint32_t>();
     topology_.root_entries = std::uint64_t{tiles} + children;
@@ -81,6 +81,12 @@ class TreeWalk {
       if (active == 1) add_active(origin, kUpperDim);
     }
     for (std::uint32_t i = 0; i < children; ++i) internal<UpperMask>(root_origin());
+  }
+
+  void background() {
+    if (!type_.real || type_.components > 1) return reader_.skip(type_.bytes);
+    topology_.background =
+        type_.bytes == sizeof(double) ? reader_.get<double>() : static_cast<double>(reader_.get<float>());
   }
 
   Index3 root_origin() {

@@ -16,7 +16,8 @@ namespace weir {
 struct VdbTopology {
   std::array<std::uint64_t, 3> nodes{};  ///< leaf, lower, upper
   std::uint64_t root_entries = 0;
-  Box active;  ///< bounding box of the active voxels and tiles; empty where there are none
+  double background = 0;  ///< of a grid of real numbers; else 0
+  Box active;             ///< bounding box of the active voxels and tiles; empty where there are none
 };
 
 /// Walks the tree at grid.tree_offset, values included but not unpacked. Afterwards: nodes lie on their lattice and

@@ -229,6 +229,8 @@ class MagnitudeSource final : public VolumeSource {
 
 std::unique_ptr<VolumeSource> magnitude_of(std::vector<std::unique_ptr<VolumeSource>> components) {
   SourceInfo info = components.front()->info();
+  info.grid_class = GridClass::unknown;
+  info.background.reset();
   info.lengths = true;
   info.details.component = "magnitude";
   info.details.long_name.clear();

@@ -11,18 +11,18 @@ namespace {
 
 AxisPlacement placement(const VtkImage& image, bool cells, const std::string& path) {
   std::array<Vector3, 3> steps{};
-  Vector3 first = image.origin;
+  Vector3 zero = image.origin;
   bool valid = true;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     double square = 0;
     for (std::size_t c = 0; c < 3; ++c) {
       steps[axis][c] = image.direction[3 * c + axis] * image.spacing[axis];
       square += steps[axis][c] * steps[axis][c];
-      if (cells) first[c] += 0.5 * steps[axis][c];
+      if (cells) zero[c] += 0.5 * steps[axis][c];
     }
     valid = valid && std::isfinite(square) && square > 0;
   }
-  valid = valid && std::all_of(first.begin(), first.end(), [](double c) { return std::isfinite(c); });
+  valid = valid && std::all_of(zero.begin(), zero.end(), [](double c) { return std::isfinite(c); });
   if (!valid) {
     throw Error(ErrorKind::input,
                 cat(path, ": spacing ", image.spacing[0], ' ', image.spacing[1], ' ', image.spacing[2], " and origin ",
@@ -30,7 +30,7 @@ AxisPlacement placement(const VtkImage& image, bool cells, const std::string& pa
                     ", with the direction, are no place: each must be finite, the "
                     "spacing not 0"));
   }
-  return place_axes(steps, first);
+  return place_axes(steps, zero, image.first);
 }
 
 }  // namespace

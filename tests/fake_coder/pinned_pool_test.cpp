@@ -40,7 +40,7 @@ class PinnedPoolTest : public testing::Test {
   PinnedPool pool_;
 };
 
-TEST_F(PinnedPoolTest, GivesTheSmallestPieceThatDoes) {
+TEST_F(PinnedPoolTest, SeveralPiecesAreLargeEnough_TheSmallestIsGiven) {
   PinnedPool::Piece large = take(3 * kMiB);
   PinnedPool::Piece small = take(2 * kMiB);
   const std::byte* const at = small.memory.data();

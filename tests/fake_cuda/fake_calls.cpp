@@ -170,6 +170,7 @@ cudaError_t cudaMemcpy(void* to, const void* from, std::size_t bytes, cudaMemcpy
 }
 cudaError_t cudaMemcpyAsync(void* to, const void* from, std::size_t bytes, cudaMemcpyKind, cudaStream_t) {
   WEIR_ENTER("cudaMemcpyAsync");
+  runtime().copy_begins(number(from));
   std::memcpy(to, from, bytes);
   return cudaSuccess;
 }
@@ -213,12 +214,14 @@ cudaError_t cudaEventDestroy(cudaEvent_t event) {
   runtime().make_some_current();
   return release(event);
 }
-cudaError_t cudaEventRecord(cudaEvent_t, cudaStream_t) {
+cudaError_t cudaEventRecord(cudaEvent_t event, cudaStream_t) {
   WEIR_ENTER("cudaEventRecord");
+  runtime().event_recorded(number(event));
   return cudaSuccess;
 }
-cudaError_t cudaEventSynchronize(cudaEvent_t) {
+cudaError_t cudaEventSynchronize(cudaEvent_t event) {
   WEIR_ENTER("cudaEventSynchronize");
+  runtime().event_awaited(number(event));
   return cudaSuccess;
 }
 cudaError_t cudaStreamCreate(cudaStream_t* stream) {
@@ -287,6 +290,7 @@ cudaError_t cudaStreamDestroy(cudaStream_t) {
 }
 cudaError_t cudaStreamSynchronize(cudaStream_t) {
   WEIR_ENTER("cudaStreamSynchronize");
+  runtime().stream_awaited();
   return cudaSuccess;
 }
 

@@ -33,6 +33,9 @@ void FakeRuntime::reset() {
   // What a device that failed for good did not take back.
   for (const auto& [address, bytes] : allocated_) std::free(reinterpret_cast<void*>(address));
   allocated_.clear();
+  copies_ = copies_ended_ = unlocked_while_copied_ = 0;
+  last_copies_.clear();
+  event_copies_.clear();
   faults_.clear();
   calls_.clear();
   attributes_ = {{cudaDevAttrHostRegisterReadOnlySupported, 1}};
@@ -196,6 +199,9 @@ cudaError_t FakeRuntime::register_range(std::uintptr_t address, std::uint64_t by
 
 cudaError_t FakeRuntime::unregister_range(std::uintptr_t address) {
   const std::lock_guard lock(mutex_);
+  if (const auto last = last_copies_.extract(address); !last.empty() && last.mapped() > copies_ended_) {
+    ++unlocked_while_copied_;
+  }
   return registered_.erase(address) == 1 ? cudaSuccess : last_ = cudaErrorHostMemoryNotRegistered;
 }
 
@@ -219,6 +225,37 @@ bool FakeRuntime::holds(std::uintptr_t address) {
   const std::lock_guard lock(mutex_);
   const auto next = allocated_.upper_bound(address);
   return next != allocated_.begin() && address - std::prev(next)->first < std::prev(next)->second;
+}
+
+void FakeRuntime::copy_begins(std::uintptr_t from) {
+  const std::lock_guard lock(mutex_);
+  ++copies_;
+  const auto next = registered_.upper_bound(from);
+  if (next == registered_.begin()) return;
+  const auto& [address, bytes] = *std::prev(next);
+  if (from - address < bytes) last_copies_[address] = copies_;
+}
+
+void FakeRuntime::event_recorded(std::uintptr_t event) {
+  const std::lock_guard lock(mutex_);
+  event_copies_[event] = copies_;
+}
+
+void FakeRuntime::event_awaited(std::uintptr_t event) {
+  const std::lock_guard lock(mutex_);
+  if (const auto copies = event_copies_.extract(event); !copies.empty()) {
+    copies_ended_ = std::max(copies_ended_, copies.mapped());
+  }
+}
+
+void FakeRuntime::stream_awaited() {
+  const std::lock_guard lock(mutex_);
+  copies_ended_ = copies_;
+}
+
+std::uint64_t FakeRuntime::unlocked_while_copied() {
+  const std::lock_guard lock(mutex_);
+  return unlocked_while_copied_;
 }
 
 bool FakeRuntime::broken() {

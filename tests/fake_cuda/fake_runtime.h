@@ -69,6 +69,13 @@ class FakeRuntime {
   bool freed(std::uintptr_t address);
   bool holds(std::uintptr_t address);  ///< in memory that is allocated
 
+  // Copies from memory that is registered, which end when something waits for them.
+  void copy_begins(std::uintptr_t from);
+  void event_recorded(std::uintptr_t event);  ///< after all copies so far
+  void event_awaited(std::uintptr_t event);
+  void stream_awaited();
+  std::uint64_t unlocked_while_copied();  ///< ranges that were unregistered before
+
   bool broken();  ///< by a failure that sticks
   std::uint64_t registered_bytes();
   std::uint64_t most_registered_bytes();
@@ -103,6 +110,11 @@ class FakeRuntime {
   std::map<std::uintptr_t, std::uint64_t> registered_;
   std::map<std::uintptr_t, std::uint64_t> allocated_;
   std::uint64_t most_registered_ = 0;
+  std::uint64_t copies_ = 0;                              // that began; their numbers are 1, 2, ...
+  std::uint64_t copies_ended_ = 0;                        // up to that number
+  std::map<std::uintptr_t, std::uint64_t> last_copies_;   // by range, the number of its last one
+  std::map<std::uintptr_t, std::uint64_t> event_copies_;  // by event, that of the last one before it
+  std::uint64_t unlocked_while_copied_ = 0;
   std::uint64_t capacity_ = 0;
   std::uint64_t generation_ = 0;
   cudaError_t sticky_ = cudaSuccess;

@@ -1,6 +1,8 @@
 // What the loader does when the runtime refuses or fails in the middle, on the pretended device.
 #include <gtest/gtest.h>
+#include <pthread.h>
 
+#include <cstddef>
 #include <fstream>
 #include <string>
 #include <utility>
@@ -18,6 +20,28 @@ namespace weir::grid_loader_fault_test {
 namespace {
 
 using test::FakeRuntime;
+
+// While it lives no thread starts: its stack would be larger than the address space.
+class NoMoreThreads {
+ public:
+  NoMoreThreads() {
+    pthread_getattr_default_np(&before_);
+    pthread_attr_t attributes;
+    pthread_getattr_default_np(&attributes);
+    pthread_attr_setstacksize(&attributes, std::size_t{1} << 48U);
+    EXPECT_EQ(pthread_setattr_default_np(&attributes), 0);
+    pthread_attr_destroy(&attributes);
+  }
+  ~NoMoreThreads() {
+    pthread_setattr_default_np(&before_);
+    pthread_attr_destroy(&before_);
+  }
+  NoMoreThreads(const NoMoreThreads&) = delete;
+  NoMoreThreads& operator=(const NoMoreThreads&) = delete;
+
+ private:
+  pthread_attr_t before_{};
+};
 
 class GridLoaderFault : public testing::Test {
  protected:
@@ -101,9 +125,8 @@ TEST_F(GridLoaderFault, TheWayAskedForIsNotReplaced) {
 TEST_F(GridLoaderFault, StickyErrorDoesNotFallBackToTheNextWay) {
   const NvdbFile grid_file = file();
   for (const char* function : {"cudaHostRegister", "cudaMemcpyAsync", "cudaEventRecord", "cudaEventSynchronize",
-                               "cudaEventCreateWithFlags", "cudaHostUnregister", "cudaSetDevice"}) {
+                               "cudaEventCreateWithFlags", "cudaHostUnregister"}) {
     for (const int call : {0, 3}) {
-      if (std::string(function) == "cudaSetDevice" && call > 2) continue;  // once a thread
       runtime().reset();
       runtime().fail(function, call, cudaErrorIllegalAddress);
       EXPECT_NE(refusal(grid_file).find(": cudaErrorIllegalAddress, pretended"), std::string::npos) << function;
@@ -158,6 +181,42 @@ TEST_F(GridLoaderFault, ZeroCopyFallsBackToACopyInHostMemory) {
   EXPECT_EQ(grid.report().path, LoadPath::pinned_ring);
   EXPECT_EQ(grid.report().note.rfind("not registered: registering ", 0), 0U) << grid.report().note;
   EXPECT_TRUE(holds(grid, grid_file));
+}
+
+// The runtime's context on a device, which cudaSetDevice makes and enters, is another than the caller's own.
+TEST_F(GridLoaderFault, AllThreadsWorkInTheCallersContext) {
+  const NvdbFile grid_file = file();
+  for (const LoadPath path : {LoadPath::registered, LoadPath::pinned_ring, LoadPath::pageable}) {
+    runtime().reset();
+    runtime().set_devices(2);
+    runtime().make_current(1);
+    LoadOptions options = kOptions;
+    options.only = path;
+    const DeviceGrid grid = load_grid(grid_file, {}, options);
+    EXPECT_TRUE(holds(grid, grid_file));
+    EXPECT_EQ(runtime().current_device(), 1);
+    EXPECT_EQ(runtime().calls("cudaSetDevice"), 0U) << load_path_name(path);
+    EXPECT_TRUE(runtime().devices_in_use().empty()) << load_path_name(path);
+  }
+}
+
+TEST_F(GridLoaderFault, NoThreadCanBeStarted_TheNextWayLoads) {
+  const NvdbFile grid_file = file();
+  const NoMoreThreads none;
+  const DeviceGrid grid = load_grid(grid_file, {}, kOptions);
+  EXPECT_EQ(grid.report().path, LoadPath::pinned_ring);
+  EXPECT_EQ(grid.report().note, "not registered: no thread can be started: Resource temporarily unavailable");
+  EXPECT_TRUE(holds(grid, grid_file));
+}
+
+TEST_F(GridLoaderFault, EventThatIsNotRecorded_PagesStayLockedWhileTheyAreCopied) {
+  const NvdbFile grid_file = file();
+  for (int round = 0; round < 100; ++round) {
+    runtime().reset();
+    runtime().fail("cudaEventRecord", round % 4, cudaErrorIllegalAddress);
+    EXPECT_NE(refusal(grid_file), "none");
+    EXPECT_EQ(runtime().unlocked_while_copied(), 0U);
+  }
 }
 
 TEST_F(GridLoaderFault, KeepsTheRingForTheNextLoad) {

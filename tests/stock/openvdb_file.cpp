@@ -137,6 +137,11 @@ OpenVdbGrid& OpenVdbGrid::save_as_half() {
   return *this;
 }
 
+OpenVdbGrid& OpenVdbGrid::class_is(const std::string& name) {
+  implementation_->grid->setGridClass(openvdb::GridBase::stringToGridClass(name));
+  return *this;
+}
+
 OpenVdbGrid& OpenVdbGrid::place(const std::array<double, 3>& scale, const std::array<double, 3>& translate) {
   using namespace openvdb::math;
   const Vec3d s(scale[0], scale[1], scale[2]);

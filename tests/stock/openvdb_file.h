@@ -30,6 +30,8 @@ class OpenVdbGrid {
   /// A tile of 8 (level 1), 128 (2) or 4096 (3) voxels.
   OpenVdbGrid& tile(unsigned level, const Index3& origin, double value, bool active);
   OpenVdbGrid& save_as_half();
+  /// "level set", "fog volume" or "staggered".
+  OpenVdbGrid& class_is(const std::string& name);
   OpenVdbGrid& place(const std::array<double, 3>& scale, const std::array<double, 3>& translate);
   /// About z, after place.
   OpenVdbGrid& rotate(double radians);

@@ -20,6 +20,7 @@
 #include "compressor/options/conversion_request.h"
 #include "compressor/plan/memory_plan.h"
 #include "format/base/error.h"
+#include "format/base/json_text.h"
 #include "format/base/process_memory.h"
 #include "format/base/seconds_since.h"
 #include "format/base/share_text.h"
@@ -222,9 +223,7 @@ void print_text(const Comparison& c, const std::string& units) {
 void print(const CompareArguments& arguments, const Comparison& comparison, const Besides& besides,
            const std::string& units, double total_s) {
   if (arguments.json) {
-    std::cout << to_json(arguments, comparison, besides, total_s)
-                     .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)
-              << '\n';
+    std::cout << json_text(to_json(arguments, comparison, besides, total_s)) << '\n';
     return;
   }
   print_text(comparison, units);

@@ -13,6 +13,7 @@
 
 #include "compressor/options/conversion_request.h"
 #include "format/base/error.h"
+#include "format/base/json_text.h"
 #include "format/base/process_memory.h"
 #include "format/base/seconds_since.h"
 #include "format/base/text.h"
@@ -166,7 +167,7 @@ void export_volume(const ExportArguments& arguments) {
   const std::uint64_t tree_bytes = library.tree_bytes(*vdb_type("Tree_float_5_4_3"), written.topology);
   if (arguments.json) {
     const auto report = to_json(arguments, file.grid(), written, tree_bytes, seconds_since(start));
-    std::cout << report.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
+    std::cout << json_text(report) << '\n';
     return;
   }
   std::cout << cat(one_line(arguments.output), ": ", format_bytes(written.bytes), ", ", written.topology.nodes[0],

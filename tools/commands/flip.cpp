@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "format/base/error.h"
+#include "format/base/json_text.h"
 #include "format/base/seconds_since.h"
 #include "format/base/text.h"
 #include "format/io/file_id.h"
@@ -119,7 +120,7 @@ void flip(const FlipArguments& arguments) {
   const FlipSummary summary = summarise_flip(errors);
   if (arguments.json) {
     const nlohmann::ordered_json report = to_json(arguments, reference, summary, seconds_since(start));
-    std::cout << report.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
+    std::cout << json_text(report) << '\n';
   } else {
     print_text(summary);
   }

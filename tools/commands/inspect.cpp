@@ -16,6 +16,7 @@
 
 #include "compressor/options/conversion_request.h"
 #include "format/base/error.h"
+#include "format/base/json_text.h"
 #include "format/base/text.h"
 #include "format/io/file_system.h"
 #include "format/io/real_path.h"
@@ -348,7 +349,7 @@ void run(const InspectArguments& arguments) {
   }
   if (arguments.json) {
     const Json report = several ? Json{{"files", reports}} : reports.front();
-    std::cout << report.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
+    std::cout << json_text(report) << '\n';
   }
   if (status != 0) throw ExitStatus{status};
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "format/base/error.h"
+#include "format/base/json_text.h"
 #include "format/base/text.h"
 #include "format/sidecar/find_sidecar.h"
 #include "format/sidecar/sidecar.h"
@@ -63,8 +64,8 @@ Json to_json(const std::string& path, bool ok, const std::vector<VolumeCheck>& c
   return report;
 }
 
-// What holds of one volume; what does not goes to stderr, and raises `status` from 0 to its exit code. A file that cannot
-// be read may be sound.
+// What holds of one volume; what does not goes to stderr, and raises `status` from 0 to its exit code. A file that
+// cannot be read may be sound.
 Json verify_one(const std::string& path, const VerifyArguments& arguments, int& status) {
   const auto raise = [&](ErrorKind kind) { status = status == 0 ? static_cast<int>(kind) : status; };
   std::vector<VolumeCheck> checks;
@@ -97,7 +98,7 @@ void run(const VerifyArguments& arguments) {
   for (const std::string& path : paths) volumes.push_back(verify_one(path, arguments, status));
   if (arguments.json) {
     const Json report = volumes.size() == 1 ? volumes.front() : Json{{"ok", status == 0}, {"volumes", volumes}};
-    std::cout << report.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
+    std::cout << json_text(report) << '\n';
   }
   if (status != 0) throw ExitStatus{status};
 }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 
+#include "format/base/json_text.h"
 #include "format/base/text.h"
 #include "format/sidecar/valid_voxels.h"
 #include "ingest/source/extent.h"
@@ -60,7 +61,7 @@ void announce_output(const ProgressOptions& progress, const std::string& output,
   if (s.error.psnr_db) line["psnr_db"] = *s.error.psnr_db;
   line["max_error"] = s.error.max_abs;
   line["value_range"] = s.value_range;
-  announce(progress, line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  announce(progress, json_text(line));
 }
 
 void announce_failure(const ProgressOptions& progress, const Error& error) {
@@ -69,7 +70,7 @@ void announce_failure(const ProgressOptions& progress, const Error& error) {
     line["errno"] = failure->errno_value;
     line["path"] = failure->path;
   }
-  announce(progress, line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  announce(progress, json_text(line));
 }
 
 }  // namespace weir

@@ -1,23 +1,16 @@
 #include "tools/sweep/sweep_report.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "format/base/exact_text.h"
 #include "format/base/text.h"
 #include "tools/report/error_text.h"
 #include "tools/report/json_loss.h"
 
 namespace weir {
 namespace {
-
-// The shortest text that reads back as the same double.
-std::string exact(double value) {
-  std::array<char, 32> text{};
-  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
-}
 
 std::string csv_field(const std::string& text) {
   if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
@@ -66,15 +59,15 @@ std::string csv_text(const SweepReport& report) {
       "leaves_kept,note\n";
   for (const SweepRow& row : report.rows) {
     if (!row.result) {
-      text += joined(
-          {row.method, "", exact(row.rate), cat(row.bytes_asked), "", "", "", "", "", "", "", "", "", "", row.note});
+      text += joined({row.method, "", exact_text(row.rate), cat(row.bytes_asked), "", "", "", "", "", "", "", "", "",
+                      "", row.note});
       continue;
     }
     const SweepResult& r = *row.result;
-    text += joined({row.method, r.encoding, exact(row.rate), cat(row.bytes_asked), cat(r.bytes),
-                    exact(report.bits_per_voxel(r)), exact(r.error.mse), exact(r.error.nmse),
-                    r.error.psnr_db ? exact(*r.error.psnr_db) : "", exact(r.error.max_abs),
-                    r.error.lossless ? "true" : "false", exact(r.seconds), exact(report.gb_per_s(r)),
+    text += joined({row.method, r.encoding, exact_text(row.rate), cat(row.bytes_asked), cat(r.bytes),
+                    exact_text(report.bits_per_voxel(r)), exact_text(r.error.mse), exact_text(r.error.nmse),
+                    r.error.psnr_db ? exact_text(*r.error.psnr_db) : "", exact_text(r.error.max_abs),
+                    r.error.lossless ? "true" : "false", exact_text(r.seconds), exact_text(report.gb_per_s(r)),
                     r.leaves_kept ? cat(*r.leaves_kept) : "", row.note});
   }
   return text;

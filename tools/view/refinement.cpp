@@ -38,6 +38,7 @@ std::optional<RefinementPass> Refinement::next() const {
 }
 
 void Refinement::add(const RefinementPass& pass, const std::vector<Image>& layers) {
+  unfinished_ = {};
   if (!pass.whole) {
     layers_ = layers;
     share_ *= 2;

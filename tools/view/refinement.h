@@ -2,13 +2,16 @@
 // with random numbers of its own, so that their mean is that of one picture with all samples.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "format/sidecar/scene.h"
 #include "gpu/image/image.h"
 #include "gpu/render/backend.h"
+#include "gpu/render/kept_pixels.h"
 #include "tools/view/frame_pace.h"
 
 namespace weir {
@@ -23,6 +26,17 @@ struct RefinementPass {
   bool shown = false;      ///< a picture goes out after it
 };
 
+/// What there is of a pass that made room for another viewer.
+struct UnfinishedPass {
+  using Progress = std::pair<std::size_t, std::uint64_t>;
+
+  std::vector<Image> layers;  ///< that are whole
+  KeptPixels next_layer;      ///< of the one after them
+
+  /// Grows with all that is drawn.
+  Progress progress() const { return {layers.size(), next_layer.drawn()}; }
+};
+
 class Refinement {
  public:
   Refinement() = default;
@@ -31,6 +45,8 @@ class Refinement {
 
   /// None: it is converged.
   std::optional<RefinementPass> next() const;
+  /// What was drawn of the pass that next() asks for. add() leaves it empty.
+  UnfinishedPass& unfinished() { return unfinished_; }
   /// A pass is done; `layers` are its mean pictures, each of pass.size.
   void add(const RefinementPass& pass, const std::vector<Image>& layers);
 
@@ -46,6 +62,7 @@ class Refinement {
   std::uint32_t of_ = 0;
   std::uint32_t samples_ = 0;
   std::vector<Image> layers_;  ///< of a small pass as it is; sums of whole ones
+  UnfinishedPass unfinished_;
 };
 
 /// Pictures of one width above each other.

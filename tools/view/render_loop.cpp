@@ -17,8 +17,7 @@ namespace {
 
 constexpr int kMovingQuality = 88;  // of JPEG
 constexpr int kSmallQuality = 90;   // of a still picture that is not whole yet
-// A pass that made room so often is drawn to its end: a viewer that always moves must not keep others from refining.
-constexpr int kMostGivenUp = 4;
+constexpr int kMostDoublings = 16;  // of a slice: hours
 constexpr std::chrono::milliseconds kStillMoving{500};
 constexpr std::chrono::milliseconds kProgress{200};
 // A moving picture that takes longer is given up, and drawn again, smaller; that at the least size fails.
@@ -29,17 +28,27 @@ constexpr double kLongestSmall_s = 10;
 
 RenderLoop::RenderLoop(Backend& backend, VolumeShelf& shelf, RenderedSeries series, RenderEvents events)
     : backend_(backend), shelf_(shelf), series_(std::move(series)), events_(std::move(events)) {
-  thread_ = std::thread([this] { run(); });
+  try {
+    thread_ = std::thread([this] { run(); });
+    slices_ = std::thread([this] { end_slices(); });
+  } catch (...) {
+    end();
+    throw;
+  }
 }
 
-RenderLoop::~RenderLoop() {
+RenderLoop::~RenderLoop() { end(); }
+
+void RenderLoop::end() {
   {
     const std::lock_guard lock(mutex_);
     ended_ = true;
     cancel_ = true;
   }
   changed_.notify_all();
-  thread_.join();
+  for (std::thread* const thread : {&thread_, &slices_}) {
+    if (thread->joinable()) thread->join();
+  }
 }
 
 void RenderLoop::show(ViewerId id, ViewRequest view) {
@@ -51,11 +60,9 @@ void RenderLoop::show(ViewerId id, ViewRequest view) {
     viewer.request = std::make_shared<const ViewRequest>(std::move(view));
     viewer.fresh = true;
     viewer.refinement.reset();
-    if (turn_ && !turn_->moving) {
-      const auto drawn = viewers_.find(turn_->viewer);
-      const bool patient = drawn != viewers_.end() && drawn->second.given_up < kMostGivenUp;
-      if (turn_->viewer == id || (viewer.request->moving && patient)) cancel_ = true;
-    }
+    viewer.in_vain = 0;
+    if (turn_ && turn_->viewer == id && !turn_->moving) cancel_ = true;
+    make_room(viewer);
   }
   changed_.notify_all();
 }
@@ -68,8 +75,16 @@ void RenderLoop::taken(ViewerId id, std::int64_t frame) {
     Viewer& viewer = found->second;
     viewer.under_way = false;
     if (viewer.samples > 0) viewer.pace.add(viewer.samples, seconds_since(viewer.started));
+    make_room(viewer);
   }
   changed_.notify_all();
+}
+
+// At once for a view that moves; for a still one end_slices() does, later. mutex_ is held.
+void RenderLoop::make_room(const Viewer& viewer) {
+  if (!viewer.fresh || viewer.under_way || !viewer.request->moving || !turn_ || turn_->moving) return;
+  const auto drawn = viewers_.find(turn_->viewer);
+  if (drawn != viewers_.end() && drawn->second.passed_over < kMostPassedOver) cancel_ = true;
 }
 
 void RenderLoop::remove(ViewerId id) {
@@ -85,25 +100,67 @@ int RenderLoop::moving_viewers() const {
   }));
 }
 
+// Whether there is something to draw for it. mutex_ is held.
+bool RenderLoop::waits(const Viewer& viewer) {
+  if (viewer.under_way || !viewer.request) return false;
+  return viewer.fresh || (!viewer.request->moving && viewer.refinement && viewer.refinement->next());
+}
+
+// Than the one whose turn it is. mutex_ is held.
+bool RenderLoop::another_waits() const {
+  return std::any_of(viewers_.begin(), viewers_.end(),
+                     [&](const auto& entry) { return entry.first != turn_->viewer && waits(entry.second); });
+}
+
+// The clock of the still passes, in a thread of its own: a back end tells of its progress too seldom.
+void RenderLoop::end_slices() {
+  std::unique_lock lock(mutex_);
+  while (!ended_) {
+    if (!slice_end_ || slice_over_ || !another_waits()) {
+      changed_.wait(lock);
+    } else if (const auto until = *slice_end_; Clock::now() < until) {
+      changed_.wait_until(lock, until);
+    } else {
+      slice_over_ = true;
+      cancel_ = true;
+    }
+  }
+}
+
+// Not shorter than what the turn has taken so far, to load its volume: else two files that do not fit into memory
+// together would be loaded for next to nothing, again and again.
+void RenderLoop::begin_slice(const Turn& turn, Clock::time_point turn_began) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (slice_end_) return;
+    const auto now = Clock::now();
+    const Clock::duration slice = kSlice * (1 << std::min(turn.in_vain, kMostDoublings));
+    slice_end_ = now + std::max(slice, now - turn_began);
+  }
+  changed_.notify_all();
+}
+
 // Whose turn it is, and what to draw; none: nobody's. mutex_ is held.
 std::optional<RenderLoop::Turn> RenderLoop::next_turn() {
   Viewer* chosen = nullptr;
   ViewerId id = 0;
   const auto rank = [](const Viewer& v) {
-    return std::tuple(v.fresh && v.request->moving ? 0 : (v.fresh ? 1 : 2), v.served);
+    const bool first = v.passed_over >= kMostPassedOver || (v.fresh && v.request->moving);
+    return std::tuple(first ? 0 : (v.fresh ? 1 : 2), v.served);
   };
   for (auto& [key, viewer] : viewers_) {
-    if (viewer.under_way || !viewer.request) continue;
-    const bool refines = !viewer.request->moving && viewer.refinement && viewer.refinement->next();
-    if (!viewer.fresh && !refines) continue;
+    if (!waits(viewer)) continue;
     if (chosen != nullptr && rank(*chosen) <= rank(viewer)) continue;
     chosen = &viewer;
     id = key;
   }
   if (chosen == nullptr) return std::nullopt;
+  for (auto& [key, viewer] : viewers_) {
+    if (key != id && waits(viewer)) ++viewer.passed_over;
+  }
   const ViewRequest& view = *chosen->request;
   const int layers = view.against ? 2 : 1;
-  Turn turn{id, chosen->request, view.moving, {}, nullptr};
+  Turn turn{id, chosen->request, view.moving, {}, nullptr, chosen->in_vain};
   const FrameSize moving = chosen->pace.next(view.width, view.height, layers, std::max(moving_viewers(), 1));
   if (view.moving) {
     turn.size = moving;
@@ -131,7 +188,10 @@ void RenderLoop::run() {
       if (ended_) return;
       turn_ = turn;
       cancel_ = false;
+      slice_over_ = false;
     }
+    const auto progress = [&] { return turn->refinement ? turn->refinement->unfinished().progress() : Progress(); };
+    const Progress before = progress();
     bool done = false;
     late_.reset();
     try {
@@ -150,17 +210,21 @@ void RenderLoop::run() {
       if (turn->refinement) *turn->refinement = Refinement();
       events_.failed(turn->viewer, turn->request->id, error.what());
     }
-    end_turn(*turn, done);
+    end_turn(*turn, done, progress() > before);
   }
 }
 
-void RenderLoop::end_turn(const Turn& turn, bool done) {
+void RenderLoop::end_turn(const Turn& turn, bool done, bool progressed) {
   const std::lock_guard lock(mutex_);
   turn_.reset();
+  slice_end_.reset();
   const auto found = viewers_.find(turn.viewer);
   if (found == viewers_.end()) return;
-  found->second.served = Clock::now();
-  found->second.given_up = done ? 0 : found->second.given_up + 1;
+  Viewer& viewer = found->second;
+  viewer.served = Clock::now();
+  if (!done && !slice_over_) return;  // it made room for a moving view, or for a newer one of its own
+  viewer.passed_over = 0;
+  viewer.in_vain = done || progressed ? 0 : viewer.in_vain + 1;
 }
 
 void RenderLoop::draw_smaller(const Turn& turn, const Late& late) {
@@ -194,9 +258,12 @@ std::vector<Image> RenderLoop::render(const Turn& turn, const FrameSize& size, s
   sampling.cancel = &cancel_;
   const int layers = view.against ? 2 : 1;
   const double all = static_cast<double>(size.width) * size.height * size.samples * layers;
-  std::vector<Image> pictures;
-  Clock::time_point told = Clock::now();
-  for (int layer = 0; layer < layers; ++layer) {
+  UnfinishedPass moving;
+  UnfinishedPass& pass = turn.refinement ? turn.refinement->unfinished() : moving;
+  if (turn.refinement) sampling.kept = &pass.next_layer;
+  const Clock::time_point started = Clock::now();
+  Clock::time_point told = started;
+  for (int layer = static_cast<int>(pass.layers.size()); layer < layers; ++layer) {
     const std::string file = file_of(view, layer);
     if (!shelf_.has(file)) {
       loaded_ = true;
@@ -213,6 +280,7 @@ std::vector<Image> RenderLoop::render(const Turn& turn, const FrameSize& size, s
         cancel_ = true;
       };
     } else {
+      begin_slice(turn, started);
       sampling.progress = [&, layer](std::uint64_t done) {
         if (Clock::now() - told < kProgress) return;
         told = Clock::now();
@@ -225,10 +293,10 @@ std::vector<Image> RenderLoop::render(const Turn& turn, const FrameSize& size, s
       spdlog::warn("{}: {}", file, warned_);
     }
     tone = picture.tone;
-    pictures.push_back(std::move(picture.image));
+    pass.layers.push_back(std::move(picture.image));
   }
   if (const auto next = series_.steps.after(view.step)) shelf_.prefetch(series_.steps.path(*next));
-  return pictures;
+  return std::exchange(pass.layers, {});
 }
 
 void RenderLoop::draw(const Turn& turn) {

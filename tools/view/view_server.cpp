@@ -10,6 +10,7 @@
 #include "daemon/http/request_target.h"
 #include "daemon/http/socket_token.h"
 #include "format/base/error.h"
+#include "format/base/json_text.h"
 #include "format/base/text.h"
 #include "tools/options/backend_choice.h"
 #include "tools/view/base/file_identity.h"
@@ -24,7 +25,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace websocket = boost::beast::websocket;
 
-std::string line(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+std::string line(const Json& json) { return json_text(json); }
 
 AccessRules rules_of(const ViewSettings& settings) {
   const bool loopback = is_loopback(settings.address.host);
@@ -33,7 +34,11 @@ AccessRules rules_of(const ViewSettings& settings) {
                 compose(option("listen", settings.address.text()), " can be reached from other machines, so it needs ",
                         option("token-file", "FILE"), "; or listen on 127.0.0.1"));
   }
-  return {settings.token, loopback && !settings.any_host};
+  return {.token = settings.token,
+          .loopback = loopback && !settings.any_host,
+          .wrong_token =
+              cat("the token is not this viewer's; take the one ",
+                  settings.any_host ? "that it printed to --progress-fd" : "in the file that --token-file names")};
 }
 
 Json names_of(const std::vector<std::string>& paths) {

@@ -76,7 +76,8 @@ PageTable BrickCache::pages() {
   return pager().with([](auto& pager) { return pager.table(); });
 }
 
-// Of a cache that may lack bricks. A turn takes nearly as long for few blocks as for many.
+// What a cache needs that holds only some of the bricks at a time. A turn of decoding takes nearly as long for few
+// blocks as for many.
 BrickCache::Needs BrickCache::needs() const { return needs(left_ < kSmallCache ? left_ / 8 : left_ / 4); }
 
 BrickCache::Needs BrickCache::needs(std::uint64_t decoding) const {

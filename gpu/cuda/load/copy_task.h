@@ -21,7 +21,7 @@ struct CopyTask {
   std::uint64_t offset = 0;
   std::uint64_t bytes = 0;
   std::byte* target = nullptr;
-  int device = 0;  ///< the current one; threads begin with device 0
+  int device = 0;  ///< the current one
   cudaStream_t stream = nullptr;
   std::uint64_t chunk_bytes = 0;
   int threads = 1;

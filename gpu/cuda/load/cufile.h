@@ -5,6 +5,8 @@
 #include <sys/types.h>
 
 #include <cstddef>
+#include <cstdint>
+#include <string>
 
 namespace weir::cufile {
 
@@ -32,5 +34,8 @@ using HandleRegister = Status (*)(Handle*, FileDescription*);
 using HandleDeregister = void (*)(Handle);
 /// Bytes read; -1 with errno, or less: minus a CUfileOpError.
 using Read = ssize_t (*)(Handle, void* device_base, std::size_t bytes, off_t file_offset, off_t device_offset);
+
+/// Why a read at byte `at` of the file returned `got`, which is no bytes; of -1, errno says it.
+std::string read_failure(ssize_t got, std::uint64_t at);
 
 }  // namespace weir::cufile

@@ -73,6 +73,12 @@ class FileHandle {
 
 }  // namespace
 
+std::string cufile::read_failure(ssize_t got, std::uint64_t at) {
+  if (got == -1) return std::strerror(errno);
+  if (got == 0) return cat("the file ends at byte ", at);
+  return status_text({static_cast<int>(-got), 0});
+}
+
 bool DirectStorage::offered() { return ::access("/proc/driver/nvidia-fs/version", F_OK) == 0; }
 
 std::optional<DirectStorage> DirectStorage::open(std::string& refusal) {
@@ -127,8 +133,9 @@ CopyOutcome DirectStorage::copy(const CopyTask& task) const {
                                            static_cast<off_t>(task.offset + piece.offset + done),
                                            static_cast<off_t>(piece.offset + done));
         if (got <= 0) {
+          const std::string why = cufile::read_failure(got, task.offset + piece.offset + done);
           task.file.check_unchanged();
-          refusal = got == -1 ? std::strerror(errno) : status_text({static_cast<int>(-got), 0});
+          refusal = why;
           break;
         }
         done += static_cast<std::uint64_t>(got);

@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include "gpu/cuda/runtime/check.h"
+#include "gpu/cuda/runtime/current_device.h"
 
 namespace weir {
 namespace {
@@ -19,6 +19,7 @@ constexpr std::uint64_t kReadAhead = 128ULL << 20U;  // bytes asked from the dis
 
 void for_each_piece(const CopyTask& task, std::uint64_t piece_bytes, int threads,
                     const std::function<void(int, const FilePiece&)>& take) {
+  const SharedContext context(task.device);
   const std::uint64_t pieces = (task.bytes + piece_bytes - 1) / piece_bytes;
   std::atomic<std::uint64_t> next{0};
   std::mutex mutex;
@@ -30,7 +31,7 @@ void for_each_piece(const CopyTask& task, std::uint64_t piece_bytes, int threads
   };
   const auto run = [&](int thread) {
     try {
-      check_cuda(cudaSetDevice(task.device), "choosing the device");
+      if (thread > 0) context.enter();  // the caller is in it
       for (std::uint64_t k = next++; k < pieces; k = next++) {
         task.check_cancelled();
         prefetch(k * piece_bytes + kReadAhead, piece_bytes);

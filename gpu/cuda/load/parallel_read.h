@@ -15,8 +15,8 @@ struct FilePiece {
 };
 
 /// Calls take(thread, piece) for all pieces of `piece_bytes` of the task's range, from `threads` threads (0 ...
-/// threads - 1, the task's device current), each taking the next piece; what is not cached is asked from the disk
-/// ahead. Throws the first failure of any call, after all threads ended, or Error(interrupted).
+/// threads - 1; 0 is the caller, the others enter its context), each taking the next piece; what is not cached is asked
+/// from the disk ahead. Throws the first failure of any call, after all threads ended, or Error(interrupted).
 void for_each_piece(const CopyTask& task, std::uint64_t piece_bytes, int threads,
                     const std::function<void(int, const FilePiece&)>& take);
 

@@ -8,14 +8,18 @@
 #include <exception>
 #include <mutex>
 #include <optional>
+#include <string>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
 
+#include "format/base/text.h"
 #include "gpu/cuda/load/copy_event.h"
 #include "gpu/cuda/load/load_chunks.h"
 #include "gpu/cuda/load/registered_range.h"
 #include "gpu/cuda/runtime/check.h"
+#include "gpu/cuda/runtime/current_device.h"
 
 namespace weir {
 namespace {
@@ -27,6 +31,7 @@ class Pipeline {
  public:
   explicit Pipeline(const CopyTask& task)
       : task_(task),
+        context_(task.device),
         chunks_(plan_load_chunks(task.offset, task.bytes, static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE)),
                                  task.chunk_bytes)),
         most_locked_(static_cast<std::size_t>(task.threads) + kChunksBeyondThreads) {}
@@ -36,8 +41,7 @@ class Pipeline {
     double copy_wait_s = 0;
     try {
       for (std::size_t k = 0; k < std::min(kRegisterAhead, chunks_.size()); ++k) prefetch(chunks_[k]);
-      for (int t = 0; t < task_.threads; ++t) threads.emplace_back([this] { run_stage(&Pipeline::prepare); });
-      threads.emplace_back([this] { run_stage(&Pipeline::retire); });
+      begin(threads);
       copy_wait_s = copy();
     } catch (...) {
       stop([this] { failure_ = std::current_exception(); });
@@ -68,9 +72,19 @@ class Pipeline {
     CopyEvent done;
   };
 
+  // Fewer threads that prepare do the same; without one of each kind, another way may work.
+  void begin(std::vector<std::thread>& threads) {
+    try {
+      threads.emplace_back([this] { run_stage(&Pipeline::retire); });
+      for (int t = 0; t < task_.threads; ++t) threads.emplace_back([this] { run_stage(&Pipeline::prepare); });
+    } catch (const std::system_error& error) {
+      if (threads.size() < 2) stop([&] { refusal_ = cat("no thread can be started: ", error.code().message()); });
+    }
+  }
+
   void run_stage(void (Pipeline::*stage)()) {
     try {
-      check_cuda(cudaSetDevice(task_.device), "choosing the device");
+      context_.enter();
       (this->*stage)();
     } catch (...) {
       stop([this] { failure_ = std::current_exception(); });
@@ -138,14 +152,16 @@ class Pipeline {
         changed_.wait(lock, [this] { return stopped_ || !locked_.empty(); });
       }
       if (stopped_) break;
-      const LoadChunk chunk = locked_.front().chunk;
-      copying_.push_back({std::move(locked_.front().range), CopyEvent()});
-      locked_.pop_front();
+      CopyEvent done;
+      const LoadChunk& chunk = locked_.front().chunk;
       check_cuda(cudaMemcpyAsync(task_.target + (chunk.copy_begin - task_.offset),
                                  task_.file.bytes().data() + chunk.copy_begin, chunk.copy_end - chunk.copy_begin,
                                  cudaMemcpyHostToDevice, task_.stream),
                  "copying to the device");
-      copying_.back().done.record(task_.stream);
+      done.record(task_.stream);
+      // Only now: where recording fails, the pages stay locked until run() has waited for the stream.
+      copying_.push_back({std::move(locked_.front().range), std::move(done)});
+      locked_.pop_front();
       changed_.notify_all();
     }
     return waited_s;
@@ -173,6 +189,7 @@ class Pipeline {
   }
 
   const CopyTask& task_;
+  const SharedContext context_;
   const std::vector<LoadChunk> chunks_;
   const std::size_t most_locked_;
 

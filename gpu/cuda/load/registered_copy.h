@@ -11,9 +11,9 @@ namespace weir {
 /// copies, one that is unlocked, one that waits, and those in preparation.
 ///
 /// A file that is truncated meanwhile is an Error(input) and no signal, because only the kernel touches its pages,
-/// and locked pages stay. Where the system does not page-lock the mapping's pages, the outcome says so; some of the
-/// target may be overwritten then. On return, and on a throw, nothing is locked and nothing copies. Throws
-/// Error(input, io, interrupted).
+/// and locked pages stay. Where the system does not page-lock the mapping's pages, or starts no threads, the outcome
+/// says so; some of the target may be overwritten then. On return, and on a throw, nothing is locked and nothing
+/// copies. Throws Error(input, io, interrupted).
 CopyOutcome registered_copy(const CopyTask& task);
 
 }  // namespace weir

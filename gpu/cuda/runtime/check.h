@@ -16,7 +16,7 @@ class DeviceFull : public Error {
  public:
   DeviceFull(const Message& message, std::uint64_t bytes) : Error(ErrorKind::io, message), bytes_(bytes) {}
 
-  /// That were asked for; 0: not known.
+  /// Bytes requested; 0 if unknown.
   std::uint64_t bytes() const noexcept { return bytes_; }
 
  private:

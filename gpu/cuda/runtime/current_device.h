@@ -42,6 +42,26 @@ class KeptDevice {
   void* before_;
 };
 
+/// What the calling thread works in, for threads that work for it: its context, be it one that it made itself, whose
+/// streams and memory are of no other; else `device`.
+class SharedContext {
+ public:
+  explicit SharedContext(int device) : context_(current_context()), device_(device) {}
+
+  /// Makes it the calling thread's. Throws Error(io).
+  void enter() const {
+    if (context_ != nullptr) {
+      set_current_context(context_);
+    } else {
+      check_cuda(cudaSetDevice(device_), "choosing the device");
+    }
+  }
+
+ private:
+  void* context_;
+  int device_;
+};
+
 /// Calls free(), which gives back what lies on `device`, with that current: it may be any thread that does so last.
 template <class Free>
 void free_on(int device, const Free& free) noexcept {

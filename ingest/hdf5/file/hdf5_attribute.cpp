@@ -188,6 +188,11 @@ std::vector<std::string> text_attribute(hid_t object, const char* name) {
   return H5Tis_variable_str(attribute.type.get()) > 0 ? variable_texts(attribute) : fixed_texts(attribute);
 }
 
+std::string first_text_attribute(hid_t object, const char* name) {
+  const std::vector<std::string> texts = text_attribute(object, name);
+  return texts.empty() ? "" : texts[0];
+}
+
 std::string attribute_found(hid_t object, const char* name) {
   const Attribute attribute(object, name);
   if (attribute.values == 0) return "empty";

@@ -36,6 +36,8 @@ std::vector<StoredValue> stored_value_attribute(hid_t object, const char* name);
 std::vector<StoredValue> enumerated_value_attribute(hid_t object, const char* name);
 /// Texts of fixed or any length, without the blanks and zeros at their ends.
 std::vector<std::string> text_attribute(hid_t object, const char* name);
+/// The first of them; empty where there is none.
+std::string first_text_attribute(hid_t object, const char* name);
 bool has_attribute(hid_t object, const char* name);
 /// How many values it has, also where they are more than are read; 0 where it is absent.
 std::size_t attribute_values(hid_t object, const char* name);

@@ -14,6 +14,7 @@
 #include "ingest/hdf5/meaning/volume_slice.h"
 #include "ingest/hdf5/meaning/vtk_hdf.h"
 #include "ingest/values/decode_values.h"
+#include "ingest/values/value_notes.h"
 
 namespace weir {
 namespace {
@@ -123,6 +124,7 @@ DatasetFacts dataset_facts(hid_t file, const Hdf5Object& object) {
     facts.meaning = value_meaning(handle, *facts.type,
                                   set ? std::span<const std::byte>(facts.storage->fill) : std::span<const std::byte>());
   }
+  add_note(unwritten_note(facts.axes), facts.meaning.note);
   if (reads_as_data(handle, facts)) facts.storage->obstacle.clear();
   for (const std::string& obstacle :
        {type_obstacle(facts), shape_obstacle(facts), facts.storage ? facts.storage->obstacle : std::string(),

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <span>
@@ -62,11 +63,6 @@ std::string last_part(hid_t object) {
   return std::string(path.substr(path.rfind('/') + 1));
 }
 
-std::string first_text(hid_t object, const char* name) {
-  const std::vector<std::string> texts = text_attribute(object, name);
-  return texts.empty() ? "" : texts[0];
-}
-
 // One rounding of a coordinate, as a part of it.
 double precision_of(hid_t dataset) {
   const Hdf5Handle type(H5Dget_type(dataset));
@@ -74,15 +70,35 @@ double precision_of(hid_t dataset) {
   return single ? static_cast<double>(std::numeric_limits<float>::epsilon()) : std::numeric_limits<double>::epsilon();
 }
 
-// NetCDF's unlimited dimension, of which a simulation has one: axis 0, and no other.
-bool first_axis_grows(hid_t dataset, std::size_t rank) {
+// Which axes may grow without limit.
+std::vector<bool> growing_axes(hid_t dataset, std::size_t rank) {
+  std::vector<bool> grow(rank, false);
   const Hdf5Handle space(H5Dget_space(dataset));
   std::vector<hsize_t> dims(rank);
   std::vector<hsize_t> most(rank);
   if (rank == 0 || H5Sget_simple_extent_dims(space.get(), dims.data(), most.data()) != static_cast<int>(rank)) {
-    return false;
+    return grow;
   }
-  return most[0] == H5S_UNLIMITED && std::count(most.begin(), most.end(), H5S_UNLIMITED) == 1;
+  for (std::size_t i = 0; i < rank; ++i) grow[i] = most[i] == H5S_UNLIMITED;
+  return grow;
+}
+
+// NetCDF's unlimited dimension, of which a simulation has one: axis 0, and no other.
+bool first_alone(const std::vector<bool>& grow) {
+  return !grow.empty() && grow[0] && std::count(grow.begin(), grow.end(), true) == 1;
+}
+
+// NetCDF-4 sets the length of an unlimited dimension at its scale, and that of a variable at its last written record. A
+// scale that cannot grow is longer for another reason: it has the edges of cells.
+std::int64_t unwritten_elements(hid_t scale, std::int64_t extent) {
+  const Hdf5Handle space(H5Dget_space(scale));
+  hsize_t elements = 0;
+  hsize_t most = 0;
+  if (H5Sget_simple_extent_ndims(space.get()) != 1 || H5Sget_simple_extent_dims(space.get(), &elements, &most) != 1 ||
+      most != H5S_UNLIMITED || elements > static_cast<hsize_t>(std::numeric_limits<std::int64_t>::max())) {
+    return 0;
+  }
+  return std::max<std::int64_t>(static_cast<std::int64_t>(elements) - extent, 0);
 }
 
 void place_by_scale(hid_t scale, bool grows, AxisPlace& axis) {
@@ -93,12 +109,16 @@ void place_by_scale(hid_t scale, bool grows, AxisPlace& axis) {
     return;
   }
   axis.has_coordinates = true;
-  axis.units = first_text(scale, "units");
-  axis.calendar = first_text(scale, "calendar");
-  axis.is_time = is_time_axis({name, axis.units, first_text(scale, "axis"), first_text(scale, "standard_name"), grows});
-  axis.points_down = is_down(first_text(scale, "positive"));
+  axis.units = first_text_attribute(scale, "units");
+  axis.calendar = first_text_attribute(scale, "calendar");
+  axis.is_time = is_time_axis(
+      {name, axis.units, first_text_attribute(scale, "axis"), first_text_attribute(scale, "standard_name"), grows});
+  axis.points_down = is_down(first_text_attribute(scale, "positive"));
   if (axis.spacing) return;
   std::vector<double> coordinates = coordinate_values(scale);
+  if (std::cmp_equal(coordinates.size(), axis.extent + axis.unwritten)) {
+    coordinates.resize(static_cast<std::size_t>(axis.extent));  // which are those of the first records
+  }
   if (std::cmp_not_equal(coordinates.size(), axis.extent)) {
     axis.note = coordinates.empty()
                     ? "its coordinates are no row of numbers, or packed by no number, taken as indices"
@@ -160,10 +180,12 @@ bool is_bare_dimension(hid_t dataset) {
 void place_by_scales(hid_t dataset, std::span<AxisPlace> axes) {
   if (H5Iget_type(dataset) != H5I_DATASET) return;
   const std::vector<Hdf5Handle> scales = scales_of(dataset, axes);
-  const bool grows = first_axis_grows(dataset, axes.size());
+  const std::vector<bool> grow = growing_axes(dataset, axes.size());
   for (std::size_t i = 0; i < scales.size(); ++i) {
     if (!scales[i] || H5Iget_type(scales[i].get()) != H5I_DATASET) continue;
-    place_by_scale(scales[i].get(), i == 0 && grows, axes[i]);
+    axes[i].grows = grow[i];
+    if (grow[i]) axes[i].unwritten = unwritten_elements(scales[i].get(), axes[i].extent);
+    place_by_scale(scales[i].get(), i == 0 && first_alone(grow), axes[i]);
   }
   const std::vector<std::string> labels = text_attribute(dataset, "DIMENSION_LABELS");
   for (std::size_t i = 0; i < axes.size() && labels.size() == axes.size(); ++i) {

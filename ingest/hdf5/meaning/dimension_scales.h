@@ -14,7 +14,9 @@ namespace weir {
 /// Fills labels by the names of the scales of `dataset` (attribute DIMENSION_LIST), else by DIMENSION_LABELS; units and
 /// is_time by the scales' attributes; spacing and origin, where they are not set, by their values. Irregular
 /// coordinates get a note instead, and are kept, as those of a time are. Falling coordinates get the spacing's size and
-/// the lowest coordinate as origin, as elements in reverse order have them, and a note. The caller holds Hdf5Lock.
+/// the lowest coordinate as origin, as elements in reverse order have them, and a note. Where an axis and its
+/// scale may grow and that is longer, the first coordinates are its own, and the rest is `unwritten`. The caller holds
+/// Hdf5Lock.
 void place_by_scales(hid_t dataset, std::span<AxisPlace> axes);
 
 /// Whether a dataset only stands for a dimension of NetCDF that has no coordinates: it holds no values. Calls

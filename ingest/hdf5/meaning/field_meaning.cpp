@@ -4,40 +4,21 @@
 #include <utility>
 #include <vector>
 
-#include "format/base/text.h"
 #include "ingest/axes/axis_details.h"
 #include "ingest/axes/volume_time.h"
 #include "ingest/hdf5/file/hdf5_attribute.h"
 #include "ingest/hdf5/file/hdf5_object.h"
-#include "ingest/hdf5/meaning/dimension_scales.h"
+#include "ingest/hdf5/meaning/auxiliary_times.h"
 #include "ingest/hdf5/meaning/openpmd.h"
 #include "ingest/hdf5/meaning/vtk_hdf.h"
 
 namespace weir {
 namespace {
 
-std::string text_of(hid_t object, const char* name) {
-  const std::vector<std::string> texts = text_attribute(object, name);
-  return texts.empty() ? "" : texts[0];
-}
-
-// Those of an auxiliary coordinate; none where it is no time.
-TimeValues times_of(hid_t coordinate) {
-  check_attribute_bytes(coordinate);
-  const std::string units = text_of(coordinate, "units");
-  if (H5Iget_type(coordinate) != H5I_DATASET || units.find(" since ") == std::string::npos) return {};
-  return {coordinate_values(coordinate), units, text_of(coordinate, "calendar")};
-}
-
-// CF 5: coordinates = "lon lat time" names variables of the same group, or of one around it.
 std::optional<TimePoint> auxiliary_time(const Hdf5Object& object, std::span<const Hdf5Handle> groups,
                                         const TimePosition& position) {
-  for (const std::string& name : split(text_of(object.handle.get(), "coordinates"), ' ')) {
-    for (const Hdf5Handle& group : groups) {
-      const Hdf5Handle coordinate = open_linked(group.get(), name);
-      if (!coordinate) continue;
-      if (auto time = position.in(times_of(coordinate.get()))) return time;
-    }
+  for (const TimeValues& times : auxiliary_times(object, groups)) {
+    if (auto time = position.in(times)) return time;
   }
   return std::nullopt;
 }
@@ -70,8 +51,8 @@ FieldDetails field_details(hid_t file, const Hdf5Object& object, std::span<const
 }
 
 std::string long_name_of(hid_t object) {
-  std::string name = text_of(object, "long_name");
-  return name.empty() ? text_of(object, "description") : name;
+  std::string name = first_text_attribute(object, "long_name");
+  return name.empty() ? first_text_attribute(object, "description") : name;
 }
 
 }  // namespace weir

@@ -5,6 +5,7 @@
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "ingest/axes/component_axis.h"
+#include "ingest/source/index_choice.h"
 
 namespace weir {
 namespace {
@@ -14,7 +15,8 @@ std::string ranges_text(std::span<const AxisPlace> axes, const std::vector<std::
   std::string text;
   for (const std::size_t i : others) {
     const std::string name = axes[i].label.empty() ? cat("axis ", i) : axes[i].label;
-    text += cat(text.empty() ? "" : ", ", name, " in 0..", axes[i].extent - 1);
+    text += cat(text.empty() ? "" : ", ", name, " in 0..", axes[i].extent - 1,
+                unwritten_text({axes[i].label, axes[i].extent, axes[i].unwritten}));
   }
   return text;
 }

@@ -189,7 +189,7 @@ TEST(InputOptions, Index) {
   EXPECT_EQ(choices.index_choices, (std::vector<AxisChoice>{{"time", false, -1, std::nullopt}, {"level", true, 0, 2}}));
 }
 
-TEST(InputOptions, Missing) {
+TEST(InputOptions, Missing_ThatIsNoNumberIsRefused) {
   EXPECT_EQ(message_of([] { parse({{"missing", "none"}}); }), "--missing is \"none\", it must be a number or nan");
   EXPECT_EQ(parse({{"missing", "18446744073709551615"}}).missing, StoredValue{~std::uint64_t{0}});
 }
@@ -214,7 +214,7 @@ TEST(InputOptions, Ghost_LeavesLayersOutAtBothEnds) {
   EXPECT_EQ(parse({{"ghost", "0"}}).roi.value().in(domain), domain);
 }
 
-TEST(InputOptions, DirectIo) {
+TEST(InputOptions, DirectIo_OfAnotherWordIsRefused) {
   EXPECT_EQ(message_of([] {
               parse({{"direct-io", "maybe"}});
             }),

@@ -74,7 +74,7 @@ TEST(Journal, ASaveOutlivesAPowerFailureWithItsDirectories) {
   }
 }
 
-TEST(Journal, PathsAreOfAllThatItLeaves) {
+TEST(Journal, Paths_AreThoseOfEachFileThatItMakes) {
   CrashFileSystem files;
   Journal journal(files, "o.nvdb", kIdentity, {"/scratch", 0, nullptr, nullptr, {}});
   for (const char* name : {"rows", "faces", "ladders", "records", "volume"}) journal.open(name)->preallocate(10);

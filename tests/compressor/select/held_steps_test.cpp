@@ -176,7 +176,7 @@ std::vector<std::vector<KeptLevel>> levels_of(const Selection& selection, const 
 }
 
 // Packed blocks, the widths of FpN, and the paper's bricks; by a size and by an error.
-TEST(HeldSteps, TellHowEachLeafIsKept) {
+TEST(HeldSteps, LevelOfEachLeaf_IsTheOneFoundWithoutThem) {
   for (const std::string kind : {"cloud", "turbulence", "label"}) {
     const auto source = open_synthetic(kind == "label" ? "noise" : kind, {{150, 140, 260}, 3});
     test::MemoryVolume whole(*source);

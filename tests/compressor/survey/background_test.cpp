@@ -63,6 +63,15 @@ TEST(Background, IsTheMostFrequentValueOfEveryType) {
   }
 }
 
+TEST(Background, OfTheSource_IsTaken) {
+  MemoryVolume volume(kSmall, [](const Index3&) { return -1.5F; });
+  volume.info().background = 1.5F;
+  const Background found = background_of(volume);
+  EXPECT_EQ(found.value, 1.5F);
+  EXPECT_EQ(found.method, "source");
+  EXPECT_EQ(found.share, 0);
+}
+
 TEST(Background, NegativeIntegersAreCountedToo) {
   for (const ScalarType type : {ScalarType::int8, ScalarType::int16}) {
     MemoryVolume volume = volume_of(type, [](const Index3& i) { return die(i, 4) == 0 ? die(i, 7) : -128.0F; });

@@ -254,6 +254,31 @@ std::vector<Case> small_cases() {
 class OracleTest : public testing::TestWithParam<Case> {};
 class OracleMetricTest : public testing::TestWithParam<Case> {};
 
+// As many voxels inside, at the lowest value, as outside of the band.
+TEST(OracleClass, LevelSetOfEveryEncoding_IsValidAndKeepsItsBackground) {
+  MemoryVolume volume({{0, 0, 0}, {64, 64, 64}}, [](const Index3& i) {
+    const Index3 from_centre = i - Index3{32, 32, 32};
+    const auto [x, y, z] = from_centre;
+    return std::clamp(std::sqrt(static_cast<float>(x * x + y * y + z * z)) - 28.0F, -3.0F, 3.0F);
+  });
+  volume.info().grid_class = GridClass::level_set;
+  volume.info().background = 3.0F;
+  for (const Encoding encoding : {Encoding::float32, Encoding::fpn, Encoding::fp4, Encoding::fp8, Encoding::fp16,
+                                  Encoding::automatic, Encoding::packed}) {
+    SCOPED_TRACE(encoding_name(encoding));
+    ConversionOptions options;
+    options.encoding = encoding;
+    options.budget.kind = Budget::Kind::rate;
+    options.budget.rate = 2;
+    const Converted converted = test::convert(volume, options);
+    const NvdbGrid grid = converted.grid();
+    EXPECT_EQ(load<std::uint32_t>(grid.data(), nvdb::grid::kGridClass), 1U);
+    EXPECT_EQ(grid.background(), 3.0F);
+    EXPECT_EQ(converted.sidecar.background.method, "source");
+    EXPECT_TRUE(StockReader(converted.file).valid());
+  }
+}
+
 TEST_P(OracleTest, SameTreeAsOpenVdbAtEverySize) {
   const Case& c = GetParam();
   MemoryVolume volume(c.domain, c.value);

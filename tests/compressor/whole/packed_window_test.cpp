@@ -1,4 +1,4 @@
-// Packed files of volumes that are large enough for a look ahead (compressor/outlook/look_ahead.h): the same bytes with it and
+// Packed files of volumes that are large enough for a look ahead (compressor/look_ahead.h): the same bytes with it and
 // without, pushed, and where the sampled blocks mislead.
 #include <gtest/gtest.h>
 

@@ -361,7 +361,7 @@ TEST_F(Config, WatchConflict_IsReportedAtItsKey) {
                                           "\" already; give this one a label of its own");
 }
 
-TEST_F(Config, UnreadableFiles) {
+TEST_F(Config, FileThatCannotBeRead_IsNamedWithTheReason) {
   const auto message = [](const std::string& path) -> std::string {
     try {
       load_config(path);

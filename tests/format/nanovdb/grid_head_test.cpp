@@ -107,6 +107,21 @@ TEST(GridHead, FileMetaDataMatchesTheGrid) {
   EXPECT_EQ(meta.codec, nanovdb::io::Codec::NONE);
 }
 
+TEST(GridHead, ClassIsInGridAndMetaData) {
+  EXPECT_EQ(static_cast<std::uint32_t>(GridClass::level_set), static_cast<std::uint32_t>(nanovdb::GridClass::LevelSet));
+  EXPECT_EQ(static_cast<std::uint32_t>(GridClass::fog_volume),
+            static_cast<std::uint32_t>(nanovdb::GridClass::FogVolume));
+  for (const GridClass grid_class : {GridClass::unknown, GridClass::level_set, GridClass::fog_volume}) {
+    GridHead head = sample_head();
+    head.grid_class = grid_class;
+    const TreeLayout layout = sample_layout();
+    const std::vector<std::byte> file = encode_head(head, layout);
+    const auto stored = static_cast<std::uint32_t>(grid_class);
+    EXPECT_EQ(load<std::uint32_t>(file, nvdb::meta::kGridClass), stored);
+    EXPECT_EQ(load<std::uint32_t>(file, layout.grid + nvdb::grid::kGridClass), stored);
+  }
+}
+
 TEST(GridHead, NameHashMatchesNanoVdb) {
   for (const std::string& name : {std::string("a"), std::string("/fields/density"), std::string(255, 'z'),
                                   std::string("gr\xC3\xB6\xC3\x9F"

@@ -181,5 +181,35 @@ TEST(RenderCpu, CancelIsInterrupted) {
   }
 }
 
+TEST(RenderCpu, PictureThatIsGoneOnWith_IsThatOfOneCall) {
+  const TestGrid grid({{0, 0, 0}, {9, 9, 9}}, ball);
+  RenderOptions options;
+  options.width = 50;
+  options.height = 40;
+  const RenderScene prepared(grid.grid(), {}, options);
+  CpuRenderOptions cpu;
+  cpu.samples = 9;
+  cpu.threads = 1;
+  const Image whole = render_cpu(prepared.task(), cpu);
+  std::atomic<bool> cancel{false};
+  KeptPixels kept;
+  cpu.cancel = &cancel;
+  cpu.kept = &kept;
+  cpu.progress = [&](std::uint64_t) { cancel = true; };
+  EXPECT_THROW(render_cpu(prepared.task(), cpu), Error);
+  EXPECT_EQ(kept.drawn(), 16U * 4U) << "a row of a tile, after which progress is told";
+  cancel = false;
+  std::uint64_t most = 0;
+  cpu.progress = [&](std::uint64_t done) { most = std::max(most, done); };
+  const Image resumed = render_cpu(prepared.task(), cpu);
+  EXPECT_EQ(most, 50U * 40U * 9U);
+  EXPECT_EQ(kept.drawn(), 0U);
+  for (std::size_t i = 0; i < whole.pixels.size(); ++i) {
+    ASSERT_EQ(resumed.pixels[i].x, whole.pixels[i].x) << i;
+    ASSERT_EQ(resumed.pixels[i].y, whole.pixels[i].y) << i;
+    ASSERT_EQ(resumed.pixels[i].z, whole.pixels[i].z) << i;
+  }
+}
+
 }  // namespace
 }  // namespace weir::cpu_renderer_test

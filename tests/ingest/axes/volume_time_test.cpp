@@ -53,6 +53,17 @@ TEST(VolumeTime, TimesBesideTheArray_AreOneOrAsManyAsTheAxisHasElements) {
   EXPECT_FALSE(position.in({}));
 }
 
+TEST(VolumeTime, TimesOfALongerDimension_AreThoseOfItsFirstElements) {
+  AxisPlace time = time_axis(3);
+  time.unwritten = 2;
+  const std::array<const AxisPlace*, 1> leading{&time};
+  const std::array<std::int64_t, 1> index{2};
+  const TimePosition position = time_position(leading, index);
+  EXPECT_EQ(position.in({{7, 8, 9, 10, 11}, "s", {}})->value, 9);
+  EXPECT_EQ(position.in({{7, 8, 9}, "s", {}})->value, 9);
+  EXPECT_FALSE(position.in({{7, 8, 9, 10}, "s", {}}));
+}
+
 TEST(VolumeTime, WithoutAnAxisOfTime_OneTimeIsForAll) {
   const TimePosition nowhere = time_position({}, {});
   EXPECT_EQ(nowhere.in({{7}, {}, {}})->value, 7);

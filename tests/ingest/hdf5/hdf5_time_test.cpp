@@ -107,6 +107,60 @@ with h5py.File("pmd.h5", "w") as f:
   EXPECT_EQ(pmd->units, "s");
 }
 
+// Of three records of the dimension `flux` has two in the file, and `late`, at an auxiliary coordinate, one.
+constexpr const char* kShorter = R"(
+import netCDF4
+n = netCDF4.Dataset("a.nc", "w")
+for name, size in [("time", None), ("step", None), ("z", 5), ("y", 7), ("x", 9)]: n.createDimension(name, size)
+t = n.createVariable("time", "f8", ("time",)); t[:] = [0, 6, 12]; t.units = "hours since 2000-01-01"
+w = n.createVariable("when", "f8", ("step",)); w[:] = [1, 2, 3]; w.units = "days since 2000-01-01"
+full, flux = (n.createVariable(name, "f4", ("time", "z", "y", "x")) for name in ["full", "flux"])
+late = n.createVariable("late", "f4", ("step", "z", "y", "x")); late.coordinates = "when"
+full[:] = values("f4", (3,) + SHAPE); flux[:2] = values("f4", (2,) + SHAPE); late[:1] = values("f4", (1,) + SHAPE)
+expect("flux1", flux[1])
+assert flux.shape[0] == 3 and late.shape[0] == 3
+n.close()
+)";
+
+TEST_F(Hdf5Time, VariableOfFewerRecordsThanItsDimension_KeepsItsTimesAndSaysSo) {
+  write_by_h5py(scratch_, kShorter);
+  expect_reads(scratch_, "a.nc", dataset_options("flux", {1}), "flux1");
+  const FieldDetails details = details_of("a.nc", "flux", {1});
+  ASSERT_TRUE(details.time.has_value());
+  EXPECT_EQ(details.time->value, 6);
+  EXPECT_EQ(details.time->units, "hours since 2000-01-01");
+  EXPECT_EQ(details.values_note,
+            "its dimension time has 3 elements, of which 2 are written here: positions count these, and the last one "
+            "is 1");
+  EXPECT_EQ(details_of("a.nc", "full", {2}).values_note, "");
+  EXPECT_EQ(details_of("a.nc", "full", {2}).time->value, 12);
+}
+
+TEST_F(Hdf5Time, AuxiliaryTimesOfMoreRecords_AreThoseOfTheFirst) {
+  write_by_h5py(scratch_, kShorter);
+  const FieldDetails details = details_of("a.nc", "late", {0});
+  ASSERT_TRUE(details.time.has_value());
+  EXPECT_EQ(details.time->value, 1);
+  EXPECT_EQ(details.values_note,
+            "its dimension step has 3 elements, of which 1 is written here: positions count these, and the last one is "
+            "0");
+}
+
+TEST_F(Hdf5Time, PositionOfARecordThatWasNotWritten_IsRefused) {
+  write_by_h5py(scratch_, kShorter);
+  const std::string path = scratch_.path("a.nc");
+  EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { open_source(path, dataset_options("flux", {2})); }),
+            path +
+                ": /flux: its axes are time=2 x z=5 x y=7 x x=9, and --index has 2; give --index with 1 position: "
+                "time in 0..1 (2 was not written)");
+  SourceOptions named = dataset_options("flux");
+  named.index_choices = {{"time", false, 2, {}}};
+  EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { open_source(path, named); }),
+            path +
+                ": /flux: --index has 2, and time has the positions 0 to 1 (2 was not written), or from the end -2 "
+                "to -1");
+}
+
 // openPMD 1.1, "Required for each Record": timeOffset is in the unit of the iteration's time.
 TEST_F(Hdf5Time, OffsetOfAnOpenPmdRecord_IsAddedToTheTime) {
   write_by_h5py(scratch_, R"(

@@ -52,7 +52,7 @@ TEST(Cloud, SixtyToNinetyPercentExactZeros) {
   }
 }
 
-TEST(Cloud, HardlyTouchesTheFaces) {
+TEST(Cloud, VoxelsOnTheFaces_AreNearlyAllEmpty) {
   const Volume cloud = make_volume("cloud", {96, 96, 96});
   int touching = 0;
   for (std::int64_t a = 0; a < 96; ++a) {

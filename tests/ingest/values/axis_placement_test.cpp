@@ -24,6 +24,25 @@ TEST(AxisPlacement, PermutedAxesReorderTheOriginWithANote) {
   EXPECT_EQ(placement.orientation, "axes along +z, -x, +y of the file's world; voxels keep the file's order");
 }
 
+// As OpenVDB's map and VTK's image have it: index i lies at zero + i * step.
+TEST(AxisPlacement, FirstIndexOfAFallingAxis_LiesWhereTheFileSays) {
+  const std::vector<Vector3> steps{{1, 0, 0}, {0, 2, 0}, {0, 0, -3}};
+  const AxisPlacement placement = place_axes(steps, {10, 20, 30}, {-9, 2, -3});
+  EXPECT_EQ(placement.spacing, (Vector3{1, 2, 3}));
+  EXPECT_EQ(placement.origin, (Vector3{10, 20, 48})) << "origin + first * spacing = 39 = 30 + first * step";
+  EXPECT_EQ(placement.orientation, "axes along +x, +y, -z of the file's world; voxels keep the file's order");
+
+  const std::vector<Vector3> turned{{0, 0, 2}, {-3, 0, 0}, {0, 4, 0}};
+  EXPECT_EQ(place_axes(turned, {10, 20, 30}, {5, 6, 7}).origin, (Vector3{30, 10 - 2 * 6 * 3, 20}));
+}
+
+TEST(AxisPlacement, FirstIndexOfRisingAndObliqueAxes_DoesNotMoveTheOrigin) {
+  const std::vector<Vector3> rising{{0.1, 0, 0}, {0, 0.3, 0}, {0, 0, 0.7}};
+  EXPECT_EQ(place_axes(rising, {0.1, 0.2, 0.3}, {-7, 11, 13}).origin, (Vector3{0.1, 0.2, 0.3}));
+  const std::vector<Vector3> oblique{{3, 4, 0}, {-4, 3, 0}, {0, 0, -2}};
+  EXPECT_EQ(place_axes(oblique, {1, 2, 3}, {-7, 11, 13}).origin, (Vector3{1, 2, 3}));
+}
+
 TEST(AxisPlacement, IgnoresRoundingErrors) {
   const std::vector<Vector3> steps{{2, 1e-7, 0}, {0, 2, -1e-7}, {0, 0, 2}};
   EXPECT_EQ(place_axes(steps, {}).orientation, "");

@@ -192,6 +192,51 @@ TEST(VdbSource, TransformsBecomeSpacingAndOriginOfVoxelCentres) {
   EXPECT_NE(std::find(listed.attributes.begin(), listed.attributes.end(), orientation), listed.attributes.end());
 }
 
+TEST(VdbSource, FirstVoxelOfAFallingAxis_LiesWhereOpenVdbPutsIt) {
+  const Scratch scratch;
+  OpenVdbGrid grid(GridKind::float32, "a");
+  grid.fill({{-9, 2, -3}, {12, 20, 15}}).place({1, 2, -3}, {10, 20, 30});
+  test::write_vdb(scratch.path("a.vdb"), {grid, OpenVdbGrid(GridKind::float32, "none").place({1, 1, -1}, {4, 5, 6})});
+  const SourceInfo info = open_source(scratch.path("a.vdb"), naming("a"))->info();
+  EXPECT_EQ(info.spacing, (std::array<double, 3>{1, 2, 3}));
+  EXPECT_EQ(info.index_origin, (Index3{-9, 2, -3}));
+  EXPECT_EQ(info.origin, (std::array<double, 3>{10, 20, 48})) << "first voxel at 1,24,39";
+  const auto list = list_vdb(scratch.path("a.vdb"), {});
+  const auto origin = [&](std::size_t i) {
+    const auto& all = list.at(i).attributes;
+    const auto found = std::find_if(all.begin(), all.end(), [](const auto& a) { return a.first == "origin"; });
+    return found == all.end() ? std::string() : found->second;
+  };
+  EXPECT_EQ(origin(0), "10,20,48");
+  EXPECT_EQ(origin(1), "4,5,6");
+}
+
+TEST(VdbSource, ClassAndBackgroundOfALevelSet_AreKept) {
+  const Scratch scratch;
+  const auto info_of = [&](GridKind kind, const std::string& grid_class, bool half = false) {
+    OpenVdbGrid grid(kind, "a");
+    grid.fill({{0, 0, 0}, {9, 9, 9}});
+    if (!grid_class.empty()) grid.class_is(grid_class);
+    if (half) grid.save_as_half();
+    test::write_vdb(scratch.path("a.vdb"), {grid}, Compression::blosc_active_mask);
+    SourceOptions options;
+    if (kind == GridKind::vec3s) options.component = parse_component("x");
+    return open_source(scratch.path("a.vdb"), options)->info();
+  };
+  for (const GridKind kind : {GridKind::float32, GridKind::float64}) {
+    for (const bool half : {false, true}) {
+      const SourceInfo level_set = info_of(kind, "level set", half);
+      EXPECT_EQ(level_set.grid_class, GridClass::level_set);
+      EXPECT_EQ(level_set.background, 2.0F);
+    }
+  }
+  EXPECT_EQ(info_of(GridKind::float32, "fog volume").grid_class, GridClass::fog_volume);
+  EXPECT_FALSE(info_of(GridKind::float32, "fog volume").background) << "found as of any other volume";
+  EXPECT_EQ(info_of(GridKind::float32, "").grid_class, GridClass::unknown);
+  EXPECT_EQ(info_of(GridKind::int32, "level set").grid_class, GridClass::unknown);
+  EXPECT_EQ(info_of(GridKind::vec3s, "staggered").grid_class, GridClass::unknown);
+}
+
 TEST(VdbSource, ChoosesByName) {
   const Scratch scratch;
   const std::string path = scratch.path("a.vdb");

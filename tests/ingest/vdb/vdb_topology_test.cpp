@@ -62,6 +62,8 @@ TEST(VdbTopology, CountsNodesAndBoundsActiveVoxels) {
     EXPECT_EQ(topology.nodes, (std::array<std::uint64_t, 3>{9, 9, 8}));
     EXPECT_EQ(topology.root_entries, 10U);
     EXPECT_EQ(topology.active, grid.active());
+    EXPECT_EQ(topology.background, 0);
+    EXPECT_EQ(walk(one_leaf(), compression).background, 2);
   }
   EXPECT_TRUE(walk(OpenVdbGrid(GridKind::boolean, "empty")).active.empty());
 }

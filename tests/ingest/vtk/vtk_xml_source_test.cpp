@@ -133,6 +133,23 @@ TEST(VtkXmlSource, TakesPlaceFirstIndexAndDirection) {
                 "finite, the spacing not 0");
 }
 
+// vtkImageData::TransformIndexToPhysicalPoint: origin + direction * (spacing * index).
+TEST(VtkXmlSource, FirstPointOfAFallingAxis_LiesWhereVtkPutsIt) {
+  const Scratch scratch;
+  const VtiStorage storage;
+  std::string text = vti(storage, point_array("type=\"UInt8\" Name=\"a\" format=\"binary\"",
+                                              vti_data(stored(ramp()), storage).text(storage)));
+  const std::string extent = "3 6 -2 0 5 6";
+  const std::string place = "Origin=\"1 2 3\" Spacing=\"0.5 0.25 2\" Direction=\"0 1 0 1 0 0 0 0 -1\"";
+  text.replace(text.find("WholeExtent=\"0 3 0 2 0 1\""), 25, "WholeExtent=\"" + extent + "\" " + place);
+  text.replace(text.find("Piece Extent=\"0 3 0 2 0 1\""), 26, "Piece Extent=\"" + extent + "\"");
+  const std::string path = write_headed(scratch, "a.vti", text);
+  const SourceInfo info = open_source(path, {})->info();
+  EXPECT_EQ(info.index_origin, (Index3{3, -2, 5}));
+  EXPECT_EQ(info.origin, (std::array<double, 3>{2, 1, -17})) << "z of the first point is 3 - 5 * 2 = -17 + 5 * 2";
+  EXPECT_EQ(list_vtk_xml(path, {}).at(0).attributes.at(2).second, "2,1,-17");
+}
+
 TEST(VtkXmlSource, CellValuesArePlacedAtCellCentres) {
   const Scratch scratch;
   const std::string cells =

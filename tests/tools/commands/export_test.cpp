@@ -17,6 +17,7 @@
 
 #include "format/base/text.h"
 #include "format/nanovdb/nvdb_file.h"
+#include "tests/stock/openvdb_file.h"
 #include "tests/stock/stock_nvdb.h"
 #include "tests/stock/vdb_oracle.h"
 #include "tests/support/run_command.h"
@@ -114,6 +115,22 @@ TEST_F(ExportCommand, ConvertedBack_IsLossless) {
   EXPECT_EQ(second.grid().index_bbox(), first.grid().index_bbox());
   EXPECT_EQ(second.grid().matrix(), first.grid().matrix());
   EXPECT_EQ(second.grid().world_origin(), first.grid().world_origin());
+}
+
+TEST_F(ExportCommand, LevelSetOfOpenVdb_StaysOneWithItsBackgroundAndPlace) {
+  const std::string source = directory_ / "source.vdb";
+  test::OpenVdbGrid grid(test::GridKind::float32, "distance");  // of background 2
+  grid.fill({{-9, 2, -3}, {12, 20, 15}}, 0).set_on({0, 5, 5}, 1).place({1, 2, -3}, {10, 20, 30}).class_is("level set");
+  test::write_vdb(source, {grid});
+  for (const char* encoding : {"float", "packed"}) {
+    SCOPED_TRACE(encoding);
+    convert(source, "", {"--encoding", encoding, "--lossless"});
+    EXPECT_EQ(NvdbFile(nvdb_).grid().background(), 2.0F);
+    exported();
+    const test::VdbFacts facts = test::read_facts(vdb_);
+    EXPECT_EQ(facts.metadata.at("class"), "level set");
+    EXPECT_EQ(facts.origin[2] + -3 * facts.steps[2][2], 39) << "z of the first voxel, 30 + -3 * -3";
+  }
 }
 
 TEST_F(ExportCommand, ARealCloudIsReadByTheStockTool) {

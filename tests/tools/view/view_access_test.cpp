@@ -51,6 +51,17 @@ TEST_F(ViewAccessTest, Token_IsNeededForAllButThePage) {
   EXPECT_EQ(get(served.port(), "/page/view.js").first, 200);
 }
 
+TEST_F(ViewAccessTest, WrongToken_IsToldWhereTheRightOneIs) {
+  ViewSettings settings;
+  settings.token = "se";
+  const auto answer = [&] { return get(ServedView(volume_, "", settings).port(), "/api/state", {}, "Bearer other"); };
+  EXPECT_EQ(answer().second,
+            "{\"error\":\"the token is not this viewer's; take the one in the file that --token-file names\"}\n");
+  settings.any_host = true;
+  EXPECT_EQ(answer().second,
+            "{\"error\":\"the token is not this viewer's; take the one that it printed to --progress-fd\"}\n");
+}
+
 TEST_F(ViewAccessTest, AddressThatOthersReach_NeedsAToken) {
   ViewSettings settings;
   settings.address = {"0.0.0.0", 0};

@@ -1,9 +1,11 @@
 #include "tools/view/base/view_message.h"
 
-#include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
 
 #include "format/base/error.h"
+#include "format/base/json_text.h"
 #include "format/base/text.h"
 
 namespace weir {
@@ -19,13 +21,20 @@ const nlohmann::json& value_of(const nlohmann::json& message, const char* key) {
   return *found;
 }
 
+// Of an integer of either sign, where it lies in [low, high]. As a double it would be rounded above 2^53.
+std::optional<std::int64_t> integer_within(const nlohmann::json& value, std::int64_t low, std::int64_t high) {
+  if (!value.is_number_integer()) return std::nullopt;
+  const auto within = [&](auto number) {
+    return std::cmp_greater_equal(number, low) && std::cmp_less_equal(number, high);
+  };
+  const bool fits = value.is_number_unsigned() ? within(value.get<std::uint64_t>()) : within(value.get<std::int64_t>());
+  return fits ? std::optional(value.get<std::int64_t>()) : std::nullopt;
+}
+
 std::int64_t whole(const nlohmann::json& message, const char* key, std::int64_t low, std::int64_t high) {
-  const nlohmann::json& value = value_of(message, key);
-  if (!value.is_number_integer() || value.get<double>() < static_cast<double>(low) ||
-      value.get<double>() > static_cast<double>(high)) {
-    refuse_key(key, cat("must be a whole number from ", low, " to ", high));
-  }
-  return value.get<std::int64_t>();
+  const auto number = integer_within(value_of(message, key), low, high);
+  if (!number) refuse_key(key, cat("must be a whole number from ", low, " to ", high));
+  return *number;
 }
 
 double number(const nlohmann::json& message, const char* key, double low, double high) {
@@ -117,8 +126,7 @@ MessageName read_name(std::string_view text_of_message) {
     } else if (event == Event::value && key == "type") {
       name.view = found == "view";
     } else if (event == Event::value && key == "id") {
-      const bool known = found.is_number_integer() && found.get<double>() >= 0 && found.get<double>() <= kMostId;
-      name.id = known ? std::optional(found.get<std::int64_t>()) : std::nullopt;
+      name.id = integer_within(found, 0, kMostId);
     }
     return true;
   };
@@ -130,7 +138,7 @@ std::string error_line(std::int64_t view, std::optional<std::int64_t> id, std::s
   nlohmann::ordered_json error{{"type", "error"}, {"view", view}};
   if (id) error["id"] = *id;
   error["message"] = message;
-  return error.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return json_text(error);
 }
 
 }  // namespace

@@ -17,7 +17,8 @@ namespace weir {
 /// One of the pages that look, for as long as it is connected.
 using ViewerId = std::int64_t;
 
-/// Pixels of a picture, of two files together, at most: its sums take 12 bytes each.
+/// Pixels of a picture, of two files together, at most: its sums take 12 bytes each, and a pass that made room for
+/// another page 16 more.
 inline constexpr std::int64_t kMostViewPixels = 4 << 20;
 inline constexpr std::int32_t kLongestViewEdge = 8192;  ///< pixels
 /// Collisions of a path, at most: one pixel must not keep all others waiting.

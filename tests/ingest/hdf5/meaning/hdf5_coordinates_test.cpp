@@ -87,6 +87,23 @@ with h5py.File("a.nc", "w") as f:
   EXPECT_EQ(info.details.axes[0].note, "it has 10 coordinates for 9 elements, taken as indices");
 }
 
+TEST_F(Hdf5Coordinates, OfMoreElements_AreTheFirstWhereArrayAndCoordinatesGrow) {
+  write_by_h5py(scratch_, R"(
+with h5py.File("a.nc", "w") as f:
+    for name, limit in [("fixed", 7), ("open", None)]:
+        d = f.create_dataset("t_" + name, data=values("f4"), maxshape=(None, 7, 9))
+        s = f.create_dataset("z_" + name, data=np.arange(7) * 0.5, maxshape=(limit,)); s.make_scale("z_" + name); s.attrs["units"] = "m"
+        d.dims[0].attach_scale(s)
+)");
+  EXPECT_EQ(info_of("t_fixed").details.axes[2].note, "it has 7 coordinates for 5 elements, taken as indices");
+  const SourceInfo info = info_of("t_open");
+  EXPECT_EQ(info.spacing[2], 0.5);
+  EXPECT_EQ(info.details.axes[2].note, "");
+  EXPECT_EQ(info.details.values_note,
+            "its dimension z_open has 7 elements, of which 5 are written here: positions count these, and the last one "
+            "is 4");
+}
+
 TEST_F(Hdf5Coordinates, UnsignedFalse_MeansSignedValues) {
   write_by_h5py(scratch_, R"(
 import netCDF4

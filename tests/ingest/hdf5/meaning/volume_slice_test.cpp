@@ -46,6 +46,17 @@ TEST(VolumeSlice, AnIndexThatDoesNotFitIsAnErrorOfUse) {
   EXPECT_EQ(refused({5, 6, 7}, {0}), "here: its axes are 5 x 6 x 7, and --index has 1 position; leave --index out");
 }
 
+TEST(VolumeSlice, RefusedPosition_SaysWhichWereNotWritten) {
+  std::vector<AxisPlace> shorter = axes({2, 5, 6, 7});
+  const auto refused = [&] { return message_of_error(ErrorKind::usage, [&] { volume_slice(shorter, {2}, "here"); }); };
+  const std::string said =
+      "here: its axes are 2 x 5 x 6 x 7, and --index has 2; give --index with 1 position: axis 0 in ";
+  shorter[0].unwritten = 1;
+  EXPECT_EQ(refused(), said + "0..1 (2 was not written)");
+  shorter[0].unwritten = 3;
+  EXPECT_EQ(refused(), said + "0..1 (2 to 4 were not written)");
+}
+
 TEST(VolumeSlice, AxisOfComponentsNeedsAChoice) {
   const auto vectors = axes({4, 20, 21, 22, 3});
   const auto refused = [&](const std::vector<std::int64_t>& index, const std::optional<ComponentChoice>& component) {

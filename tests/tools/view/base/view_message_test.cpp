@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -57,6 +58,16 @@ TEST(ViewMessage, WhatIsWrong_IsNamed) {
   EXPECT_EQ(refusal(with("against", true)), "message: against needs a second file; start weir view with --against");
   EXPECT_EQ(refusal({{"type", "probe"}, {"id", 1}, {"x", 1.5}, {"y", 0}}), "message: x must be a number from 0 to 1");
   EXPECT_EQ(refusal({{"type", "shown"}}), "message: frame is missing");
+}
+
+TEST(ViewMessage, WholeNumberAbove2To53_IsNotRounded) {
+  const std::int64_t most = std::int64_t{1} << 53;
+  EXPECT_EQ(std::get<ViewRequest>(parse_client_message(with("id", most).dump(), 2, false)).id, most);
+  const std::string why = "message: id must be a whole number from 0 to 9007199254740992";
+  EXPECT_EQ(refusal(with("id", most + 1)), why);
+  EXPECT_EQ(refusal(with("id", ~std::uint64_t{0})), why);
+  EXPECT_EQ(refusal(with("id", -1)), why);
+  EXPECT_EQ(refusal_message(with("id", most + 1).dump(), "no"), R"({"type":"error","view":0,"message":"no"})");
 }
 
 TEST(ViewMessage, PictureOfTooManyPixels_IsRefused) {

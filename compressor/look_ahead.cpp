@@ -1,4 +1,4 @@
-#include "compressor/outlook/look_ahead.h"
+#include "compressor/look_ahead.h"
 
 #include <algorithm>
 #include <vector>

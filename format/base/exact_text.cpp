@@ -1,0 +1,13 @@
+#include "format/base/exact_text.h"
+
+#include <array>
+#include <charconv>
+
+namespace weir {
+
+std::string exact_text(double value) {
+  std::array<char, 32> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
+}  // namespace weir
