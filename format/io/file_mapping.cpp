@@ -7,11 +7,11 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <system_error>
 #include <utility>
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "format/io/refused_open.h"
 
 namespace weir {
 namespace {
@@ -22,23 +22,9 @@ constexpr int MADV_POPULATE_READ = 22;  // Linux 5.14; unknown to older C librar
 
 constexpr std::uint64_t kSampledPages = 16;
 
-// What is wrong with the name is wrong with the input, as InputFile has it; rights, devices, servers, descriptors and
-// memory may come back, and say nothing of what the file holds.
-Error refused_open(const std::string& path, int errno_value) {
-  const bool name = errno_value == ENOENT || errno_value == ENOTDIR || errno_value == EISDIR || errno_value == ELOOP ||
-                    errno_value == ENAMETOOLONG || errno_value == EINVAL;
-  const char* remedy = errno_value == EMFILE || errno_value == ENFILE ? "; raise the limit of open files (ulimit -n)"
-                       : errno_value == EACCES || errno_value == EPERM
-                           ? "; give this user the right to read it and to enter its directories"
-                           : "";
-  return Error(name ? ErrorKind::input : ErrorKind::io,
-               cat(path, ": cannot open: ", std::generic_category().message(errno_value), remedy),
-               SystemFailure{errno_value, path});
-}
-
 Descriptor open_to_read(const std::string& path) {
   Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));  // a pipe must not block
-  if (!file) throw refused_open(path, errno);
+  if (!file) throw refused_open(path, "open", errno);
   return file;
 }
 

@@ -8,33 +8,17 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <system_error>
 #include <vector>
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "format/io/refused_open.h"
 
 namespace weir {
 namespace {
 
 Error open_error(const std::string& path, const std::string& what) {
   return Error(ErrorKind::input, cat(path, ": ", what));
-}
-
-std::string message_of(int errno_value) { return std::generic_category().message(errno_value); }
-
-// What is wrong with the name is wrong with the input; rights, devices, servers, descriptors and memory may come back,
-// and then the same file can be read.
-Error refused_open(const std::string& path, int errno_value) {
-  const bool name = errno_value == ENOENT || errno_value == ENOTDIR || errno_value == ELOOP ||
-                    errno_value == ENAMETOOLONG || errno_value == EINVAL;
-  const char* remedy = errno_value == EMFILE || errno_value == ENFILE ? "; raise the limit of open files (ulimit -n)"
-                       : errno_value == EACCES || errno_value == EPERM
-                           ? "; give this user the right to read it and to enter its directories"
-                           : "";
-  return Error(name ? ErrorKind::input : ErrorKind::io,
-               cat(path, ": cannot open for reading: ", message_of(errno_value), remedy),
-               SystemFailure{errno_value, path});
 }
 
 std::uint64_t page_bytes() {
@@ -56,7 +40,7 @@ bool may_see_residency(const std::string& path, const struct stat& status) {
 InputFile::InputFile(const std::string& path, DirectIo mode, const std::string& shown) : path_(shown), mode_(mode) {
   // O_NONBLOCK: opening a pipe must not wait for its writer. Regular files ignore it.
   buffered_.reset(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-  if (!buffered_) throw refused_open(shown, errno);
+  if (!buffered_) throw refused_open(shown, "open for reading", errno);
   struct stat status {};
   if (::fstat(buffered_.get(), &status) != 0) throw io_error(shown, "look at it", errno);
   if (S_ISDIR(status.st_mode)) throw open_error(shown, "is a directory; name a file in it");

@@ -56,6 +56,7 @@ std::set<std::string> headers() {
                            "base/error",
                            "base/message",
                            "io/file_mapping",
+                           "io/refused_open",
                            "base/host_device",
                            "base/index",
                            "base/mix_bits",
