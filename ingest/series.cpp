@@ -123,11 +123,7 @@ std::vector<SeriesStep> with_indices(const SeriesStep& step, const SourceOptions
   if (!at.index.empty() || options.index_choices.empty()) return {at};
   SourceOptions of_step = options;
   of_step.dataset = options.magnitude.empty() ? step.dataset : options.magnitude.front();
-  const std::vector<DatasetInfo> datasets = datasets_of(step.path, options, option("index"));
-  const DatasetInfo& dataset = dataset_of_choices(step.path, datasets, of_step);
-  const std::vector<LeadingAxis>& axes = axes_to_choose_on(dataset, of_step);
-  const auto positions = chosen_positions(dataset.name.empty() ? step.path : cat(step.path, ": ", dataset.name), axes,
-                                          options.index_choices);
+  const auto [axes, positions] = index_positions(step.path, datasets_of(step.path, options, option("index")), of_step);
   std::vector<SeriesStep> steps;
   for (const std::vector<std::int64_t>& position : positions) {
     steps.push_back(at);

@@ -94,10 +94,7 @@ constexpr std::array kFormats{
 /// The position that options.index_choices stand for in `path`.
 std::vector<std::int64_t> chosen_position(const std::string& path, const SourceFormat& format,
                                           const SourceOptions& options) {
-  const std::vector<DatasetInfo> datasets = format.list(path, options);
-  const DatasetInfo& dataset = dataset_of_choices(path, datasets, options);
-  const auto positions = chosen_positions(dataset.name.empty() ? path : cat(path, ": ", dataset.name),
-                                          axes_to_choose_on(dataset, options), options.index_choices);
+  const auto positions = index_positions(path, format.list(path, options), options).positions;
   if (positions.size() == 1) return positions.front();
   throw usage_error(compose(path, ": ", option("index"), " stands for ", positions.size(),
                             " volumes, and one is read here; give one position on each axis"));

@@ -1,7 +1,8 @@
 #include "daemon/http/http_message.h"
-#include "format/base/json_text.h"
 
 #include <nlohmann/json.hpp>
+
+#include "format/base/json_text.h"
 
 namespace weir {
 

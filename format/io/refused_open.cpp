@@ -7,14 +7,17 @@
 
 namespace weir {
 
+bool is_fault_of_name(int errno_value) {
+  return errno_value == ENOENT || errno_value == ENOTDIR || errno_value == EISDIR || errno_value == ELOOP ||
+         errno_value == ENAMETOOLONG || errno_value == EINVAL;
+}
+
 Error refused_open(const std::string& path, const char* action, int errno_value) {
-  const bool name = errno_value == ENOENT || errno_value == ENOTDIR || errno_value == EISDIR || errno_value == ELOOP ||
-                    errno_value == ENAMETOOLONG || errno_value == EINVAL;
   const char* remedy = errno_value == EMFILE || errno_value == ENFILE ? "; raise the limit of open files (ulimit -n)"
                        : errno_value == EACCES || errno_value == EPERM
                            ? "; give this user the right to read it and to enter its directories"
                            : "";
-  return {name ? ErrorKind::input : ErrorKind::io,
+  return {is_fault_of_name(errno_value) ? ErrorKind::input : ErrorKind::io,
           cat(path, ": cannot ", action, ": ", std::generic_category().message(errno_value), remedy),
           SystemFailure{errno_value, path}};
 }

@@ -13,6 +13,7 @@
 
 #include "format/base/error.h"
 #include "format/base/index.h"
+#include "format/base/json_text.h"
 #include "format/base/text.h"
 
 namespace weir {
@@ -111,7 +112,7 @@ class JsonReader {
   static std::string shown(const Json& value) {
     if (value.is_array()) return cat("an array of ", value.size());
     if (value.is_object()) return "an object";
-    return value.dump(-1, ' ', false, Json::error_handler_t::replace).substr(0, 60);
+    return json_text(value).substr(0, 60);
   }
 
   [[noreturn]] void fail(const std::string& key, const char* expected, const Json& found) const {

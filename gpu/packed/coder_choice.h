@@ -32,15 +32,11 @@ inline std::function<void(const Error&)> say_device_failure(const Notice& notice
   };
 }
 
-/// The coder that `choice` asks for: one on the calling thread's current device, or null for the CPU.
-///   - CoderChoice::cpu: null.
-///   - CoderChoice::automatic: the device, if the conversion writes `packed` blocks, may use kLeastMemoryOfDevice of
-///   its
-///     `memory` (bytes), and there is a device that works; a device that does not is told to `notice`.
-///   - CoderChoice::cuda: the device. Throws Error(usage) if this build or this machine has none, and Error(io) if it
-///   has
-///     no room.
-/// If the device fails later, `notice` is told once, and the CPU goes on.
+/// The coder that `choice` asks for: one on the calling thread's current device, or null for the CPU. With
+/// CoderChoice::cpu it is null. CoderChoice::automatic takes a device that works, where the conversion writes `packed`
+/// blocks and its `memory` is kLeastMemoryOfDevice bytes or more; `notice` is told of one that does not work.
+/// CoderChoice::cuda takes the device, and throws Error(usage) where this build or this machine has none, Error(io)
+/// where it has no room. If the device fails later, `notice` is told once, and the CPU goes on.
 inline std::unique_ptr<BlockCoder> choose_coder(CoderChoice choice, bool packed, std::uint64_t memory,
                                                 const Notice& notice) {
   if (choice == CoderChoice::cpu) return nullptr;

@@ -67,8 +67,7 @@ DatasetInfo described(const Hdf5Object& object, const DatasetFacts& facts) {
   info.type = facts.type_text;
   info.layout = facts.layout_text();
   for (const char* text : {"long_name", "description"}) {
-    const std::vector<std::string> values = text_attribute(object.handle.get(), text);
-    if (!values.empty()) add(info.attributes, text, values[0]);
+    add(info.attributes, text, first_text_attribute(object.handle.get(), text));
   }
   add(info.attributes, "units", facts.meaning.units);
   if (facts.meaning.unit_si) add(info.attributes, "unit_si", cat(*facts.meaning.unit_si));

@@ -10,13 +10,21 @@ namespace weir {
 
 namespace {
 
+// The axes of `dataset` that options.index_choices give positions on.
+const std::vector<LeadingAxis>& axes_to_choose_on(const DatasetInfo& dataset, const SourceOptions& options) {
+  if (options.component) return dataset.component_index_axes;
+  const std::vector<LeadingAxis>& all = dataset.vector_index_axes;
+  const bool takes_all = options.index_choices.size() == all.size() && choices_fit(options.index_choices, all);
+  return dataset.components > 1 && takes_all ? all : dataset.index_axes;
+}
+
 std::string listed(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += cat(text.empty() ? "" : ", ", name);
   return text;
 }
 
-// Of `choices`, that do not fit `dataset`, what is wrong.
+// What is wrong with options.index_choices, which do not fit `dataset`.
 Error unfit(const std::string& path, const DatasetInfo& dataset, const SourceOptions& options) {
   const std::vector<AxisChoice>& choices = options.index_choices;
   const std::vector<LeadingAxis>& axes = axes_to_choose_on(dataset, options);
@@ -41,15 +49,7 @@ Error unfit(const std::string& path, const DatasetInfo& dataset, const SourceOpt
                              axes.empty() ? "no leading axis" : text, "; weir inspect lists what there is"));
 }
 
-}  // namespace
-
-const std::vector<LeadingAxis>& axes_to_choose_on(const DatasetInfo& dataset, const SourceOptions& options) {
-  if (options.component) return dataset.component_index_axes;
-  const std::vector<LeadingAxis>& all = dataset.vector_index_axes;
-  const bool takes_all = options.index_choices.size() == all.size() && choices_fit(options.index_choices, all);
-  return dataset.components > 1 && takes_all ? all : dataset.index_axes;
-}
-
+// The one that options.index_choices choose positions in.
 const DatasetInfo& dataset_of_choices(const std::string& path, const std::vector<DatasetInfo>& datasets,
                                       const SourceOptions& options) {
   const std::vector<AxisChoice>& choices = options.index_choices;
@@ -74,6 +74,16 @@ const DatasetInfo& dataset_of_choices(const std::string& path, const std::vector
   throw usage_error(compose(path, ": ", option("index"), " has ", choices.size(),
                             choices.size() == 1 ? " position" : " positions",
                             ", and no dataset has such axes; weir inspect lists what there is"));
+}
+
+}  // namespace
+
+IndexPositions index_positions(const std::string& path, const std::vector<DatasetInfo>& datasets,
+                               const SourceOptions& options) {
+  const DatasetInfo& dataset = dataset_of_choices(path, datasets, options);
+  const std::vector<LeadingAxis>& axes = axes_to_choose_on(dataset, options);
+  const std::string where = dataset.name.empty() ? path : cat(path, ": ", dataset.name);
+  return {axes, chosen_positions(where, axes, options.index_choices)};
 }
 
 std::vector<DatasetInfo> list_single(const SourceInfo& info, std::string layout) {

@@ -31,15 +31,19 @@ struct DatasetInfo {
   bool over_time = false;  ///< the obstacle is that it has planes over time, and no third axis of space
 };
 
-/// The axes of `dataset` that options.index_choices give positions on. The last axis of an array of components is x
-/// where no component is chosen and each axis before the last three has its choice.
-const std::vector<LeadingAxis>& axes_to_choose_on(const DatasetInfo& dataset, const SourceOptions& options);
+/// The positions that --index stands for.
+struct IndexPositions {
+  std::vector<LeadingAxis> axes;
+  std::vector<std::vector<std::int64_t>> positions;  ///< one on each axis; the last axis changes first
+};
 
-/// Of `datasets` of the file `path`, the one that options.index_choices choose positions in: options.dataset, or the
-/// only one that can be converted and whose axes they fit, of vectors where options.component is given and some are.
-/// Throws Error(usage) where it is unclear or they do not fit.
-const DatasetInfo& dataset_of_choices(const std::string& path, const std::vector<DatasetInfo>& datasets,
-                                      const SourceOptions& options);
+/// Those that options.index_choices stand for in one of `datasets`, of the file `path`: options.dataset, or the only
+/// one that can be converted and whose axes they fit, of vectors where options.component is given and some are. The
+/// last axis of an array of components is x where no component is chosen and each axis before the last three has its
+/// choice. Throws Error(usage) where it is unclear which dataset is meant, where they do not fit it, and as
+/// chosen_positions.
+IndexPositions index_positions(const std::string& path, const std::vector<DatasetInfo>& datasets,
+                               const SourceOptions& options);
 
 /// The list of a format whose files hold one volume: opens it and says what it is.
 std::vector<DatasetInfo> list_single(const SourceInfo& info, std::string layout);

@@ -26,7 +26,6 @@ namespace {
 
 constexpr std::size_t kLeavesAtOnce = 2048;  ///< leaves between two looks at progress: some 4 MiB
 constexpr std::size_t kChunk = 64;           ///< leaves of one task
-constexpr std::uint32_t kLevelSet = 1;       ///< NanoVDB's GridClass
 
 template <typename MaskType>
 std::uint64_t count(const MaskType& mask) {
@@ -98,7 +97,8 @@ class Writer {
     head.translation = grid_.world_origin();
     head.metadata = options_.metadata;
     head.metadata["name"] = grid_.name();
-    written_.level_set = load<std::uint32_t>(grid_.data().data() + nvdb::grid::kGridClass) == kLevelSet;
+    written_.level_set = load<std::uint32_t>(grid_.data().data() + nvdb::grid::kGridClass) ==
+                         static_cast<std::uint32_t>(GridClass::level_set);
     head.metadata["class"] = written_.level_set ? "level set" : "fog volume";
     head.metadata["is_saved_as_half_float"] = options_.half;
     head.metadata["file_voxel_count"] = std::int64_t{0};

@@ -9,6 +9,7 @@
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "format/io/real_path.h"
+#include "format/io/refused_open.h"
 #include "format/sidecar/find_sidecar.h"
 #include "format/sidecar/is_of.h"
 
@@ -18,20 +19,13 @@ namespace {
 // A histogram of 1,024 bins and two paths take some 50 KB; JSON takes up to 40 times its bytes in memory.
 constexpr std::uintmax_t kMaxBytes = 4U << 20U;
 
-// Whether there is no file of that name; all else says nothing of what the sidecar holds.
-bool says_missing(const std::error_code& error) {
-  return error == std::errc::no_such_file_or_directory || error == std::errc::not_a_directory ||
-         error == std::errc::is_a_directory || error == std::errc::too_many_symbolic_link_levels ||
-         error == std::errc::filename_too_long || error == std::errc::not_supported;  // the last: a pipe, a device
-}
-
 }  // namespace
 
 Sidecar read_sidecar(const std::string& path) {
   std::error_code error;
   const std::uintmax_t bytes = std::filesystem::file_size(path, error);
   if (error) {
-    const bool missing = says_missing(error);
+    const bool missing = is_fault_of_name(error.value()) || error == std::errc::not_supported;  // a pipe, a device
     throw Error(missing ? ErrorKind::input : ErrorKind::io,
                 cat(path, ": cannot read the sidecar: ", error.message(),
                     missing ? "; write it with weir convert, or look at the volume alone with weir inspect"

@@ -172,9 +172,8 @@ std::vector<double> coordinate_values(hid_t dataset) {
 
 bool is_bare_dimension(hid_t dataset) {
   check_attribute_bytes(dataset);
-  const std::vector<std::string> name = text_attribute(dataset, "NAME");
-  return has_attribute(dataset, "CLASS") && !name.empty() &&
-         name[0].starts_with("This is a netCDF dimension but not a netCDF variable");
+  return has_attribute(dataset, "CLASS") &&
+         first_text_attribute(dataset, "NAME").starts_with("This is a netCDF dimension but not a netCDF variable");
 }
 
 void place_by_scales(hid_t dataset, std::span<AxisPlace> axes) {

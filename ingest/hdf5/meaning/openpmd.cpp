@@ -41,8 +41,7 @@ double time_offset(hid_t object, std::span<const Hdf5Handle> groups) {
 void place_by_openpmd(hid_t object, std::span<const Hdf5Handle> groups, std::span<AxisPlace> axes) {
   const hid_t record = mesh_record(object, groups);
   if (record == H5I_INVALID_HID) return;
-  const std::vector<std::string> order = text_attribute(record, "dataOrder");
-  const bool fastest_first = !order.empty() && order[0] == "F";
+  const bool fastest_first = first_text_attribute(record, "dataOrder") == "F";
   const auto numbers = [&](hid_t of, const char* name) {
     return per_axis(number_attribute(of, name), axes.size(), fastest_first);
   };

@@ -52,10 +52,7 @@ bool equals(std::span<const std::byte> fill, const StoredType& type, const Store
 }
 
 // Of the attribute _Unsigned; empty where there is none.
-std::string unsigned_text(hid_t object) {
-  const std::vector<std::string> texts = text_attribute(object, "_Unsigned");
-  return texts.empty() ? "" : texts[0];
-}
+std::string unsigned_text(hid_t object) { return first_text_attribute(object, "_Unsigned"); }
 
 // The attribute as one finite number; `fallback` where it is absent.
 double packing(hid_t object, const char* name, double fallback, std::string& obstacle) {
@@ -126,8 +123,7 @@ ValueMeaning value_meaning(hid_t object, const StoredType& type, std::span<const
   meaning.unpacks = packed_unclearly.empty();
   if (!meaning.unpacks) meaning.obstacle = packed_unclearly;
   for (const char* name : {"units", "Units"}) {
-    const std::vector<std::string> texts = text_attribute(object, name);
-    if (meaning.units.empty() && !texts.empty()) meaning.units = unit_text(texts[0]);
+    if (meaning.units.empty()) meaning.units = unit_text(first_text_attribute(object, name));
   }
   meaning.unit_si = openpmd_unit_si(object);
   add_note(unused_attribute(object), meaning.note);
