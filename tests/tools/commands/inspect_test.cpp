@@ -130,13 +130,18 @@ TEST_F(Inspect, SidecarThatCannotBeRead_HidesNoVolume) {
   EXPECT_NE(text.out.find("\nsidecar     unreadable: " + why), std::string::npos) << text.out;
   EXPECT_NE(text.out.find("grid        \"density\" float32, 40 x 30 x 20 voxels"), std::string::npos) << text.out;
   EXPECT_EQ(text.err.find("weir: " + why), 0U) << text.err;
-  const CommandResult json = run_weir({"inspect", volume_, "--json", "--plot", directory_ / "h.svg"});
+  const CommandResult json = run_weir({"inspect", volume_, "--json"});
   EXPECT_EQ(json.exit_code, 3);
   const auto report = nlohmann::json::parse(json.out);
   EXPECT_EQ(report["grid"]["type"], "float32");
   EXPECT_EQ(report["sidecar"], nullptr);
   EXPECT_EQ(report["sidecar_error"].get<std::string>().find(why), 0U);
-  EXPECT_TRUE(fs::exists(directory_ / "h.svg"));
+}
+
+TEST_F(Inspect, DrawsTheHistogram_WhereTheSidecarCannotBeRead) {
+  write_file(sidecar_path(volume_), "{");
+  EXPECT_EQ(run_weir({"inspect", volume_, "--json", "--plot", directory_ / "h.svg"}).exit_code, 3);
+  EXPECT_TRUE(read_file(directory_ / "h.svg").starts_with("<?xml"));
 }
 
 TEST_F(Inspect, OptionsThatItCannotHonour_AreRefused) {
