@@ -183,7 +183,7 @@ AmrexHeader parse_amrex_header(PlotfileText& text) {
   }
   header.components = component_names(text);
   const std::int64_t dimensions = text.integer("the number of dimensions");
-  if (dimensions != 3) throw text.error(cat("the plotfile is ", dimensions, "-D", PlotfileText::kThreeAxesOnly));
+  if (dimensions != 3) throw text.unsupported(cat("the plotfile is ", dimensions, "-D", PlotfileText::kThreeAxesOnly));
   header.time = text.real("the time");
   header.levels.resize(static_cast<std::size_t>(text.integer_in("the finest level", 0, kMostLevels - 1)) + 1);
   header.corner = three(text, "the domain's lower corner");
@@ -194,11 +194,11 @@ AmrexHeader parse_amrex_header(PlotfileText& text) {
   read_cell_sizes(text, header, upper);
   const std::int64_t coordinates = text.integer("the kind of coordinates");
   if (coordinates != 0) {
-    throw text.error(cat("the coordinates are ",
-                         coordinates == 1   ? "cylindrical"
-                         : coordinates == 2 ? "spherical"
-                                            : cat("of kind ", coordinates),
-                         "; only Cartesian ones can be read"));
+    throw text.unsupported(cat("the coordinates are ",
+                               coordinates == 1   ? "cylindrical"
+                               : coordinates == 2 ? "spherical"
+                                                  : cat("of kind ", coordinates),
+                               "; only Cartesian ones can be read"));
   }
   text.skip_word("the width of the boundary");
   for (std::size_t i = 0; i < header.levels.size(); ++i) read_level(text, i, header.levels[i]);

@@ -1,6 +1,7 @@
 #include "ingest/amrex/amrex_source.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <map>
@@ -11,6 +12,7 @@
 #include "format/base/text.h"
 #include "ingest/amrex/composite.h"
 #include "ingest/amrex/plotfile.h"
+#include "ingest/amrex/plotfile_text.h"
 #include "ingest/files/input_directory.h"
 #include "ingest/headers/header_text.h"
 #include "ingest/source/convert_command.h"
@@ -217,7 +219,7 @@ std::unique_ptr<VolumeSource> open_amrex(const std::string& path, const SourceOp
   options.complete(info.mapping);
   info.spacing = header.levels[level].spacing;
   info.origin = first_centre(header, level);
-  info.details.time = TimePoint{header.time, {}, {}};
+  if (std::isfinite(header.time)) info.details.time = TimePoint{header.time, {}, {}};
   if (separate) {
     const Box bounds = bounds_of(plotfile.levels[level].boxes);
     info.extent = bounds.extent();
@@ -272,6 +274,8 @@ std::int64_t count_amrex_levels(const std::string& path, const SourceOptions& op
 std::string unwritten_part(const std::string& header_path) {
   try {
     open_plotfile(header_path, {});
+    return {};
+  } catch (const UnsupportedPlotfile&) {
     return {};
   } catch (const Error& error) {
     return error.what();

@@ -27,8 +27,8 @@ void refuse_ghost_cells(PlotfileText& text) {
     layers = {all, all, all};
   }
   if (layers == Index3{}) return;
-  throw text.error(cat("the boxes have ", in_brackets(layers),
-                       " layers of ghost cells, which cannot be read; write the plotfile without them"));
+  throw text.unsupported(cat("the boxes have ", in_brackets(layers),
+                             " layers of ghost cells, which cannot be read; write the plotfile without them"));
 }
 
 CellBox packed_box(const Box& box) {

@@ -102,7 +102,9 @@ Index3 PlotfileText::vector(std::string_view what) {
   std::array<std::int64_t, 3> numbers{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (axis > 0) {
-      if (next_byte() == ')') throw error(cat(what, " has ", axis, axis == 1 ? " axis" : " axes", kThreeAxesOnly));
+      if (next_byte() == ')') {
+        throw unsupported(cat(what, " has ", axis, axis == 1 ? " axis" : " axes", kThreeAxesOnly));
+      }
       expect(',', what);
     }
     numbers.at(axis) = integer(what, ",)");

@@ -7,6 +7,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "format/base/error.h"
 #include "format/base/index.h"
@@ -15,6 +16,12 @@ namespace weir {
 
 /// Of a plotfile: more is damage.
 inline constexpr std::int64_t kMostAmrexComponents = 100'000;
+
+/// What is written and cannot be read, whatever else a program may still write.
+class UnsupportedPlotfile : public Error {
+ public:
+  explicit UnsupportedPlotfile(Error error) : Error(std::move(error)) {}
+};
 
 class PlotfileText {
  public:
@@ -50,6 +57,7 @@ class PlotfileText {
   int next_byte();
   /// "PATH: line 3: WHAT".
   Error error(const std::string& what) const;
+  UnsupportedPlotfile unsupported(const std::string& what) const { return UnsupportedPlotfile(error(what)); }
 
   static constexpr std::size_t kLongestWord = 400;
   /// The end of what is said of plotfiles of other dimensions.

@@ -114,6 +114,7 @@ ComparedPair open_pair(const std::string& input, const std::string& volume, cons
   NvdbFile file(volume);
   file.mapping().release_pages();  // what its validation looked at
   SourceOptions options = read_conversion_request(arguments.options).source;
+  if (const std::string unusable = unusable_record_note(file); !unusable.empty()) spdlog::warn("{}", unusable);
   if (const std::string taken = take_recorded_input(input, file, arguments.options, options); !taken.empty()) {
     spdlog::info("{}: read with {}, as {} records", input, taken, find_sidecar(volume));
   }

@@ -9,6 +9,7 @@
 #include "compressor/options/conversion_request.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "format/io/real_path.h"
 #include "format/sidecar/find_sidecar.h"
 #include "format/sidecar/sidecar.h"
 #include "ingest/raw/raw_name.h"
@@ -24,7 +25,7 @@ namespace {
 std::optional<Sidecar> record_of(const NvdbFile& file) {
   try {
     return own_sidecar(file);
-  } catch (const Error&) {  // weir verify says what is wrong with it
+  } catch (const Error&) {  // unusable_record_note says what is wrong with it
     return std::nullopt;
   }
 }
@@ -58,6 +59,17 @@ std::string index_text(const std::vector<std::int64_t>& index) {
   std::string text;
   for (const std::int64_t position : index) text += cat(text.empty() ? "" : ",", position);
   return text;
+}
+
+std::string unusable_record_note(const NvdbFile& file) {
+  const std::string path = find_sidecar(file.path());
+  if (!is_there(path)) return {};
+  try {
+    if (own_sidecar(file)) return {};
+    return cat(path, ": is of another volume than ", file.path(), "; the source is read without what it records");
+  } catch (const Error& error) {
+    return cat(error.what(), "; the source is read without what it records");
+  }
 }
 
 std::string take_recorded_input(const std::string& input, const NvdbFile& file, const GivenOptions& given,

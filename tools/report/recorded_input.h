@@ -12,6 +12,10 @@
 
 namespace weir {
 
+/// "PATH: ...; the source is read without what it records" where a sidecar lies beside `file` and cannot be read or is of
+/// another volume; else empty.
+std::string unusable_record_note(const NvdbFile& file);
+
 /// Sets extent, type, byte order and offset of raw files, whether it is a stack, dataset, index, component, level,
 /// region, spacing, the value that stands for "no data" and whether such voxels are data in `options`, where they are
 /// not `given`, to those that the sidecar beside `file` records, if it is this file's own and of a source of the format

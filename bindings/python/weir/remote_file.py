@@ -245,7 +245,10 @@ class HttpFile(RemoteFile):
             except _BrokenConnection:
                 if through.given_up.wait(wait):
                     raise
-        return self._ask_for(piece, through)
+        try:
+            return self._ask_for(piece, through)
+        except _BrokenConnection as error:
+            raise IoError(f"{error}; try again, or copy the file to this machine") from error
 
     def _ask_for(self, piece: Range, through: _Connections) -> bytes:
         offset, count = piece

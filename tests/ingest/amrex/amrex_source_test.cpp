@@ -306,6 +306,22 @@ TEST_F(AmrexSource, UnwrittenPart_IsEmptyWhereAllIsThere) {
                                                 file("Level_1/Cell_H") + " has FABs in it");
 }
 
+TEST_F(AmrexSource, UnwrittenPart_IsEmptyWhereNothingMakesItReadable) {
+  replace("Header", "Temp\n3\n", "Temp\n2\n");
+  EXPECT_EQ(unwritten_part(file("Header")), "");
+  replace("Header", "Temp\n2\n", "Temp\n3\n");
+  replace("Header", "\n0\n0\n0 2", "\n1\n0\n0 2");
+  EXPECT_EQ(unwritten_part(file("Header")), "");
+  replace("Header", "\n1\n0\n0 2", "\n0\n0\n0 2");
+  write_file(file("Level_1/Cell_H"), "1\n1\n2\n1\n");
+  EXPECT_EQ(unwritten_part(file("Header")), "");
+}
+
+TEST_F(AmrexSource, TimeThatIsNotFinite_IsLeftOut) {
+  replace("Header", "\n3\n1.5\n", "\n3\nnan\n");
+  EXPECT_FALSE(open_amrex(path_, named("density"))->info().details.time.has_value());
+}
+
 TEST(AmrexSourceMemory, BoxesThatDoNotFit_NameAMemoryThatDoes) {
   const Scratch scratch;
   PlotfilePlan plan;

@@ -255,6 +255,24 @@ TEST(Compare, RegionOfTheConversion_IsTakenFromTheSidecar) {
       << "what is given counts";
 }
 
+TEST(Compare, SidecarThatSaysNothing_IsWarnedOf) {
+  const Converted volume("noise", "20x10x9_float32", {"--lossless"});
+  const Converted other("noise", "20x10x8_float32", {"--lossless"});
+  const std::string sidecar = volume.nvdb + ".json";
+  const std::string rest = "; the source is read without what it records\n";
+  write_file(sidecar, "{");
+  const CommandResult damaged = run_weir({"compare", volume.raw, volume.nvdb});
+  EXPECT_EQ(damaged.exit_code, 0);
+  EXPECT_NE(damaged.err.find(" warning " + sidecar + ": at byte "), std::string::npos) << damaged.err;
+  EXPECT_NE(damaged.err.find(rest), std::string::npos) << damaged.err;
+  write_file(sidecar, read_file(other.nvdb + ".json"));
+  const CommandResult foreign = run_weir({"compare", volume.raw, volume.nvdb});
+  EXPECT_NE(foreign.err.find(sidecar + ": is of another volume than " + volume.nvdb + rest), std::string::npos)
+      << foreign.err;
+  std::filesystem::remove(sidecar);
+  EXPECT_EQ(run_weir({"compare", volume.raw, volume.nvdb}).err, "");
+}
+
 TEST(Compare, IndexOfTheConversion_IsTakenFromTheSidecar) {
   const TemporaryDirectory directory;
   std::string values(5 * 4 * 3 * 2, '\0');
