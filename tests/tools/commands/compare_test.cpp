@@ -1,7 +1,6 @@
 // weir compare from outside, on files that the command itself made.
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -13,36 +12,14 @@
 #include "format/base/text.h"
 #include "tests/support/run_command.h"
 #include "tests/support/sanitized.h"
+#include "tests/tools/support/converted_pair.h"
 #include "tools/spectrum/block_transform.h"
 
 namespace weir::compare_test {
 namespace {
 
-/// A directory with a source and its conversion.
-struct Converted {
-  TemporaryDirectory directory;
-  std::string raw;
-  std::string nvdb = directory / "a.nvdb";
-
-  Converted(const std::string& kind, const std::string& dims_and_type, const std::vector<std::string>& options)
-      : raw(directory / ("a_" + dims_and_type + ".raw")) {
-    EXPECT_EQ(run_weir({"sample", kind, "-o", raw}).exit_code, 0);
-    std::vector<std::string> convert{"convert", raw, "-o", nvdb};
-    convert.insert(convert.end(), options.begin(), options.end());
-    const CommandResult result = run_weir(convert);
-    EXPECT_EQ(result.exit_code, 0) << result.err;
-  }
-
-  nlohmann::json compare(std::vector<std::string> options = {}) const {
-    options.insert(options.begin(), {"compare", raw, nvdb, "--json", "--progress", "never"});
-    const CommandResult result = run_weir(options);
-    EXPECT_EQ(result.exit_code, 0) << result.err;
-    return nlohmann::json::parse(result.out);
-  }
-};
-
 TEST(Compare, LosslessFile) {
-  const Converted volume("cloud", "70x45x37_float32", {"--lossless"});
+  const ConvertedPair volume("cloud", "70x45x37_float32", {"--lossless"});
   nlohmann::json report = volume.compare();
   EXPECT_EQ(report["source"], volume.raw);
   EXPECT_EQ(report["volume"], volume.nvdb);
@@ -93,7 +70,7 @@ TEST(Compare, SaysOfTheGradientWhatTheConversionCertified) {
 }
 
 TEST(Compare, VoxelSizeOfTheVolume_CountsWithoutASidecar) {
-  const Converted volume("turbulence", "30x25x17_float32", {"--psnr", "40", "--spacing", "0.5,0.5,2"});
+  const ConvertedPair volume("turbulence", "30x25x17_float32", {"--psnr", "40", "--spacing", "0.5,0.5,2"});
   const std::vector<std::string> words{"compare", volume.raw, volume.nvdb, "--derived", "--json"};
   const auto derived = [&](std::vector<std::string> more) {
     more.insert(more.begin(), words.begin(), words.end());
@@ -139,7 +116,7 @@ TEST(Compare, VoxelsThatTheFileReadsAsInfinite_AreLeftOutOfTheError) {
 }
 
 TEST(Compare, SpectrumIsAskedForByTheEndingOfItsFile) {
-  const Converted volume("turbulence", "40x30x20_float32", {"--psnr", "40"});
+  const ConvertedPair volume("turbulence", "40x30x20_float32", {"--psnr", "40"});
   const std::string table = volume.directory / "a.csv";
   const auto spectrum = [&](const std::string& path) {
     return run_weir({"compare", volume.raw, volume.nvdb, "--spectrum", path});
@@ -163,7 +140,7 @@ TEST(Compare, SpectrumReplacesTheOneBefore_AsTheHelpSays) {
             std::string::npos)
       << help;
   if (!has_fftw()) return;
-  const Converted volume("turbulence", "40x30x20_float32", {"--psnr", "40"});
+  const ConvertedPair volume("turbulence", "40x30x20_float32", {"--psnr", "40"});
   const std::string table = volume.directory / "a.csv";
   write_file(table, "another");
   const CommandResult refused = run_weir({"compare", volume.raw, volume.nvdb, "--spectrum", table, "--trace", table});
@@ -175,15 +152,15 @@ TEST(Compare, SpectrumReplacesTheOneBefore_AsTheHelpSays) {
 }
 
 TEST(Compare, ErrorsOfVorticityAndDivergenceOfThreeComponents) {
-  const Converted first("turbulence", "20x18x17_float32", {"--psnr", "30"});
-  const Converted lossless("noise", "20x18x17_float32", {"--lossless"});
+  const ConvertedPair first("turbulence", "20x18x17_float32", {"--psnr", "30"});
+  const ConvertedPair lossless("noise", "20x18x17_float32", {"--lossless"});
   const CommandResult said = run_weir(
       {"compare", first.raw, first.nvdb, "--vector", lossless.raw, lossless.nvdb, lossless.raw, lossless.nvdb});
   EXPECT_EQ(said.exit_code, 0) << said.err;
   EXPECT_EQ(line_of(said.out, "vorticity").substr(0, 10), "rms error ");
   EXPECT_EQ(line_of(said.out, "divergence").substr(0, 10), "rms error ");
   EXPECT_TRUE(said.out.ends_with(" per world unit\n")) << said.out;
-  const Converted other("noise", "20x18x16_float32", {"--lossless"});
+  const ConvertedPair other("noise", "20x18x16_float32", {"--lossless"});
   const CommandResult refused =
       run_weir({"compare", first.raw, first.nvdb, "--vector", lossless.raw, lossless.nvdb, other.raw, other.nvdb});
   EXPECT_EQ(refused.exit_code, 3);
@@ -191,7 +168,7 @@ TEST(Compare, ErrorsOfVorticityAndDivergenceOfThreeComponents) {
 }
 
 TEST(Compare, OneVoxelChangedSinceTheConversion) {
-  const Converted volume("zero", "20x10x9_float32", {"--lossless"});
+  const ConvertedPair volume("zero", "20x10x9_float32", {"--lossless"});
   std::string bytes = read_file(volume.raw);
   const float value = 1.5F;
   std::memcpy(bytes.data() + 4 * (7 + 20 * (3 + 10 * 8)), &value, 4);
@@ -212,7 +189,7 @@ TEST(Compare, OneVoxelChangedSinceTheConversion) {
 
 TEST(Compare, EqualsTheCertificate) {
   for (const std::string kind : {"cloud", "turbulence", "huge", "tiny", "offset", "background", "plateau"}) {
-    const Converted volume(kind, "100x90x80_float32", {"--rate", "4"});
+    const ConvertedPair volume(kind, "100x90x80_float32", {"--rate", "4"});
     const nlohmann::json report = volume.compare();
     const nlohmann::json certificate = nlohmann::json::parse(read_file(volume.nvdb + ".json"))["error"];
     for (const char* key : {"mse", "rmse", "nmse", "max_abs"}) {
@@ -225,7 +202,7 @@ TEST(Compare, EqualsTheCertificate) {
 }
 
 TEST(Compare, SameResultWhateverMemoryAndThreads) {
-  const Converted volume("turbulence", "200x150x130_float32", {"--rate", "8"});
+  const ConvertedPair volume("turbulence", "200x150x130_float32", {"--rate", "8"});
   nlohmann::json first = volume.compare({"--threads", "1", "--memory", "128MiB"});
   nlohmann::json second = volume.compare({"--threads", "5", "--memory", "2GiB", "--direct-io", "off"});
   for (const char* varies : {"total_s", "peak_rss_bytes"}) {
@@ -236,126 +213,16 @@ TEST(Compare, SameResultWhateverMemoryAndThreads) {
 }
 
 TEST(Compare, TypesByteOrderAndRegion) {
-  const Converted integers("turbulence", "60x50x40_int16be", {"--lossless"});
+  const ConvertedPair integers("turbulence", "60x50x40_int16be", {"--lossless"});
   EXPECT_EQ(integers.compare()["lossless"], true);
-  const Converted region("noise", "60x50x40_float32", {"--lossless", "--roi", "3:50,0:50,9:31"});
+  const ConvertedPair region("noise", "60x50x40_float32", {"--lossless", "--roi", "3:50,0:50,9:31"});
   const nlohmann::json report = region.compare({"--roi", "3:50,0:50,9:31"});
   EXPECT_EQ(report["lossless"], true);
   EXPECT_EQ(report["voxels"], 47 * 50 * 22);
 }
 
-TEST(Compare, RegionOfTheConversion_IsTakenFromTheSidecar) {
-  const Converted region("noise", "60x50x40_float32", {"--lossless", "--roi", "3:-10,:,-9:"});
-  const CommandResult compared = run_weir({"compare", region.raw, region.nvdb});
-  EXPECT_EQ(compared.exit_code, 0) << compared.err;
-  EXPECT_EQ(compared.out, "lossless: all 21150 finite voxels read bit for bit\n");  // 47 x 50 x 9
-  const std::string told = region.raw + ": read with --roi 3:50,0:50,31:40, as " + region.nvdb + ".json records\n";
-  EXPECT_TRUE(compared.err.ends_with(" info " + told)) << compared.err;
-  EXPECT_EQ(run_weir({"compare", region.raw, region.nvdb, "--roi", "0:60,0:50,0:40"}).exit_code, 3)
-      << "what is given counts";
-}
-
-TEST(Compare, SidecarThatSaysNothing_IsWarnedOf) {
-  const Converted volume("noise", "20x10x9_float32", {"--lossless"});
-  const Converted other("noise", "20x10x8_float32", {"--lossless"});
-  const std::string sidecar = volume.nvdb + ".json";
-  const std::string rest = "; the source is read without what it records\n";
-  write_file(sidecar, "{");
-  const CommandResult damaged = run_weir({"compare", volume.raw, volume.nvdb});
-  EXPECT_EQ(damaged.exit_code, 0);
-  EXPECT_NE(damaged.err.find(" warning " + sidecar + ": at byte "), std::string::npos) << damaged.err;
-  EXPECT_NE(damaged.err.find(rest), std::string::npos) << damaged.err;
-  write_file(sidecar, read_file(other.nvdb + ".json"));
-  const CommandResult foreign = run_weir({"compare", volume.raw, volume.nvdb});
-  EXPECT_NE(foreign.err.find(sidecar + ": is of another volume than " + volume.nvdb + rest), std::string::npos)
-      << foreign.err;
-  std::filesystem::remove(sidecar);
-  EXPECT_EQ(run_weir({"compare", volume.raw, volume.nvdb}).err, "");
-}
-
-TEST(Compare, IndexOfTheConversion_IsTakenFromTheSidecar) {
-  const TemporaryDirectory directory;
-  std::string values(5 * 4 * 3 * 2, '\0');
-  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<char>(i);
-  const std::string nrrd = directory / "a.nrrd";
-  write_file(nrrd, "NRRD0004\ntype: uchar\ndimension: 4\nsizes: 5 4 3 2\nencoding: raw\n\n" + values);
-  const std::string volume = directory / "a.nvdb";
-  ASSERT_EQ(run_weir({"convert", nrrd, "--index", "-1", "-o", volume, "--lossless"}).exit_code, 0);
-  const CommandResult compared = run_weir({"compare", nrrd, volume});
-  EXPECT_EQ(compared.exit_code, 0) << compared.err;
-  EXPECT_EQ(compared.out, "lossless: all 60 finite voxels read bit for bit\n");
-  const CommandResult other = run_weir({"compare", nrrd, volume, "--index", "0", "--json"});
-  EXPECT_EQ(nlohmann::json::parse(other.out)["different"], 60);
-  EXPECT_TRUE(other.err.ends_with(cat(" warning ", volume, ": was converted with --index 1, as ", volume,
-                                      ".json records, and is compared with --index 0\n")))
-      << other.err;
-  EXPECT_EQ(run_weir({"compare", nrrd, volume, "--index", "1"}).err, "");
-}
-
-TEST(Compare, HowARawFileWasRead_IsTakenFromTheSidecar) {
-  const TemporaryDirectory directory;
-  std::string values(8, '\0');  // not of the volume
-  for (int i = 0; i < 60; ++i) values += std::string(1, static_cast<char>(i / 8)) + static_cast<char>(31 * i);
-  const std::string raw = directory / "dump.bin";
-  const std::string volume = directory / "a.nvdb";
-  write_file(raw, values);
-  const CommandResult converted = run_weir({"convert", raw, "--dims", "5,4,3", "--type", "uint16", "--endian", "big",
-                                            "--offset", "8", "-o", volume, "--lossless"});
-  ASSERT_EQ(converted.exit_code, 0) << converted.err;
-  const CommandResult compared = run_weir({"compare", raw, volume});
-  EXPECT_EQ(compared.out, "lossless: all 60 finite voxels read bit for bit\n") << compared.err;
-  EXPECT_TRUE(compared.err.ends_with(cat(
-      " info ", raw, ": read with --dims 5,4,3 --type uint16 --endian big --offset 8, as ", volume, ".json records\n")))
-      << compared.err;
-  EXPECT_NE(run_weir({"compare", raw, volume, "--endian", "little"}).out, compared.out) << "what is given counts";
-  EXPECT_NE(run_weir({"compare", raw, volume, "--type", "<u2"}).out, compared.out) << "its byte order, too";
-  EXPECT_EQ(run_weir({"compare", raw, volume, "--type", ">u2"}).out, compared.out);
-}
-
-TEST(Compare, ByteOrderOfAFileWhoseNameSaysTheRest_IsTakenFromTheSidecar) {
-  const TemporaryDirectory directory;
-  std::string values;
-  for (int i = 0; i < 60; ++i) values += std::string(1, static_cast<char>(i / 8)) + static_cast<char>(31 * i);
-  const std::string raw = directory / "a_5x4x3_uint16.raw";
-  const std::string volume = directory / "a.nvdb";
-  write_file(raw, values);
-  for (const std::vector<std::string>& order :
-       std::vector<std::vector<std::string>>{{"--endian", "big"}, {"--type", ">u2"}}) {
-    std::vector<std::string> convert{"convert", raw, "-o", volume, "--lossless", "--overwrite"};
-    convert.insert(convert.end(), order.begin(), order.end());
-    const CommandResult converted = run_weir(convert);
-    ASSERT_EQ(converted.exit_code, 0) << converted.err;
-    EXPECT_EQ(run_weir({"compare", raw, volume}).out, "lossless: all 60 finite voxels read bit for bit\n") << order[0];
-  }
-}
-
-TEST(Compare, StackOfTheConversion_IsTakenFromTheSidecar) {
-  const TemporaryDirectory directory;
-  for (int z = 0; z < 3; ++z) write_file(directory / cat("plane_0", z, ".raw"), std::string(20, static_cast<char>(z)));
-  const std::string pattern = directory / "plane_%02d.raw";
-  const std::string volume = directory / "a.nvdb";
-  const CommandResult converted =
-      run_weir({"convert", "--stack", pattern, "--dims", "5,4,1", "--type", "uint8", "-o", volume, "--lossless"});
-  ASSERT_EQ(converted.exit_code, 0) << converted.err;
-  const CommandResult compared = run_weir({"compare", pattern, volume});
-  EXPECT_EQ(compared.out, "lossless: all 60 finite voxels read bit for bit\n") << compared.err;
-  EXPECT_NE(compared.err.find(": read with --stack --dims 5,4,1 --type uint8, as "), std::string::npos) << compared.err;
-}
-
-TEST(Compare, SourceOfAnotherTime_IsSaid) {
-  const Converted volume("noise", "20x10x9_float32", {"--lossless"});
-  const std::filesystem::path source = volume.raw;
-  std::filesystem::last_write_time(source, std::filesystem::last_write_time(source) + std::chrono::seconds(3));
-  const CommandResult later = run_weir({"compare", volume.raw, volume.nvdb});
-  EXPECT_NE(later.err.find(cat(volume.raw, ": is of 20")), std::string::npos) << later.err;
-  EXPECT_NE(later.err.find(cat(" when it was converted, as ", volume.nvdb,
-                               ".json records; the figures compare with what it is now\n")),
-            std::string::npos)
-      << later.err;
-}
-
 TEST(Compare, NonFiniteVoxelsAreCounted) {
-  const Converted volume("some-nan", "97x10x10_float32", {"--lossless", "--nonfinite", "background"});
+  const ConvertedPair volume("some-nan", "97x10x10_float32", {"--lossless", "--nonfinite", "background"});
   const nlohmann::json report = volume.compare();
   EXPECT_EQ(report["nonfinite"], 300);
   EXPECT_EQ(report["nonfinite_different"], 300);
@@ -368,12 +235,12 @@ TEST(Compare, NonFiniteVoxelsAreCounted) {
 
 TEST(Compare, BoundedMemory) {
   if (kSanitized) GTEST_SKIP() << kSanitizedSkip;
-  const Converted volume("turbulence", "400x400x400_float32", {"--rate", "2"});  // 244 MiB, half of it leaves
+  const ConvertedPair volume("turbulence", "400x400x400_float32", {"--rate", "2"});  // 244 MiB, half of it leaves
   EXPECT_LT(volume.compare({"--memory", "128MiB"})["peak_rss_bytes"], std::uint64_t{128} << 20U);
 }
 
 TEST(Compare, Refusals) {
-  const Converted volume("cloud", "20x10x9_float32", {"--lossless"});
+  const ConvertedPair volume("cloud", "20x10x9_float32", {"--lossless"});
   const auto refusal = [&](const std::vector<std::string>& arguments, int exit_code) {
     const CommandResult result = run_weir(arguments);
     EXPECT_EQ(result.exit_code, exit_code);
