@@ -1,43 +1,19 @@
-// How fast one core decodes packed blocks: all streams of synthetic volumes converted to rates,
-// in GB of float32 values a second, of which blocks without a stream count none; beside it the same values copied.
+// How fast one core decodes packed blocks: all streams of synthetic volumes, by rate, in float32 values a second; blocks
+// without a stream do not count. Beside it, how fast such values are copied.
 //
 // Environment: WEIR_BENCH_DIM (voxels along the cube, default 256).
 #include <benchmark/benchmark.h>
-#include <unistd.h>
 
 #include <array>
-#include <cstdlib>
 #include <cstring>
-#include <filesystem>
 #include <string>
 #include <vector>
 
-#include "compressor/conversion.h"
-#include "format/base/text.h"
+#include "bench/converted_sample.h"
 #include "format/nanovdb/nvdb_file.h"
-#include "ingest/synthetic/synthetic.h"
 
 namespace weir {
 namespace {
-
-/// The packed volume as a mapped file; its name is gone at once, the mapping stays.
-NvdbFile packed_volume(const std::string& kind, double rate) {
-  const char* text = std::getenv("WEIR_BENCH_DIM");
-  const std::int64_t dim = text != nullptr ? parse_int(text).value_or(256) : 256;
-  const std::string path =
-      (std::filesystem::temp_directory_path() / cat("weir_bench_decode_", ::getpid(), ".nvdb")).string();
-  const auto source = open_synthetic(kind, {{dim, dim, dim}, 1});
-  ConversionOptions options;
-  options.output = path;
-  options.encoding = Encoding::packed;
-  options.budget = {.kind = Budget::Kind::rate, .rate = rate};
-  const auto files = make_posix_file_system();
-  convert_volume(*source, options, {}, *files);
-  NvdbFile file(path);
-  std::filesystem::remove(path);
-  std::filesystem::remove(sidecar_path(path));
-  return file;
-}
 
 std::vector<PackedStream> streams_of(const PackedData& packed, std::uint64_t& bytes) {
   std::vector<PackedStream> streams;
@@ -55,7 +31,7 @@ std::vector<PackedStream> streams_of(const PackedData& packed, std::uint64_t& by
 }
 
 void decode(benchmark::State& state, const std::string& kind) {
-  const NvdbFile file = packed_volume(kind, static_cast<double>(state.range(0)));
+  const NvdbFile file = converted_sample(kind, Encoding::packed, static_cast<double>(state.range(0)));
   const PackedData& packed = *file.grid().packed();
   std::uint64_t bytes = 0;
   const std::vector<PackedStream> streams = streams_of(packed, bytes);

@@ -3,42 +3,17 @@
 //
 // Environment: WEIR_BENCH_DIM (voxels along the cube, default 256).
 #include <benchmark/benchmark.h>
-#include <unistd.h>
 
-#include <cstdlib>
-#include <filesystem>
-#include <string>
-
-#include "compressor/conversion.h"
-#include "format/base/text.h"
+#include "bench/converted_sample.h"
 #include "format/nanovdb/nvdb_file.h"
 #include "gpu/render/cpu_renderer.h"
 #include "gpu/render/render_scene.h"
-#include "ingest/synthetic/synthetic.h"
 
 namespace weir {
 namespace {
 
-/// The cloud as a mapped file; its name is gone at once, the mapping stays.
-NvdbFile converted_cloud() {
-  const char* text = std::getenv("WEIR_BENCH_DIM");
-  const std::int64_t dim = text != nullptr ? parse_int(text).value_or(256) : 256;
-  const std::string path =
-      (std::filesystem::temp_directory_path() / cat("weir_bench_render_", ::getpid(), ".nvdb")).string();
-  const auto source = open_synthetic("cloud", {{dim, dim, dim}, 1});
-  ConversionOptions options;
-  options.output = path;
-  options.budget = {.kind = Budget::Kind::rate, .rate = 8};
-  const auto files = make_posix_file_system();
-  convert_volume(*source, options, {}, *files);
-  NvdbFile file(path);
-  std::filesystem::remove(path);
-  std::filesystem::remove(sidecar_path(path));
-  return file;
-}
-
 void render(benchmark::State& state, RenderMode mode, Filter filter, std::int64_t cell) {
-  static const NvdbFile file = converted_cloud();
+  static const NvdbFile file = converted_sample("cloud", Encoding::float32, 8);
   Scene scene;
   scene.mode = mode;
   const RenderScene prepared(file.grid(), scene, {.width = 160, .height = 120, .filter = filter, .cell = cell});

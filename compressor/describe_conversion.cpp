@@ -41,6 +41,7 @@ void describe_details(const FieldDetails& details, Sidecar::Source& source) {
   source.long_name = details.long_name;
   source.component = details.component;
   source.orientation = details.orientation;
+  source.unstored_chunks = details.chunks_note;
   if (details.level) source.level = Sidecar::Level{details.level->number, details.level->count};
   if (details.time) source.time = Sidecar::Time{details.time->value, details.time->units, details.time->calendar};
   for (std::size_t i = 0; i < details.axes.size(); ++i) {

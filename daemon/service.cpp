@@ -1,7 +1,6 @@
 #include "daemon/service.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <csignal>
 #include <ctime>
 #include <filesystem>
@@ -109,7 +108,7 @@ void Service::write_port_file() const {
   file << server_.port() << '\n';
   file.close();
   std::error_code error;
-  std::filesystem::rename(beside, path, error);
+  if (file) std::filesystem::rename(beside, path, error);
   if (!file || error) {
     std::filesystem::remove(beside, error);
     throw Error(ErrorKind::io, cat(path, ": the port cannot be written there; check the directory"));

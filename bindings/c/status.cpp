@@ -28,7 +28,11 @@ weir_status end_with_exception(weir_error* error) noexcept {
   try {
     throw;
   } catch (const Error& e) {
-    return end_call(error, e.exit_code(), e.message().worded(c_wording).c_str());
+    try {
+      return end_call(error, e.exit_code(), e.message().worded(c_wording).c_str());
+    } catch (const std::bad_alloc&) {  // no memory for its words
+      return end_call(error, e.exit_code(), e.what());
+    }
   } catch (const std::bad_alloc&) {
     return end_call(error, WEIR_ERROR_INTERNAL, "out of memory; give less memory to weir, or free some");
   } catch (const std::exception& e) {

@@ -43,7 +43,7 @@ enum {
   WEIR_OK = 0,
   WEIR_ERROR_INTERNAL = 1, /* a fault of weir itself, or no memory left */
   WEIR_ERROR_USAGE = 2,    /* a wrong argument or option, or a call out of order */
-  WEIR_ERROR_INPUT = 3,    /* bad or unreadable input */
+  WEIR_ERROR_INPUT = 3,    /* bad input, or none */
   WEIR_ERROR_BUDGET = 4,   /* the asked size cannot be met; the message names the smallest */
   WEIR_ERROR_IO = 5,       /* disk full, permission, device failure */
   WEIR_INTERRUPTED = 130   /* the cancel callback said so */

@@ -64,6 +64,8 @@ struct Launch {
   ::setpgid(0, 0);
   if (::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0) give_up();
   if (::getppid() != launch.daemon) ::_exit(127);  // it died before the line above
+  // What is ignored would stay so in the program, and all that it starts.
+  for (const int signal : {SIGPIPE, SIGXFSZ, SIGIO, SIGINT, SIGTERM}) ::signal(signal, SIG_DFL);
   sigset_t none;
   sigemptyset(&none);
   ::sigprocmask(SIG_SETMASK, &none, nullptr);

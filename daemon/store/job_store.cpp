@@ -1,7 +1,6 @@
 #include "daemon/store/job_store.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <csignal>
 

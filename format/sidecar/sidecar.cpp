@@ -65,6 +65,7 @@ void describe_source(Archive& archive, S& source) {
   });
   archive.optional_field("reversed_axes", source.reversed_axes);
   archive.optional_field("orientation", source.orientation);
+  archive.optional_field("unstored_chunks", source.unstored_chunks);
 }
 
 template <typename Archive, typename S>

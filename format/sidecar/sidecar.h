@@ -62,6 +62,7 @@ struct Sidecar {
     std::optional<IrregularAxes> irregular_axes;  ///< those without a spacing
     std::vector<std::string> reversed_axes;       ///< "x", "y", "z": the file has their elements in the other order
     std::string orientation;                      ///< how the axes lie in the file's world (FieldDetails::orientation)
+    std::string unstored_chunks;                  ///< how many chunks the file lacks (FieldDetails::chunks_note)
     std::uint64_t values = 0;  ///< of all arrays of the input file (file_values.h); 0, and no key: not counted
   } source;
 

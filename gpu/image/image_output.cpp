@@ -160,6 +160,7 @@ std::uint64_t ImageFile::commit(const Image& image, const ToneMapping& tone) {
     files_.rename_new(temporary_, path_);
   }
   file_.reset();
+  files_.sync_directory(directory_of(path_));
   return bytes.size();
 }
 

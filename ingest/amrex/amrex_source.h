@@ -29,7 +29,8 @@ std::vector<DatasetInfo> list_amrex(const std::string& path, const SourceOptions
 
 /// What a program that writes the plotfile of this Header has still to write, in words; empty where all is there:
 /// the Header, each level's Cell_H and all FABs that it names. The files of FABs are looked at, their values are not.
-/// Empty, too, where nothing that is written later makes it readable: a 2-D plotfile, cylindrical coordinates, ghost cells.
+/// Empty, too, where nothing that is written later makes it readable: a 2-D plotfile, cylindrical coordinates, ghost
+/// cells.
 std::string unwritten_part(const std::string& header_path);
 
 }  // namespace weir

@@ -87,7 +87,7 @@ std::string examples_of(const CommandDescription& command) {
 
 constexpr const char* kExitStatus =
     ".SH EXIT STATUS\n.TP\n0\ndone\n.TP\n1\ninternal fault\n.TP\n2\nusage: a wrong option or argument\n.TP\n3\n"
-    "bad or unreadable input\n.TP\n4\nthe budget cannot be met\n.TP\n5\n"
+    "bad input, or none\n.TP\n4\nthe budget cannot be met\n.TP\n5\n"
     "cannot read, write or connect: disk full, permission, no such directory, no service at the address, a plug\\-in "
     "of another build\n.TP\n129\ninterrupted: the terminal was closed (SIGHUP)\n"
     ".TP\n130\ninterrupted: SIGINT or SIGTERM (weir watch and weir view end with 0)\n";
@@ -98,6 +98,8 @@ constexpr const char* kEnvironment =
     ".TP\nWEIR_DRIVERS\nfolder of the plug\\-ins (weir_hdf5.so and others) instead of lib/weir, an absolute path\n"
     ".TP\nTMPDIR\ndirectory for temporary files of weir view and of weir render \\-\\-volume dense; default: /tmp\n"
     ".TP\nHDF5_PLUGIN_PATH\ndirectories with the plug\\-ins of HDF5's filters, which the HDF5 library reads\n"
+    ".TP\nHDF5_VDS_PREFIX, HDF5_EXTFILE_PREFIX\ndirectory in which the files of virtual and of external datasets are "
+    "looked for first\n"
     ".TP\nSTATE_DIRECTORY\ndirectory of weir watch's state file, where its configuration names none; systemd sets it\n";
 
 }  // namespace

@@ -12,8 +12,8 @@
 
 namespace weir {
 
-/// "PATH: ...; the source is read without what it records" where a sidecar lies beside `file` and cannot be read or is of
-/// another volume; else empty.
+/// "PATH: ...; the source is read without what it records" where a sidecar lies beside `file` and cannot be read or is
+/// of another volume; else empty.
 std::string unusable_record_note(const NvdbFile& file);
 
 /// Sets extent, type, byte order and offset of raw files, whether it is a stack, dataset, index, component, level,

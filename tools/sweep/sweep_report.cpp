@@ -1,7 +1,6 @@
 #include "tools/sweep/sweep_report.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "format/base/exact_text.h"

@@ -125,11 +125,11 @@ def convert(
     output is then a directory ("out/"), a name with {stem}, {dataset} or {step}, or left out. Of files also index, a
     position on each leading axis, (3, 0), or a text as `--index` takes it, "time=3"; one with a range, "0:2" or "*",
     converts each and returns a list, too; component (0, 1, ..., "x", "y", "z" or "magnitude" of vectors in HDF5,
-    VTK and OpenVDB files), magnitude (("u", "v", "w"), the datasets that are the components of the vectors whose
+    Zarr, VTK and OpenVDB files), magnitude (("u", "v", "w"), the datasets that are the components of the vectors whose
     length is the volume), level (of an AMReX plotfile, 0 the coarsest) and upsample ("constant", "linear"), levels
     ("composite", or "separate", which converts each level to a file of its own, named _level_N with N from 0, the
     finest, on, and returns a list),
-    missing_chunks (of a Zarr array: "fill", "error"), dims (x, y, z), type, endian, offset, stack, direct_io.
+    missing_chunks (of a Zarr array or an HDF5 dataset: "fill", "error"), dims (x, y, z), type, endian, offset, stack, direct_io.
 
     memory
         Bytes, or "512MiB" (the default): what the conversion may take besides what the process holds when it
@@ -138,7 +138,7 @@ def convert(
         At most so many work; 0, the default: one for each core. Results do not depend on it.
     backend
         "auto", "cpu" or "cuda": what surveys and encodes packed blocks, auto: a CUDA device where one answers, if weir was
-        built for one. Results do not depend on it.
+        built for one and memory is 1 GiB or more. Results do not depend on it.
     work_dir
         For spill files; by default a hidden directory beside the output.
     resume

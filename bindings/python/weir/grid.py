@@ -98,7 +98,8 @@ class Grid:
 
     @property
     def type(self) -> str:
-        """How leaves are stored: "float32", "fpn", "fp4", "fp8" or "fp16"."""
+        """How leaves are stored: "float32", "fpn", "fp4", "fp8" or "fp16"; of a packed file
+        "float32", its preview's."""
         return self._core.type
 
     @property

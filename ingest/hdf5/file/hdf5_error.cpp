@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <new>
+#include <string>
 #include <string_view>
 
 #include "format/base/text.h"
@@ -14,7 +16,11 @@ namespace {
 // Called for each function of the failed call, the innermost first.
 herr_t keep_first(unsigned /*depth*/, const H5E_error2_t* error, void* reason) {
   auto& text = *static_cast<std::string*>(reason);
-  if (text.empty() && error->desc != nullptr) text = error->desc;
+  try {
+    if (text.empty() && error->desc != nullptr) text = error->desc;
+  } catch (const std::bad_alloc&) {  // which must not pass through the library; the reason is then left out
+    return -1;
+  }
   return 0;
 }
 

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <deque>
+#include <new>
 #include <set>
 #include <utility>
 #include <vector>
@@ -21,8 +22,12 @@ struct Link {
 };
 
 herr_t collect_link(hid_t /*group*/, const char* name, const H5L_info_t* info, void* links) {
-  if (info->type == H5L_TYPE_HARD || info->type == H5L_TYPE_SOFT || info->type == H5L_TYPE_EXTERNAL) {
-    static_cast<std::vector<Link>*>(links)->push_back({name, info->type});
+  try {
+    if (info->type == H5L_TYPE_HARD || info->type == H5L_TYPE_SOFT || info->type == H5L_TYPE_EXTERNAL) {
+      static_cast<std::vector<Link>*>(links)->push_back({name, info->type});
+    }
+  } catch (const std::bad_alloc&) {  // which must not pass through the library
+    return -1;
   }
   return 0;
 }

@@ -64,6 +64,15 @@ TEST(WorkerProcess, GivesExitCodeLogAndAnnouncements) {
   EXPECT_EQ(shell.lines, (std::vector<std::string>{"one", "two"}));
 }
 
+TEST(WorkerProcess, IgnoresNoSignalThatTheServiceIgnores) {
+  const auto before = std::signal(SIGPIPE, SIG_IGN);
+  ShellRun shell("while read -r key value; do [ $key != SigIgn: ] || echo $value >&3; done </proc/self/status");
+  shell.run();
+  std::signal(SIGPIPE, before);
+  ASSERT_EQ(shell.lines.size(), 1U);
+  EXPECT_EQ(std::stoull(shell.lines[0], nullptr, 16) >> (SIGPIPE - 1) & 1U, 0U) << shell.lines[0];
+}
+
 TEST(WorkerProcess, KeepsTheEndOfALongLog) {
   ShellRun shell("i=0; while [ $i -lt 5000 ]; do echo line $i; i=$((i+1)); done");
   shell.run();

@@ -57,6 +57,15 @@ TEST_P(WatchPlotfiles, HeaderWrittenFirst_IsWaitedForUntilTheLastLevelIsThere) {
   EXPECT_EQ(service.get("/api/status")["bytes_in_total"], sidecar["source"]["bytes"]);
 }
 
+TEST_P(WatchPlotfiles, PlotfileOfTwoDimensions_IsQuarantined) {
+  ServiceHarness service("", keys());
+  service.start();
+  fs::create_directory(service.in("plt00042"));
+  write_file(service.in("plt00042/Header"), "HyperCLaw-V1.1\n1\nTemp\n2\n0.25\n0\n");
+  EXPECT_TRUE(service.eventually([&] { return service.count("quarantined") == 1; })) << service.log();
+  EXPECT_NE(service.log().find("the plotfile is 2-D"), std::string::npos) << service.log();
+}
+
 TEST_P(WatchPlotfiles, RenamedDirectories_AreTakenAndCheckpointsAreNot) {
   ServiceHarness service("", keys());
   service.start();

@@ -46,6 +46,21 @@ TEST(WatchStart, DirectoryThatMayNotBeRead_EndsItAsCheckDoes) {
   fs::permissions(service.in(), fs::perms::all);
 }
 
+TEST(WatchStart, PortThatFindsNoRoom_LeavesTheFileOfTheLastOne) {
+  ServiceHarness service("port_file = \"last\"\n", "");
+  std::string text = read_file(service.path("weir.toml"));
+  const std::string twice = "port_file = \"port\"\n";
+  write_file(service.path("weir.toml"), text.erase(text.find(twice), twice.size()));
+  write_file(service.path("last"), "1234\n");
+  fs::create_symlink("/dev/full", service.path("last.new"));
+  service.launch();
+  CommandResult end;
+  EXPECT_EQ(service.wait(&end), 5);
+  EXPECT_NE(end.err.find("/last: the port cannot be written there; check the directory\n"), std::string::npos)
+      << end.err;
+  EXPECT_EQ(read_file(service.path("last")), "1234\n");
+}
+
 TEST(WatchStart, WrongConfiguration_EndsItWith3AsCheckDoes) {
   ServiceHarness service("", "rate = \"much\"\n");
   service.launch();

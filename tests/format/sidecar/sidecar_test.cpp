@@ -44,7 +44,8 @@ Sidecar sample() {
               {"km", "", "m"},
               Sidecar::IrregularAxes{{}, {}, {0.1, 0.3, 0.6}},
               {"y"},
-              "axes along +z, -x, +y of the file's world"};
+              "axes along +z, -x, +y of the file's world",
+              "1 of its 3 chunks is not stored and reads as its fill value, 7"};
   s.grid = {"density", "float32", {60, 61, 62}, {0.1, 0.2, 0.3}, {-1, 1e300, 5e-324}, {{-4, 5, 6}, {56, 66, 68}}};
   s.value_range = {-0.1, 1.0 / 3.0};
   s.nonfinite = {18446744073709551615U, "keep"};

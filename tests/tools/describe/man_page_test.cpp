@@ -12,8 +12,8 @@ namespace weir::man_page_test {
 namespace {
 
 const std::string kExitStatus =
-    ".SH EXIT STATUS\n.TP\n0\ndone\n.TP\n1\ninternal fault\n.TP\n2\nusage: a wrong option or argument\n.TP\n3\nbad or "
-    "unreadable input\n.TP\n4\nthe budget cannot be met\n.TP\n5\ncannot read, write or connect: disk full, permission, "
+    ".SH EXIT STATUS\n.TP\n0\ndone\n.TP\n1\ninternal fault\n.TP\n2\nusage: a wrong option or argument\n.TP\n3\nbad "
+    "input, or none\n.TP\n4\nthe budget cannot be met\n.TP\n5\ncannot read, write or connect: disk full, permission, "
     "no such directory, no service at the address, a plug\\-in of another build\n.TP\n129\ninterrupted: the terminal "
     "was closed (SIGHUP)\n.TP\n130\ninterrupted: SIGINT or SIGTERM (weir watch and weir view end with 0)\n";
 
@@ -30,6 +30,9 @@ directory for temporary files of weir view and of weir render \-\-volume dense; 
 .TP
 HDF5_PLUGIN_PATH
 directories with the plug\-ins of HDF5's filters, which the HDF5 library reads
+.TP
+HDF5_VDS_PREFIX, HDF5_EXTFILE_PREFIX
+directory in which the files of virtual and of external datasets are looked for first
 .TP
 STATE_DIRECTORY
 directory of weir watch's state file, where its configuration names none; systemd sets it
