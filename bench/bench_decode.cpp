@@ -1,5 +1,5 @@
-// How fast one core decodes packed blocks: all streams of synthetic volumes, by rate, in float32 values a second; blocks
-// without a stream do not count. Beside it, how fast such values are copied.
+// How fast one core decodes packed blocks: all streams of synthetic volumes, by rate, in float32 values a second;
+// blocks without a stream do not count. Beside it, how fast such values are copied.
 //
 // Environment: WEIR_BENCH_DIM (voxels along the cube, default 256).
 #include <benchmark/benchmark.h>
