@@ -114,16 +114,17 @@ ComparedPair open_pair(const std::string& input, const std::string& volume, cons
   NvdbFile file(volume);
   file.mapping().release_pages();  // what its validation looked at
   SourceOptions options = read_conversion_request(arguments.options).source;
-  if (const std::string unusable = unusable_record_note(file); !unusable.empty()) spdlog::warn("{}", unusable);
-  if (const std::string taken = take_recorded_input(input, file, arguments.options, options); !taken.empty()) {
-    spdlog::info("{}: read with {}, as {} records", input, taken, find_sidecar(volume));
+  const InputRecord record = read_input_record(file);
+  if (!record.unusable.empty()) spdlog::warn("{}", record.unusable);
+  if (const std::string taken = take_recorded_input(input, record, arguments.options, options); !taken.empty()) {
+    spdlog::info("{}: read with {}, as {} records", input, taken, record.path);
   }
   std::unique_ptr<VolumeSource> source = open_source(input, options);
   if (arguments.asks_for_lengths()) source = with_voxel_size(std::move(source), file, options);
-  if (const std::string other = other_input_note(file, source->info()); !other.empty()) {
+  if (const std::string other = other_input_note(record, source->info()); !other.empty()) {
     spdlog::warn("{}: {}", volume, other);
   }
-  if (const std::string changed = changed_source_note(file, source->info()); !changed.empty()) {
+  if (const std::string changed = changed_source_note(record, source->info()); !changed.empty()) {
     spdlog::warn("{}: {}; the figures compare with what it is now", input, changed);
   }
   return {std::move(file), std::move(source)};

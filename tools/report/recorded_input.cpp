@@ -11,7 +11,6 @@
 #include "format/base/text.h"
 #include "format/io/real_path.h"
 #include "format/sidecar/find_sidecar.h"
-#include "format/sidecar/sidecar.h"
 #include "ingest/raw/raw_name.h"
 #include "ingest/source/extent.h"
 #include "ingest/source_registry.h"
@@ -20,15 +19,6 @@
 
 namespace weir {
 namespace {
-
-/// Of this very volume; none where there is none to be read.
-std::optional<Sidecar> record_of(const NvdbFile& file) {
-  try {
-    return own_sidecar(file);
-  } catch (const Error&) {  // unusable_record_note says what is wrong with it
-    return std::nullopt;
-  }
-}
 
 using Note = std::function<void(const char* option, const std::string& text)>;
 
@@ -61,20 +51,22 @@ std::string index_text(const std::vector<std::int64_t>& index) {
   return text;
 }
 
-std::string unusable_record_note(const NvdbFile& file) {
-  const std::string path = find_sidecar(file.path());
-  if (!is_there(path)) return {};
+InputRecord read_input_record(const NvdbFile& file) {
+  InputRecord record{find_sidecar(file.path()), {}, {}};
+  if (!is_there(record.path)) return record;
+  constexpr const char* kWithout = "; the source is read without what it records";
   try {
-    if (own_sidecar(file)) return {};
-    return cat(path, ": is of another volume than ", file.path(), "; the source is read without what it records");
+    record.sidecar = own_sidecar(file);
+    if (!record.sidecar) record.unusable = cat(record.path, ": is of another volume than ", file.path(), kWithout);
   } catch (const Error& error) {
-    return cat(error.what(), "; the source is read without what it records");
+    record.unusable = cat(error.what(), kWithout);
   }
+  return record;
 }
 
-std::string take_recorded_input(const std::string& input, const NvdbFile& file, const GivenOptions& given,
+std::string take_recorded_input(const std::string& input, const InputRecord& recorded, const GivenOptions& given,
                                 SourceOptions& options) {
-  const std::optional<Sidecar> record = record_of(file);
+  const std::optional<Sidecar>& record = recorded.sidecar;
   if (!record) return {};
   std::string taken;
   const auto note = [&taken](const char* option, const std::string& text) {
@@ -139,23 +131,23 @@ std::string take_recorded_input(const std::string& input, const NvdbFile& file, 
   return taken;
 }
 
-std::string changed_source_note(const NvdbFile& file, const SourceInfo& source) {
-  const std::optional<Sidecar> record = record_of(file);
+std::string changed_source_note(const InputRecord& recorded, const SourceInfo& source) {
+  const std::optional<Sidecar>& record = recorded.sidecar;
   if (!record || record->source.format != source.format) return {};
   const std::string mtime = utc_text(source.mtime_ns);
   if (record->source.path != source.path || record->source.mtime == mtime) return {};
-  return cat("is of ", mtime, ", and was of ", record->source.mtime, " when it was converted, as ",
-             find_sidecar(file.path()), " records");
+  return cat("is of ", mtime, ", and was of ", record->source.mtime, " when it was converted, as ", recorded.path,
+             " records");
 }
 
-std::string other_input_note(const NvdbFile& file, const SourceInfo& source) {
-  const std::optional<Sidecar> record = record_of(file);
+std::string other_input_note(const InputRecord& recorded, const SourceInfo& source) {
+  const std::optional<Sidecar>& record = recorded.sidecar;
   if (!record || record->source.format != source.format) return {};
   std::string was;
   std::string is;
-  const auto compare = [&](const char* option, const std::string& recorded, const std::string& given) {
-    if (recorded == given) return;
-    for (const auto& [text, value] : {std::pair(&was, &recorded), std::pair(&is, &given)}) {
+  const auto compare = [&](const char* option, const std::string& before, const std::string& now) {
+    if (before == now) return;
+    for (const auto& [text, value] : {std::pair(&was, &before), std::pair(&is, &now)}) {
       *text += cat(text->empty() ? "" : " ", value->empty() ? "no " : "", option, value->empty() ? "" : " ", *value);
     }
   };
@@ -164,7 +156,7 @@ std::string other_input_note(const NvdbFile& file, const SourceInfo& source) {
   compare("--component", record->source.component, source.details.component);
   compare("--spacing", vector_text(record->grid.voxel_size), vector_text(source.spacing));
   if (was.empty()) return {};
-  return cat("was converted with ", was, ", as ", find_sidecar(file.path()), " records, and is compared with ", is);
+  return cat("was converted with ", was, ", as ", recorded.path, " records, and is compared with ", is);
 }
 
 }  // namespace weir

@@ -21,12 +21,19 @@ struct Link {
   H5L_type_t type;
 };
 
-herr_t collect_link(hid_t /*group*/, const char* name, const H5L_info_t* info, void* links) {
+struct Links {
+  std::vector<Link> found;
+  bool no_memory = false;  ///< for all of them; an exception must not pass through the library
+};
+
+herr_t collect_link(hid_t /*group*/, const char* name, const H5L_info_t* info, void* all) {
+  auto& links = *static_cast<Links*>(all);
   try {
     if (info->type == H5L_TYPE_HARD || info->type == H5L_TYPE_SOFT || info->type == H5L_TYPE_EXTERNAL) {
-      static_cast<std::vector<Link>*>(links)->push_back({name, info->type});
+      links.found.push_back({name, info->type});
     }
-  } catch (const std::bad_alloc&) {  // which must not pass through the library
+  } catch (const std::bad_alloc&) {
+    links.no_memory = true;
     return -1;
   }
   return 0;
@@ -92,11 +99,12 @@ class GroupWalk {
 
   void enter(const Group& group) {
     if (group.depth > kMaxGroupDepth) throw too_deep(group);
-    std::vector<Link> links;
+    Links links;
     if (H5Literate(group.handle.get(), H5_INDEX_NAME, H5_ITER_INC, nullptr, collect_link, &links) < 0) {
+      if (links.no_memory) throw std::bad_alloc();
       say_damaged(group.name.empty() ? "/" : group.name, "what it holds cannot be listed");
     }
-    for (const Link& link : links) {
+    for (const Link& link : links.found) {
       std::string path = group.name + '/' + link.name;
       if (link.type == H5L_TYPE_SOFT) {
         look_at_soft(group, link.name, path);

@@ -37,10 +37,10 @@ void ServiceHarness::configure(const std::string& service, const std::string& wa
     return keys.find(key + " =") == std::string::npos ? line : "";
   };
   write_file(path("weir.toml"),
-             cat("[service]\nlisten = \"127.0.0.1:0\"\nport_file = \"port\"\nlog = \"log\"\n",
-                 unless(service, "threads", "threads = 1\n"), service, "\n[[watch]]\ndirectory = \"in\"\n",
-                 unless(watch, "output", "output = \"out\"\n"), unless(watch, "settle", "settle = 0.3\n"),
-                 unless(watch, "poll_interval", "poll_interval = 0.1\n"),
+             cat("[service]\nlisten = \"127.0.0.1:0\"\nlog = \"log\"\n",
+                 unless(service, "port_file", "port_file = \"port\"\n"), unless(service, "threads", "threads = 1\n"),
+                 service, "\n[[watch]]\ndirectory = \"in\"\n", unless(watch, "output", "output = \"out\"\n"),
+                 unless(watch, "settle", "settle = 0.3\n"), unless(watch, "poll_interval", "poll_interval = 0.1\n"),
                  unless(watch, "thumbnails", "thumbnails = false\n"), watch));
 }
 
