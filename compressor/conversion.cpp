@@ -18,6 +18,7 @@
 #include "compressor/survey/spill_sums.h"
 #include "compressor/surveyed_conversion.h"
 #include "format/base/error.h"
+#include "format/base/fork_guard.h"
 #include "format/base/process_memory.h"
 #include "format/base/text.h"
 #include "format/io/file_id.h"
@@ -107,6 +108,7 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
   }
   std::size_t threads = workers.threads;
   team.run([&] { threads = startable_workers(workers.threads, control.notice); });
+  const ForkGuard forks;
   const tbb::global_control parallelism(tbb::global_control::max_allowed_parallelism, threads);
 
   MemoryPlan memory;

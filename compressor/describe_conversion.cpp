@@ -7,6 +7,7 @@
 
 #include "compressor/conversion_identity.h"
 #include "compressor/leaf/certificate.h"
+#include "format/base/utf8.h"
 #include "format/layout/nvdb_type.h"
 #include "format/nanovdb/macrocells.h"
 
@@ -56,9 +57,12 @@ void describe_details(const FieldDetails& details, Sidecar::Source& source) {
 }  // namespace
 
 std::string grid_name(const std::string& dataset) {
-  if (!dataset.empty() && dataset.size() <= kMaxGridNameBytes) return dataset;
+  const auto serves = [](const std::string& name) {
+    return !name.empty() && name.size() <= kMaxGridNameBytes && is_utf8(name);
+  };
+  if (serves(dataset)) return dataset;
   const std::string last = dataset.substr(dataset.rfind('/') + 1);
-  return last.empty() || last.size() > kMaxGridNameBytes ? "density" : last;
+  return serves(last) ? last : "density";
 }
 
 Sidecar describe_source(const SourceInfo& info, const Survey& survey, const ConversionOptions& options) {

@@ -15,8 +15,8 @@
 
 namespace weir {
 
-/// The name of the grid of a volume that its file calls `dataset`: that, or where it has more than kMaxGridNameBytes
-/// its part after the last slash, or "density".
+/// The name of the grid of a volume that its file calls `dataset`: that, or where it has more than kMaxGridNameBytes or
+/// is no UTF-8, which no sidecar can hold, its part after the last slash, or "density".
 std::string grid_name(const std::string& dataset);
 
 /// A sidecar with all that is known once the volume is surveyed, but for the source's digest.

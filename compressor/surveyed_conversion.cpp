@@ -31,6 +31,7 @@
 #include "format/base/process_memory.h"
 #include "format/base/seconds_since.h"
 #include "format/base/text.h"
+#include "format/base/utf8.h"
 #include "format/io/digest.h"
 #include "format/layout/nvdb_type.h"
 #include "format/output/written_volume.h"
@@ -314,9 +315,11 @@ class SurveyedConversion {
     head_.breadth_first = type != GridType::fpn;
     head_.name = grid_name(info_.dataset);
     if (head_.name != info_.dataset && !info_.dataset.empty() && parts_.control.notice) {
-      parts_.control.notice(cat(info_.path, ": its dataset's name has ", info_.dataset.size(),
-                                " bytes, and a grid's at most ", kMaxGridNameBytes, ": the grid is called ",
-                                head_.name));
+      const std::string obstacle = is_utf8(info_.dataset) ? cat("has ", info_.dataset.size(),
+                                                                " bytes, and a grid's at most ", kMaxGridNameBytes)
+                                                          : "is no UTF-8";
+      parts_.control.notice(
+          cat(info_.path, ": its dataset's name ", obstacle, ": the grid is called ", head_.name));
     }
     head_.voxel_size = info_.spacing;
     head_.origin = info_.origin;

@@ -14,6 +14,7 @@
 #include "compressor/build_commit.h"
 #include "compressor/options/conversion_request.h"
 #include "format/base/scalar_type.h"
+#include "format/base/utf8.h"
 #include "format/nanovdb/grid_head.h"
 #include "ingest/source/extent.h"
 
@@ -137,6 +138,7 @@ DenseArray read_volume(const weir_volume* given) {
   if (array.name.size() > kMaxGridNameBytes) {
     throw usage(cat("name has ", array.name.size(), " bytes, a grid's has at most ", kMaxGridNameBytes));
   }
+  if (!is_utf8(array.name)) throw usage("name is no UTF-8, which a grid's name must be");
   if (const auto missing = missing_of(volume.missing)) array.missing = {*missing};
   if (volume.reserved != 0) throw usage(cat("reserved is ", volume.reserved, ", it must be 0"));
   return array;
@@ -215,6 +217,19 @@ std::string checked_output(const char* path) {
     throw usage(cat(output, ": is a directory; name a file in it"));
   }
   return output;
+}
+
+void keep_places(ConversionOptions& options) {
+  for (std::string* path : {&options.output, &options.work_dir}) {
+    if (path->empty()) continue;
+    std::error_code obstacle;
+    const std::filesystem::path absolute = std::filesystem::absolute(*path, obstacle);
+    if (obstacle) {
+      throw Error(ErrorKind::io, cat(*path, ": the working directory cannot be told: ", obstacle.message(),
+                                     "; give an absolute path"));
+    }
+    *path = absolute.string();
+  }
 }
 
 ConversionControl Callbacks::control() {

@@ -27,6 +27,10 @@ SourceOptions read_input_options(const weir_input_options* options);
 /// Throws Error(usage) where it is null, empty or a directory, which a rename would refuse after all of the work.
 std::string checked_output(const char* path);
 
+/// Makes output and work directory absolute: those of a push must not move with the program's working directory. Throws
+/// Error(io) where that is gone and a path is relative to it.
+void keep_places(ConversionOptions& options);
+
 /// The callbacks of one conversion, called one at a time.
 class Callbacks {
  public:

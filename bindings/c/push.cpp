@@ -2,6 +2,7 @@
 
 #include "bindings/c/open_push.h"
 #include "bindings/c/status.h"
+#include "format/base/fork_guard.h"
 #include "gpu/packed/coder_choice.h"
 #include "ingest/values/array_source.h"
 
@@ -12,12 +13,14 @@ namespace weir::c {
 
 std::unique_ptr<weir_push> begin_push(const weir_volume* volume, const weir_convert_options* options,
                                       const char* output) {
+  refuse_forked();  // before slabs are taken, which the end could not convert
   SourceInfo info = array_info(read_volume(volume));
   const weir_convert_options given = options_or_defaults(options);
   auto made = std::make_unique<weir_push>(given);
   ConversionOptions conversion = read_options(given);
   info.mapping.keeps_missing = conversion.missing == MissingPolicy::keep;
   conversion.output = checked_output(output);
+  keep_places(conversion);
   ConversionControl control = made->callbacks.control();
   made->coder =
       choose_coder(conversion.backend, conversion.encoding == Encoding::packed, conversion.memory, control.notice);

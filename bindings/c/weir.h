@@ -9,7 +9,8 @@
  *
  * Threads: a call may be made by any thread at any time, and calls with different handles by several threads at once.
  * The comment of a handle's type says what that handle allows. Conversions use threads of their own (oneTBB's); while
- * several run in one process, all use the smallest number of threads that one of them was given.
+ * several run in one process, all use the smallest number of threads that one of them was given. A child that is
+ * forked while one runs can convert only after exec, and gets WEIR_ERROR_USAGE before; any other may convert.
  *
  * Structs: set every struct up by its _init function, with its sizeof, then change members; a member of 0 or NULL is
  * always its default. A program built with an older weir.h runs with a newer library. One built with a newer weir.h
@@ -82,7 +83,7 @@ typedef struct weir_volume {
   int64_t extent[3];   /* voxels, each 1 to 2^31 - 1; required */
   double spacing[3];   /* world units per voxel, > 0; all 0: 1, 1, 1 */
   double origin[3];    /* world position of the centre of voxel (0, 0, 0) */
-  const char* name;    /* of the grid in the file, at most 255 bytes; NULL: "density" */
+  const char* name;    /* of the grid in the file, at most 255 bytes of UTF-8; NULL: "density" */
   const char* missing; /* the value that stands for "no data", as text ("-9999", "nan"); NULL: none. What becomes of
                           such voxels: missing_policy */
   int32_t type;        /* WEIR_UINT8 ...; required */
@@ -217,7 +218,8 @@ typedef struct weir_input_options {
   const char* missing; /* as weir_volume's, besides what the file says */
   double spacing[3];   /* in place of the file's; all 0: the file's */
   double origin[3];    /* the same, with has_origin */
-  int64_t roi_min[3];  /* only the voxels from roi_min to before roi_max; both all 0: the whole volume */
+  int64_t roi_min[3];  /* only the voxels from roi_min to before roi_max, a number below 0 counted from the end as in
+                        * Python, where -3 is the third last; both all 0: the whole volume */
   int64_t roi_max[3];
   int32_t type;   /* of a raw file, WEIR_UINT8 ...; 0: as its name says */
   int32_t endian; /* of a raw file, WEIR_ENDIAN_...; AUTO: as its name says, else little */
@@ -251,9 +253,9 @@ WEIR_API weir_status weir_convert_file(const char* input, const weir_input_optio
  * use nor free its copy of the handle, whose threads are the parent's alone; it may call exec or _exit. */
 typedef struct weir_push weir_push;
 
-/* Begins `output`. Strings of `volume` and `options` are copied, callbacks and `user` are used until the end. Values
- * are kept in options->memory bytes and, where they do not fit, compactly in the work directory. The caller frees *push
- * by weir_push_free. */
+/* Begins `output`. Strings of `volume` and `options` are copied, callbacks and `user` are used until the end; a relative
+ * path stays what it is at this call. Values are kept in options->memory bytes and, where they do not fit, compactly in
+ * the work directory. The caller frees *push by weir_push_free. */
 WEIR_API weir_status weir_push_begin(const weir_volume* volume, const weir_convert_options* options, const char* output,
                                      weir_push** push, weir_error* error);
 /* Takes planes z0 to z0 + nz - 1: `data` is voxel (0, 0, z0), `stride` as in weir_convert. The values may be changed

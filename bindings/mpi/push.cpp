@@ -95,6 +95,7 @@ weir_status weir_mpi_push_begin(MPI_Comm comm, const weir_volume* volume, const 
       conversion = read_options(given);
       info.mapping.keeps_missing = conversion.missing == MissingPolicy::keep;
       conversion.output = checked_output(output);
+      keep_places(conversion);
       if (conversion.backend == CoderChoice::cuda)
         throw usage("backend is WEIR_BACKEND_CUDA, and ranks encode on the CPU");
     });

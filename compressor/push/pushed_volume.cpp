@@ -24,6 +24,7 @@
 #include "compressor/survey/block_survey.h"
 #include "compressor/surveyed_conversion.h"
 #include "format/base/error.h"
+#include "format/base/fork_guard.h"
 #include "format/base/scalar_type.h"
 #include "format/base/text.h"
 #include "format/output/output_files.h"
@@ -299,6 +300,7 @@ class PushedVolume::State {
 
   Sidecar convert(std::chrono::steady_clock::time_point started) {
     floats_.clear();
+    const ForkGuard forks;
     const tbb::global_control parallelism(tbb::global_control::max_allowed_parallelism,
                                           startable_workers(threads_, control_.notice));
     const std::unique_ptr<VolumeSource> source = open_spool(*files_->spool, info_);

@@ -25,4 +25,10 @@ inline std::size_t utf8_bytes(std::string_view text) {
   return 0;
 }
 
+/// Whether all of `text` is.
+inline bool is_utf8(std::string_view text) {
+  while (const std::size_t bytes = utf8_bytes(text)) text.remove_prefix(bytes);
+  return text.empty();
+}
+
 }  // namespace weir

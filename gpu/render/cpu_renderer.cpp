@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "format/base/error.h"
+#include "format/base/fork_guard.h"
 
 namespace weir {
 
@@ -72,8 +73,10 @@ Image render_cpu(std::span<const RenderTask<Volume>> tasks, const CpuRenderOptio
   };
 
   // More threads than cores are granted too: who asks for them wants to see them.
+  std::optional<ForkGuard> forks;
   std::optional<oneapi::tbb::global_control> limit;
   if (options.threads > 0) {
+    forks.emplace();
     limit.emplace(oneapi::tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(options.threads));
   }
   oneapi::tbb::task_arena arena = make_arena(options.threads);

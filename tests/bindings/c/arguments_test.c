@@ -99,6 +99,7 @@ static void volumes(void) {
   REFUSE_VOLUME(WEIR_ERROR_USAGE, "type is 0, it must be 1 to 12", v.type = 0);
   REFUSE_VOLUME(WEIR_ERROR_USAGE, "type is 13, it must be 1 to 12", v.type = 13);
   REFUSE_VOLUME(WEIR_ERROR_USAGE, "name has 256 bytes, a grid's has at most 255", v.name = name);
+  REFUSE_VOLUME(WEIR_ERROR_USAGE, "name is no UTF-8, which a grid's name must be", v.name = "Gr\xF6sse");
   REFUSE_VOLUME(WEIR_ERROR_USAGE, "missing is \"none\", it must be a number or nan", v.missing = "none");
   REFUSE_VOLUME(WEIR_ERROR_USAGE, "reserved is 1, it must be 0", v.reserved = 1);
   REFUSE_VOLUME(WEIR_ERROR_USAGE, "memory: the spacing has 0; each must be finite and above 0", v.spacing[1] = 1);

@@ -2,6 +2,8 @@
 #include "check.h"
 
 #include <pthread.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
 
 static weir_error error;
 
@@ -163,6 +165,75 @@ static void after_a_failure(const float* values) {
   CHECK(!exists(path_of("stopped.nvdb")) && !exists(path_of("stopped.nvdb.partial")));
 }
 
+/* A relative output is the file that it named at the begin, wherever the program has gone since. */
+static void after_a_change_of_directory(const float* values) {
+  char before[4096];
+  CHECK(getcwd(before, sizeof before) != NULL);
+  const weir_volume volume = pattern_volume(WEIR_FLOAT32);
+  convert(&volume, values, path_of("whole.nvdb"));
+  CHECK(mkdir(path_of("here"), 0700) == 0 && mkdir(path_of("there"), 0700) == 0);
+  CHECK(chdir(path_of("here")) == 0);
+  weir_push* const ended = begin(&volume, "step.nvdb");
+  weir_push* const freed = begin(&volume, "freed.nvdb");
+  CHECK_OK(weir_push_slab(ended, 0, NZ, values, NULL, &error));
+  CHECK(chdir(path_of("there")) == 0);
+  FILE* const other = fopen("freed.nvdb.partial", "w");
+  CHECK(other != NULL && fclose(other) == 0);
+  CHECK_OK(weir_push_end(ended, &error));
+  weir_push_free(ended);
+  weir_push_free(freed);
+  CHECK(same_files(path_of("whole.nvdb"), path_of("here/step.nvdb")));
+  CHECK(exists(path_of("here/step.nvdb.json")) && !exists(path_of("here/freed.nvdb.partial")));
+  CHECK(!exists(path_of("there/step.nvdb")) && exists(path_of("there/freed.nvdb.partial")));
+  CHECK(chdir(before) == 0);
+}
+
+enum { NOT_FORKED = -1 };
+
+/* Forks once, and converts and begins a push in the child; *user becomes its exit status. */
+static void convert_in_a_child(void* user, const char* pass, uint64_t done, uint64_t total) {
+  (void)pass;
+  (void)done;
+  (void)total;
+  int* const status = user;
+  if (*status != NOT_FORKED) return;
+  const pid_t child = fork();
+  if (child != 0) {
+    CHECK(child > 0 && waitpid(child, status, 0) == child);
+    return;
+  }
+  const float one = 1;
+  weir_volume volume = pattern_volume(WEIR_FLOAT32);
+  volume.extent[0] = volume.extent[1] = volume.extent[2] = 1;
+  failures = 0;
+  const char* const refused =
+      "this process was forked while its parent converted or rendered, and has none of the threads for it; start it "
+      "by exec (in Python: multiprocessing with \"spawn\"), or fork it before";
+  CHECK_USAGE(refused, weir_convert(&volume, &one, NULL, NULL, path_of("child.nvdb"), &error));
+  weir_push* push = NULL;
+  CHECK_USAGE(refused, weir_push_begin(&volume, NULL, path_of("child.nvdb"), &push, &error));
+  CHECK(!exists(path_of("child.nvdb")) && !exists(path_of("child.nvdb.partial")));
+  _exit(failures == 0 ? 0 : 1);
+}
+
+static void forked(const float* values) {
+  const weir_volume volume = pattern_volume(WEIR_FLOAT32);
+  weir_convert_options options = default_options();
+  options.overwrite = 1;
+  int status = NOT_FORKED;
+  options.progress = convert_in_a_child;
+  options.user = &status;
+  CHECK_OK(weir_convert(&volume, values, NULL, &options, path_of("parent.nvdb"), &error));
+  CHECK(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+
+  /* Between conversions a child has what it needs. */
+  const pid_t child = fork();
+  if (child == 0)
+    _exit(weir_convert(&volume, values, NULL, &options, path_of("child.nvdb"), &error) == WEIR_OK ? 0 : 1);
+  CHECK(child > 0 && waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0);
+  CHECK(same_files(path_of("parent.nvdb"), path_of("child.nvdb")));
+}
+
 int main(void) {
   make_directory();
   float* const values = pattern_floats();
@@ -171,6 +242,8 @@ int main(void) {
   many_threads(values);
   out_of_order(values);
   after_a_failure(values);
+  after_a_change_of_directory(values);
+  forked(values);
   free(values);
   return finish();
 }

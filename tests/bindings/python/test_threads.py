@@ -96,6 +96,29 @@ class Threads(FolderTest):
         self.assertLess(max(b - a for a, b in zip([start, *within], [*within, end])), (end - start) / 2)
 
 
+    def test_a_process_forked_during_a_conversion_cannot_convert(self):
+        values = noise((16, 16, 16), numpy.float32)
+        states = []
+
+        def fork(pass_, done, total):
+            if states:
+                return
+            child = os.fork()
+            if child == 0:
+                try:
+                    weir.convert(values, self.folder / "child.nvdb", psnr=40)
+                    os._exit(1)
+                except weir.UsageError as error:
+                    os._exit(0 if "forked while its parent converted" in str(error) else 2)
+                finally:
+                    os._exit(3)
+            states.append(os.waitpid(child, 0)[1])
+
+        weir.convert(values, self.folder / "parent.nvdb", psnr=40, progress=fork)
+        self.assertEqual(states, [0])
+        self.assertEqual(self.names(), ["parent.nvdb", "parent.nvdb.json"])
+
+
 class Interrupts(FolderTest):
     def test_ctrl_c_ends_a_conversion_and_leaves_nothing(self):
         environment = os.environ | {"PYTHONUNBUFFERED": "1"}
