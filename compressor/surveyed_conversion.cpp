@@ -28,14 +28,13 @@
 #include "compressor/survey/background.h"
 #include "compressor/survey/ladder_completion.h"
 #include "format/base/error.h"
-#include "format/base/process_memory.h"
 #include "format/base/seconds_since.h"
 #include "format/base/text.h"
-#include "format/base/utf8.h"
 #include "format/io/digest.h"
 #include "format/layout/nvdb_type.h"
 #include "format/output/written_volume.h"
 #include "format/packed/block_encode.h"
+#include "format/process/process_memory.h"
 #include "ingest/files/file_state.h"
 
 namespace weir {
@@ -315,11 +314,8 @@ class SurveyedConversion {
     head_.breadth_first = type != GridType::fpn;
     head_.name = grid_name(info_.dataset);
     if (head_.name != info_.dataset && !info_.dataset.empty() && parts_.control.notice) {
-      const std::string obstacle = is_utf8(info_.dataset) ? cat("has ", info_.dataset.size(),
-                                                                " bytes, and a grid's at most ", kMaxGridNameBytes)
-                                                          : "is no UTF-8";
-      parts_.control.notice(
-          cat(info_.path, ": its dataset's name ", obstacle, ": the grid is called ", head_.name));
+      parts_.control.notice(cat(info_.path, ": a grid's name is UTF-8 of at most ", kMaxGridNameBytes,
+                                " bytes, and its dataset's is not: the grid is called ", head_.name));
     }
     head_.voxel_size = info_.spacing;
     head_.origin = info_.origin;

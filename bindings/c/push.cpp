@@ -2,7 +2,7 @@
 
 #include "bindings/c/open_push.h"
 #include "bindings/c/status.h"
-#include "format/base/fork_guard.h"
+#include "format/process/fork_guard.h"
 #include "gpu/packed/coder_choice.h"
 #include "ingest/values/array_source.h"
 

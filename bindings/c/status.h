@@ -5,7 +5,7 @@
 
 #include "bindings/c/weir.h"
 #include "format/base/error.h"
-#include "format/base/float_mode.h"
+#include "format/process/float_mode.h"
 
 namespace weir::c {
 

@@ -253,9 +253,9 @@ WEIR_API weir_status weir_convert_file(const char* input, const weir_input_optio
  * use nor free its copy of the handle, whose threads are the parent's alone; it may call exec or _exit. */
 typedef struct weir_push weir_push;
 
-/* Begins `output`. Strings of `volume` and `options` are copied, callbacks and `user` are used until the end; a relative
- * path stays what it is at this call. Values are kept in options->memory bytes and, where they do not fit, compactly in
- * the work directory. The caller frees *push by weir_push_free. */
+/* Begins `output`. Strings of `volume` and `options` are copied, callbacks and `user` are used until the end; a
+ * relative path stays what it is at this call. Values are kept in options->memory bytes and, where they do not fit,
+ * compactly in the work directory. The caller frees *push by weir_push_free. */
 WEIR_API weir_status weir_push_begin(const weir_volume* volume, const weir_convert_options* options, const char* output,
                                      weir_push** push, weir_error* error);
 /* Takes planes z0 to z0 + nz - 1: `data` is voxel (0, 0, z0), `stride` as in weir_convert. The values may be changed

@@ -7,7 +7,7 @@
 
 #include "bindings/cuda/device_array_source.h"
 #include "compressor/push/resident_source.h"
-#include "format/base/process_memory.h"
+#include "format/process/process_memory.h"
 #include "gpu/cuda/encode/resident_volume.h"
 #include "gpu/cuda/runtime/current_device.h"
 #include "gpu/packed/coder_choice.h"

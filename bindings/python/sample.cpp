@@ -5,7 +5,7 @@
 #include "bindings/python/grid.h"
 #include "bindings/python/sampled_blocks.h"
 #include "bindings/python/watch.h"
-#include "format/base/float_mode.h"
+#include "format/process/float_mode.h"
 #include "gpu/volume/volume_sampler.h"
 
 namespace weir::python {

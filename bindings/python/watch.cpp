@@ -6,7 +6,7 @@
 
 #include "bindings/python/errors.h"
 #include "format/base/error.h"
-#include "format/base/float_mode.h"
+#include "format/process/float_mode.h"
 
 namespace weir::python {
 

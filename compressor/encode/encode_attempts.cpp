@@ -9,10 +9,10 @@
 #include "compressor/encode/encode.h"
 #include "compressor/encode/encoded_sums.h"
 #include "format/base/error.h"
-#include "format/base/process_memory.h"
 #include "format/base/text.h"
 #include "format/io/digest.h"
 #include "format/io/mapped_writes.h"
+#include "format/process/process_memory.h"
 
 namespace weir {
 namespace {

@@ -29,7 +29,7 @@
 #include "compressor/survey/visibility.h"
 #include "compressor/surveyed_conversion.h"
 #include "format/base/error.h"
-#include "format/base/process_memory.h"
+#include "format/process/process_memory.h"
 
 namespace weir {
 namespace {

@@ -15,7 +15,7 @@
 
 #include "compressor/packed/block_values.h"
 #include "compressor/survey/one_ahead.h"
-#include "format/base/process_memory.h"
+#include "format/process/process_memory.h"
 
 namespace weir {
 namespace {

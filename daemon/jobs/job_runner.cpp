@@ -11,8 +11,8 @@
 #include "daemon/store/file_identity.h"
 #include "daemon/watch/source_identity.h"
 #include "format/base/error.h"
-#include "format/base/process_memory.h"
 #include "format/base/text.h"
+#include "format/process/process_memory.h"
 
 namespace weir {
 namespace {

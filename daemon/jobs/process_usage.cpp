@@ -4,7 +4,7 @@
 #include <iterator>
 #include <system_error>
 
-#include "format/base/process_memory.h"
+#include "format/process/process_memory.h"
 
 namespace weir {
 namespace {

@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "format/base/error.h"
-#include "format/base/process_memory.h"
 #include "format/base/text.h"
+#include "format/process/process_memory.h"
 
 namespace weir {
 

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "format/base/process_memory.h"
 #include "format/base/seconds_since.h"
 #include "format/base/text.h"
+#include "format/process/process_memory.h"
 #include "gpu/render/backend.h"
 #include "gpu/render/cpu_renderer.h"
 #include "gpu/volume/leaf_table.h"

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "format/base/error.h"
-#include "format/base/fork_guard.h"
+#include "format/process/fork_guard.h"
 
 namespace weir {
 

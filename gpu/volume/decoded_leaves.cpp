@@ -9,10 +9,10 @@
 #include <thread>
 
 #include "format/base/error.h"
-#include "format/base/process_memory.h"
 #include "format/base/text.h"
 #include "format/layout/nanovdb_layout.h"
 #include "format/nanovdb/packed_blocks.h"
+#include "format/process/process_memory.h"
 
 namespace weir {
 namespace {

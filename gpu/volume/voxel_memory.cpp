@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "format/base/error.h"
-#include "format/base/process_memory.h"
 #include "format/base/text.h"
 #include "format/layout/nanovdb_layout.h"
 #include "format/nanovdb/macrocells.h"
+#include "format/process/process_memory.h"
 #include "gpu/volume/decoded_leaves.h"
 #include "gpu/volume/leaf_table.h"
 #include "gpu/volume/macrocell_grid.h"

@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "format/base/error.h"
-#include "format/base/process_memory.h"
 #include "format/base/text.h"
+#include "format/process/process_memory.h"
 #include "ingest/files/input_file.h"
 #include "ingest/headers/header_text.h"
 #include "ingest/headers/named_choice.h"

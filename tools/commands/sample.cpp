@@ -16,11 +16,11 @@
 
 #include "compressor/options/conversion_request.h"
 #include "format/base/error.h"
-#include "format/base/process_memory.h"
 #include "format/base/seconds_since.h"
 #include "format/base/text.h"
 #include "format/io/file_system.h"
 #include "format/output/partial_file.h"
+#include "format/process/process_memory.h"
 #include "ingest/raw/raw_name.h"
 #include "ingest/source/extent.h"
 #include "ingest/synthetic/pack_values.h"

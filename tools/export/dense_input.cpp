@@ -11,9 +11,9 @@
 #include "compressor/survey/background.h"
 #include "compressor/survey/survey.h"
 #include "format/base/error.h"
-#include "format/base/process_memory.h"
 #include "format/base/text.h"
 #include "format/io/file_system.h"
+#include "format/process/process_memory.h"
 #include "ingest/plan/staging.h"
 
 namespace weir {

@@ -13,9 +13,9 @@
 
 #include "compressor/leaf/exact_sum.h"
 #include "format/base/error.h"
-#include "format/base/process_memory.h"
 #include "format/base/seconds_since.h"
 #include "format/base/text.h"
+#include "format/process/process_memory.h"
 #include "ingest/plan/block_plan.h"
 #include "ingest/plan/block_stream.h"
 #include "ingest/plan/staging.h"

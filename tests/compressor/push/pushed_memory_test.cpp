@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "compressor/push/pushed_volume.h"
-#include "format/base/process_memory.h"
+#include "format/process/process_memory.h"
 #include "tests/support/child_answer.h"
 #include "tests/support/sanitized.h"
 #include "tests/support/temporary_directory.h"

@@ -9,8 +9,8 @@
 #include "compressor/plan/memory_plan.h"
 #include "compressor/select/selection.h"
 #include "compressor/select/tree_plan.h"
-#include "format/base/process_memory.h"
 #include "format/io/file_system.h"
+#include "format/process/process_memory.h"
 #include "tests/support/child_answer.h"
 #include "tests/support/sanitized.h"
 

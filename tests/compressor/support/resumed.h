@@ -14,7 +14,7 @@
 #include "compressor/conversion_memory.h"
 #include "compressor/plan/memory_plan.h"
 #include "format/base/error.h"
-#include "format/base/process_memory.h"
+#include "format/process/process_memory.h"
 #include "tests/compressor/support/crash_file_system.h"
 #include "tests/compressor/support/memory_volume.h"
 #include "tests/support/faulty_file_system.h"

@@ -12,7 +12,7 @@
 
 #include "compressor/conversion.h"
 #include "format/base/error.h"
-#include "format/base/process_memory.h"
+#include "format/process/process_memory.h"
 #include "ingest/source/source_view.h"
 #include "ingest/source_registry.h"
 #include "tests/compressor/support/crash_file_system.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "format/base/process_memory.h"
+#include "format/process/process_memory.h"
 #include "tests/compressor/support/budget_of.h"
 #include "tests/compressor/support/converted.h"
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "format/base/process_memory.h"
+#include "format/process/process_memory.h"
 #include "ingest/amrex/level_cover.h"
 #include "tests/support/child_answer.h"
 #include "tests/support/sanitized.h"

@@ -8,7 +8,7 @@
 
 #include "compressor/leaf/exact_sum.h"
 #include "format/base/error.h"
-#include "format/base/process_memory.h"
+#include "format/process/process_memory.h"
 #include "ingest/source/source_view.h"
 #include "ingest/synthetic/synthetic.h"
 #include "tests/support/temporary_directory.h"

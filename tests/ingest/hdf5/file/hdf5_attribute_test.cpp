@@ -1,8 +1,8 @@
 // Attributes that the library cannot read: an error, and never values or places as if they were not there.
 #include "ingest/hdf5/file/hdf5_attribute.h"
 
-#include "format/base/process_memory.h"
 #include "format/base/text.h"
+#include "format/process/process_memory.h"
 #include "ingest/hdf5/hdf5_source.h"
 #include "tests/ingest/hdf5/support/h5py_file.h"
 #include "tests/support/child_answer.h"

@@ -3,8 +3,8 @@
 
 namespace weir {
 
-/// Held while a thread pool (oneTBB's) is limited for a piece of work. A child that is forked meanwhile has a copy of the
-/// pool's records of threads that it does not have, and ends by a signal where it changes them.
+/// Held while a thread pool (oneTBB's) is limited for a piece of work. A child that is forked meanwhile has a copy of
+/// the pool's records of threads that it does not have, and ends by a signal where it changes them.
 class ForkGuard {
  public:
   /// Throws what refuse_forked does.

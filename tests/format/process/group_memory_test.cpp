@@ -1,4 +1,4 @@
-#include "format/base/group_memory.h"
+#include "format/process/group_memory.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "format/base/process_memory.h"
+#include "format/process/process_memory.h"
 
 #include <gtest/gtest.h>
 

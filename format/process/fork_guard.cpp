@@ -1,4 +1,4 @@
-#include "format/base/fork_guard.h"
+#include "format/process/fork_guard.h"
 
 #include <pthread.h>
 

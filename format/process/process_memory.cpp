@@ -1,4 +1,4 @@
-#include "format/base/process_memory.h"
+#include "format/process/process_memory.h"
 
 #include <sys/mman.h>
 
@@ -6,8 +6,8 @@
 #include <cerrno>
 #include <limits>
 
-#include "format/base/group_memory.h"
 #include "format/base/kernel_table.h"
+#include "format/process/group_memory.h"
 
 namespace weir {
 
