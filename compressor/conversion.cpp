@@ -20,6 +20,7 @@
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "format/io/file_id.h"
+#include "format/io/output_names.h"
 #include "format/process/fork_guard.h"
 #include "format/process/process_memory.h"
 #include "ingest/drivers/hdf5_crash.h"
@@ -201,7 +202,7 @@ Sidecar convert_volume(VolumeSource& source, const ConversionOptions& options, c
   }
   std::vector<std::string> begun =
       journal ? journal->paths() : std::vector<std::string>{hidden_directory_of(options.output)};
-  begun.push_back(options.output + ".partial");  // the lock last: who has it may begin
+  begun.push_back(partial_path(options.output));  // the lock last: who has it may begin
   const Hdf5CrashRemoval at_crash(std::move(begun));
   try {
     Sidecar sidecar = convert_to(source, options, control, output, work, journal.get(), team, resident_bytes());

@@ -117,7 +117,8 @@ void describe_file(Sidecar& sidecar, const SourceInfo& info, const Survey& surve
                        options.brick,
                        static_cast<std::uint64_t>(file.tree->leaves.size()),
                        file.plan.kept,
-                       file.plan.leaves_by_width};
+                       file.plan.leaves_by_width,
+                       {}};
   sidecar.error = describe_error(file.plan.tiles, encoded.errors, survey.finite, survey);
   if (options.scene) {
     sidecar.visible = {options.scene->path, shown.blocks, shown.finite,
@@ -126,10 +127,10 @@ void describe_file(Sidecar& sidecar, const SourceInfo& info, const Survey& surve
   }
   if (file.packed) {
     const auto& blocks = file.plan.blocks;
-    sidecar.packed =
-        Sidecar::Packed{file.packed->preview,
-                        {sidecar.selection.leaves_total - file.plan.kept, blocks[0], blocks[1], blocks[2], blocks[3]},
-                        describe_error(file.plan.preview, {}, survey.finite, survey)};
+    sidecar.packed = Sidecar::Packed{file.packed->preview};
+    sidecar.selection.blocks = {sidecar.selection.leaves_total - file.plan.kept, blocks[0], blocks[1], blocks[2],
+                                blocks[3]};
+    sidecar.error_preview = describe_error(file.plan.preview, {}, survey.finite, survey);
   }
   sidecar.macrocells = {kMacrocell, make_lattice(info.domain(), kMacrocell).count, kMacrocellApron};
 }

@@ -3,6 +3,7 @@
 #include "compressor/conversion_identity.h"
 #include "compressor/resume/work_directory.h"
 #include "format/base/text.h"
+#include "format/io/output_names.h"
 #include "format/output/commit_leftovers.h"
 #include "format/sidecar/sidecar.h"
 
@@ -47,8 +48,8 @@ namespace {
 // Under the lock OUT.nvdb.partial, which stays.
 void discard_all_but_lock(FileSystem& files, const std::string& output) {
   const std::string sidecar = sidecar_path(output);
-  const std::string previous = sidecar + ".previous";
-  if (const std::string unfinished = sidecar + ".partial"; files.exists(unfinished)) {
+  const std::string previous = previous_path(sidecar);
+  if (const std::string unfinished = partial_path(sidecar); files.exists(unfinished)) {
     files.create(unfinished);  // refuses what is somebody's
     files.remove(unfinished);
   }
@@ -62,9 +63,9 @@ void discard_all_but_lock(FileSystem& files, const std::string& output) {
 
 bool discard_all_beside(FileSystem& files, const std::string& output) {
   const std::string hidden = hidden_directory_of(output);
-  const std::string partial = output + ".partial";
+  const std::string partial = partial_path(output);
   const bool locked = files.exists(partial);
-  const bool other = locked || files.exists(sidecar_path(output) + ".previous");
+  const bool other = locked || files.exists(previous_path(sidecar_path(output)));
   if (!other && !files.exists(hidden)) return false;
   // Neither emptied nor removed before all else is: what it holds says that the output is done (is_committed), should
   // this be killed, too.
@@ -83,7 +84,7 @@ bool discard_all_beside(FileSystem& files, const std::string& output) {
 void clear_after_commit(FileSystem& files, const std::string& output) {
   if (is_committed(files, output)) {
     discard_all_beside(files, output);
-  } else if (files.exists(output) && !files.exists(output + ".partial")) {
+  } else if (files.exists(output) && !files.exists(partial_path(output))) {
     // Without a journal a conversion holds nothing in it that has a name.
     remove_if_empty(files, hidden_directory_of(output));
   }

@@ -30,22 +30,42 @@ std::vector<DatasetInfo> list_raw(const std::string& path, const SourceOptions& 
   return list_single(open_raw(path, options)->info(), "contiguous");
 }
 
+using Ending = std::string_view;
+constexpr std::array<Ending, 2> kNrrdEndings{".nrrd", ".nhdr"};
+constexpr std::array<Ending, 2> kMetaImageEndings{".mhd", ".mha"};
+constexpr std::array<Ending, 2> kNiftiEndings{".nii", ".nii.gz"};
+constexpr std::array<Ending, 1> kVdbEndings{".vdb"};
+constexpr std::array<Ending, 1> kVtkXmlEndings{".vti"};
+constexpr std::array<Ending, 1> kVtkLegacyEndings{".vtk"};
+constexpr std::array<Ending, 2> kZarrEndings{".zarr.zip", ".ozx"};
+constexpr std::array<Ending, 6> kHdf5Endings{".h5", ".hdf5", ".he5", ".nc", ".nc4", ".cdf"};
+
 constexpr std::array kFormats{
-    SourceFormat{
-        .name = "nrrd", .recognises = recognises_nrrd, .open = open_nrrd, .list = list_nrrd, .container = true},
+    SourceFormat{.name = "nrrd",
+                 .recognises = recognises_nrrd,
+                 .open = open_nrrd,
+                 .list = list_nrrd,
+                 .container = true,
+                 .watched_endings = kNrrdEndings},
     SourceFormat{.name = "meta-image",
                  .recognises = recognises_meta_image,
                  .open = open_meta_image,
                  .list = list_meta_image,
-                 .container = true},
-    SourceFormat{
-        .name = "nifti", .recognises = recognises_nifti, .open = open_nifti, .list = list_nifti, .container = true},
+                 .container = true,
+                 .watched_endings = kMetaImageEndings},
+    SourceFormat{.name = "nifti",
+                 .recognises = recognises_nifti,
+                 .open = open_nifti,
+                 .list = list_nifti,
+                 .container = true,
+                 .watched_endings = kNiftiEndings},
     SourceFormat{.name = "openvdb",
                  .recognises = recognises_vdb,
                  .open = open_vdb,
                  .list = list_vdb,
                  .container = true,
-                 .vectors = true},
+                 .vectors = true,
+                 .watched_endings = kVdbEndings},
     SourceFormat{
         .name = "nanovdb", .recognises = recognises_nvdb, .open = open_nvdb, .list = list_nvdb, .container = true},
     SourceFormat{.name = "vtk-xml",
@@ -53,13 +73,15 @@ constexpr std::array kFormats{
                  .open = open_vtk_xml,
                  .list = list_vtk_xml,
                  .container = true,
-                 .vectors = true},
+                 .vectors = true,
+                 .watched_endings = kVtkXmlEndings},
     SourceFormat{.name = "vtk-legacy",
                  .recognises = recognises_vtk_legacy,
                  .open = open_vtk_legacy,
                  .list = list_vtk_legacy,
                  .container = true,
-                 .vectors = true},
+                 .vectors = true,
+                 .watched_endings = kVtkLegacyEndings},
     SourceFormat{.name = "amrex",
                  .recognises = recognises_amrex,
                  .open = open_amrex,
@@ -74,7 +96,8 @@ constexpr std::array kFormats{
                  .container = true,
                  .vectors = true,
                  .directory = true,
-                 .chunks = true},
+                 .chunks = true,
+                 .watched_endings = kZarrEndings},
     // Asked late: its signature may lie anywhere behind a user block.
     SourceFormat{.name = "hdf5",
                  .recognises = recognises_hdf5,
@@ -82,7 +105,8 @@ constexpr std::array kFormats{
                  .list = list_by_hdf5_driver,
                  .container = true,
                  .vectors = true,
-                 .chunks = true},
+                 .chunks = true,
+                 .watched_endings = kHdf5Endings},
     // A raw file has no magic: it is what no other format wants.
     SourceFormat{.name = "raw",
                  .recognises = [](std::string_view, std::span<const std::byte>) { return true; },

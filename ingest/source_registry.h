@@ -33,6 +33,9 @@ struct SourceFormat {
   /// How many levels of refinement a file has, up to options.level. A format with it takes --level, --levels and
   /// --upsample. Throws what open throws.
   std::int64_t (*levels)(const std::string& path, const SourceOptions& options) = nullptr;
+  /// What the names of its files end with, in lower case, where a directory that is watched without patterns takes
+  /// them: of formats that are for volumes alone, and not of weir's own results.
+  std::span<const std::string_view> watched_endings = {};
 };
 
 inline constexpr std::size_t kMagicBytes = 16;

@@ -13,6 +13,7 @@
 #include "format/base/seconds_since.h"
 #include "format/base/text.h"
 #include "format/io/digest.h"
+#include "format/io/output_names.h"
 #include "format/output/output_files.h"
 
 namespace weir {
@@ -40,7 +41,7 @@ std::string spill_name_of(const std::string& output) {
   if (head.size() < name.string().size()) {  // not in the middle of a character of UTF-8
     while (!head.empty() && (static_cast<unsigned char>(name.string()[head.size()]) & 0xC0U) == 0x80U) head.pop_back();
   }
-  return cat('.', head, '.', digest, ".work");
+  return work_name(cat(head, '.', digest));
 }
 
 // Checkpoint::spill_directory: the next process may have another working directory.

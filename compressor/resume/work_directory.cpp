@@ -5,13 +5,14 @@
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "format/io/output_names.h"
 #include "format/output/output_files.h"
 
 namespace weir {
 
 std::string hidden_directory_of(const std::string& output) {
   const std::size_t slash = output.rfind('/');
-  return directory_of(output) + "/." + (slash == std::string::npos ? output : output.substr(slash + 1)) + ".work";
+  return cat(directory_of(output), '/', work_name(slash == std::string::npos ? output : output.substr(slash + 1)));
 }
 
 void remove_if_empty(FileSystem& files, const std::string& path) noexcept {

@@ -24,6 +24,7 @@
 #include "format/base/text.h"
 #include "format/io/descriptor.h"
 #include "format/io/file_system.h"
+#include "format/io/output_names.h"
 #include "format/io/real_path.h"
 #include "format/output/commit_leftovers.h"
 
@@ -36,10 +37,6 @@ using Clock = std::chrono::steady_clock;
 /// An interrupted conversion that nobody continues; it may hold as much disk as its result.
 constexpr std::chrono::hours kKeptFor{7 * 24};
 
-constexpr std::string_view kPartial = ".partial";
-constexpr std::string_view kRecordPartial = ".json.partial";
-constexpr std::string_view kPrevious = ".json.previous";
-constexpr std::string_view kWork = ".work";
 constexpr std::string_view kThumbnail = ".png.";
 
 // The output that `path` was left by, if it is of a conversion: something.nvdb.
@@ -52,23 +49,23 @@ std::optional<fs::path> output_of(const fs::path& path) {
     return path.parent_path() / output;
   };
   if (name.starts_with('.')) {
-    if (auto output = without(kWork, 1)) return output;
+    if (auto output = without(kWorkEnding, 1)) return output;
     const std::size_t thumbnail = name.find(cat(".nvdb", kThumbnail));
-    if (thumbnail != std::string::npos && name.ends_with(kPartial)) {
+    if (thumbnail != std::string::npos && name.ends_with(kPartialEnding)) {
       return path.parent_path() / name.substr(1, thumbnail + std::string_view(".nvdb").size() - 1);
     }
   }
-  for (const std::string_view ending : {kRecordPartial, kPrevious, kPartial}) {
+  for (const std::string_view ending : {kSidecarPartialEnding, kSidecarPreviousEnding, kPartialEnding}) {
     if (auto output = without(ending, 0)) return output;
   }
   return std::nullopt;
 }
 
-bool is_work(const fs::path& path) { return path.filename().string().ends_with(kWork); }
+bool is_work(const fs::path& path) { return path.filename().string().ends_with(kWorkEnding); }
 
 bool is_picture(const fs::path& path) {
   const std::string name = path.filename().string();
-  return name.starts_with('.') && name.ends_with(kPartial) && name.find(kThumbnail) != std::string::npos;
+  return name.starts_with('.') && name.ends_with(kPartialEnding) && name.find(kThumbnail) != std::string::npos;
 }
 
 // Whether the process lives whose ID is in the name .X.nvdb.png.ID.partial.
@@ -136,7 +133,7 @@ class Cleaner {
 
   /// Removes `paths`, which are of `output`, work directories only where nobody needs them.
   void clean(const fs::path& output, const std::vector<fs::path>& paths, const Worthless& worthless) {
-    const std::string lock_path = output.string() + std::string(kPartial);
+    const std::string lock_path = output.string() + std::string(kPartialEnding);
     try {
       const bool was_there = files->exists(lock_path);
       // Held, so that no conversion begins on what is looked at and removed here.
@@ -148,7 +145,7 @@ class Cleaner {
       for (const fs::path& path : paths) {
         if (is_work(path)) {
           clean_work(path, output, worthless);
-        } else if (path.filename().string().ends_with(kPrevious)) {
+        } else if (path.filename().string().ends_with(kSidecarPreviousEnding)) {
           restore(path);
         } else if (is_picture(path)) {
           remove_picture(path);

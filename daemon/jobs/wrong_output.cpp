@@ -5,6 +5,7 @@
 #include "daemon/store/file_identity.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "format/io/output_names.h"
 #include "format/output/output_files.h"
 #include "format/sidecar/sidecar.h"
 
@@ -36,7 +37,7 @@ std::string remove_both(FileSystem& files, const std::string& output) {
 
 std::string remove_wrong_output(FileSystem& files, const std::string& output,
                                 const std::optional<FileIdentity>& verified) {
-  const std::string lock_path = output + ".partial";
+  const std::string lock_path = partial_path(output);
   const bool was_there = files.exists(lock_path);
   std::string outcome;
   try {

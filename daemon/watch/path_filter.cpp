@@ -8,20 +8,20 @@
 #include "daemon/watch/store_quiet.h"
 #include "format/base/ascii.h"
 #include "format/base/text.h"
+#include "format/io/output_names.h"
 #include "format/io/real_path.h"
 #include "ingest/files/input_directory.h"
 #include "ingest/raw/raw_name.h"
+#include "ingest/source_registry.h"
 
 namespace weir {
 namespace {
 
 namespace fs = std::filesystem;
 
-// The names of ingest/source_registry.cpp, but for those of weir's own results, images and text.
-constexpr std::array<std::string_view, 17> kExtensions{".nrrd", ".nhdr", ".mhd", ".mha",      ".nii", ".nii.gz",
-                                                       ".h5",   ".hdf5", ".he5", ".nc",       ".nc4", ".cdf",
-                                                       ".vti",  ".vtk",  ".vdb", ".zarr.zip", ".ozx"};
-constexpr std::array<std::string_view, 3> kNeverSources{".partial", ".nvdb.json", ".nvdb.json.previous"};
+constexpr std::string_view kVolumeEnding = ".nvdb";
+// Of what a conversion writes or is in the middle of writing.
+constexpr std::array kEndingsBesideVolumes{kSidecarEnding, kSidecarPreviousEnding};
 
 std::string_view name_of(std::string_view path) { return path.substr(path.find_last_of('/') + 1); }
 
@@ -47,8 +47,16 @@ bool is_known_format(std::string_view path, bool any_raw) {
   if (is_plotfile_head(path)) return true;
   const std::string lower = lower_case(name);
   if (lower.ends_with(".raw")) return any_raw || parse_raw_name(name).has_value();
-  return std::any_of(kExtensions.begin(), kExtensions.end(),
-                     [&](std::string_view extension) { return lower.ends_with(extension); });
+  return std::ranges::any_of(source_formats(), [&](const SourceFormat& format) {
+    return std::ranges::any_of(format.watched_endings,
+                               [&](std::string_view ending) { return lower.ends_with(ending); });
+  });
+}
+
+bool is_of_weir(std::string_view path) {
+  return path.ends_with(kPartialEnding) || std::ranges::any_of(kEndingsBesideVolumes, [&](std::string_view ending) {
+           return path.ends_with(ending) && path.substr(0, path.size() - ending.size()).ends_with(kVolumeEnding);
+         });
 }
 
 bool is_at_or_below(std::string_view path, std::string_view directory) {
@@ -98,9 +106,7 @@ bool PathFilter::is_excluded(std::string_view path) const {
 
 bool PathFilter::accepts_file(std::string_view path) const {
   if (!recursive_ && path.find('/') != std::string_view::npos) return false;
-  if (std::any_of(kNeverSources.begin(), kNeverSources.end(), [&](auto end) { return path.ends_with(end); })) {
-    return false;
-  }
+  if (is_of_weir(path)) return false;
   if (!marker_.empty() && path.ends_with(marker_)) return false;
   if (is_no_plotfile_yet(path)) return false;
   if ((is_in_store(path) || (is_head(path) && !is_plotfile_head(path))) && !is_store_head(path)) return false;

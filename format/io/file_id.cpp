@@ -3,9 +3,11 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <string_view>
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "format/io/output_names.h"
 
 namespace weir {
 
@@ -16,8 +18,8 @@ std::optional<FileId> file_id(const std::string& path) {
 }
 
 void require_not_input(std::span<const FileId> inputs, const std::string& output) {
-  for (const char* suffix : {"", ".partial", ".json", ".json.partial", ".json.previous"}) {
-    const std::string path = output + suffix;
+  for (const std::string_view ending : kOutputEndings) {
+    const std::string path = cat(output, ending);
     const std::optional<FileId> there = file_id(path);
     if (!there || std::find(inputs.begin(), inputs.end(), *there) == inputs.end()) continue;
     throw usage_error(cat(path, ": belongs to the input, and writing ", output,

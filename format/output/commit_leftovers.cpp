@@ -7,6 +7,7 @@
 
 #include "format/base/error.h"
 #include "format/io/digest.h"
+#include "format/io/output_names.h"
 #include "format/layout/nanovdb_layout.h"
 #include "format/sidecar/sidecar.h"
 
@@ -75,7 +76,7 @@ bool placed_by_commit(FileSystem& files, const std::string& sidecar, File& parti
 }
 
 bool is_committed(FileSystem& files, const std::string& output) {
-  const std::string partial = output + ".partial";
+  const std::string partial = partial_path(output);
   if (!files.exists(output)) return false;
   try {
     const std::string record = commit_record(text_at(files, sidecar_path(output)));

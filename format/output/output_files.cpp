@@ -14,21 +14,18 @@
 #include "format/base/ascii.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "format/io/output_names.h"
 #include "format/output/commit_leftovers.h"
 #include "format/sidecar/sidecar.h"
 
 namespace weir {
 namespace {
 
-constexpr std::string_view kPrevious = ".previous";
-
 // Of formats that weir reads or writes, and of others that a volume or a picture may be meant to be.
-constexpr std::array<std::string_view, 34> kOthersExtensions{
-    ".csv", ".exr", ".gz",   ".h5",   ".hdf", ".hdf5", ".he5", ".jpeg",   ".jpg", ".json", ".mha", ".mhd",
-    ".mp4", ".nc",  ".nc4",  ".nhdr", ".nii", ".npy",  ".npz", ".nrrd",   ".pdf", ".png",  ".ppm", ".raw",
-    ".svg", ".tif", ".tiff", ".toml", ".txt", ".vti",  ".vtk", ".vtkhdf", ".vtu", ".zarr"};
-
-std::string previous_of(const std::string& sidecar) { return cat(sidecar, kPrevious); }
+constexpr std::array<std::string_view, 37> kOthersExtensions{
+    ".cdf", ".csv", ".exr",  ".gz",   ".h5",  ".hdf", ".hdf5", ".he5",    ".jpeg", ".jpg",  ".json", ".mha", ".mhd",
+    ".mp4", ".nc",  ".nc4",  ".nhdr", ".nii", ".npy", ".npz",  ".nrrd",   ".ozx",  ".pdf",  ".png",  ".ppm", ".raw",
+    ".svg", ".tif", ".tiff", ".toml", ".txt", ".vti", ".vtk",  ".vtkhdf", ".vtu",  ".zarr", ".zip"};
 
 }  // namespace
 
@@ -99,9 +96,9 @@ OutputFiles::OutputFiles(FileSystem& files, const std::string& path, bool overwr
       directory_(directory_of(path)),
       overwrite_(overwrite) {
   require_volume_name(path_);
-  require_place(files_, path_, previous_of(sidecar_).size() - path_.size());
-  require_place(files_, sidecar_, kPrevious.size());
-  const std::string partial = path_ + ".partial";
+  require_place(files_, path_, previous_path(sidecar_).size() - path_.size());
+  require_place(files_, sidecar_, kPreviousEnding.size());
+  const std::string partial = partial_path(path_);
   const bool left_over = files_.exists(partial);
   if (!overwrite_) {
     refuse_existing(path_);
@@ -125,7 +122,7 @@ OutputFiles::OutputFiles(FileSystem& files, const std::string& path, bool overwr
 // A commit that was killed between its steps 4 and 5. Under the lock nobody is between them; who was may have come to
 // its end meanwhile.
 void OutputFiles::settle(bool left_over) {
-  if (const std::string partial = sidecar_ + ".partial"; files_.exists(partial)) {
+  if (const std::string partial = partial_path(sidecar_); files_.exists(partial)) {
     files_.create(partial);  // refuses what is somebody's, now and not when the work is done
     files_.remove(partial);
   }
@@ -138,7 +135,7 @@ void OutputFiles::settle(bool left_over) {
 
 // The old volume's own sidecar: the one that lies beside it would be taken for it by the next commit.
 void OutputFiles::restore_previous() {
-  const std::string previous = previous_of(sidecar_);
+  const std::string previous = previous_path(sidecar_);
   if (!files_.exists(previous) || !files_.exists(path_)) return;
   if (belongs_back(files_, previous, sidecar_, path_)) files_.rename(previous, sidecar_);
 }
@@ -196,11 +193,11 @@ OutputFiles::~OutputFiles() {
   if (ahead_.valid()) ahead_.wait();
   if (committed_) {
     // The lock of a volume in another place: gone only now that what the volume was made from is.
-    if (volume_) remove_quietly(path_ + ".partial");
+    if (volume_) remove_quietly(partial_path(path_));
     return;
   }
-  remove_quietly(path_ + ".partial");
-  remove_quietly(sidecar_ + ".partial");
+  remove_quietly(partial_path(path_));
+  remove_quietly(partial_path(sidecar_));
 }
 
 void OutputFiles::remove_quietly(const std::string& path) noexcept {
@@ -227,8 +224,8 @@ void OutputFiles::remove_quietly(const std::string& path) noexcept {
 // A failure before step 5 has done its work puts the old sidecar back, or removes the new one.
 void OutputFiles::commit(const std::string& sidecar_text) {
   const std::string volume_partial = volume().path();
-  const std::string sidecar_partial = sidecar_ + ".partial";
-  const std::string previous = previous_of(sidecar_);
+  const std::string sidecar_partial = partial_path(sidecar_);
+  const std::string previous = previous_path(sidecar_);
   volume().sync();  // 1
   if (volume_) {
     const std::string record = commit_record(sidecar_text);

@@ -3,28 +3,28 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <string_view>
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "format/io/output_names.h"
 #include "format/output/output_files.h"
 
 namespace weir {
 
 PartialFile::PartialFile(FileSystem& files, const std::string& path, bool overwrite)
     : files_(files), owner_(::getpid()), path_(path), overwrite_(overwrite) {
-  require_place(files_, path, std::string_view(".partial").size());
+  require_place(files_, path, kPartialEnding.size());
   if (!overwrite && files_.exists(path)) {
     throw Error(ErrorKind::usage, compose(path, ": exists; choose another output or pass ", option("overwrite")));
   }
-  file_ = files_.create(path + ".partial");
+  file_ = files_.create(partial_path(path));
   require_alone(*file_);
 }
 
 PartialFile::~PartialFile() {
   if (committed_ || owner_ != ::getpid()) return;
   try {
-    files_.remove(path_ + ".partial");
+    files_.remove(partial_path(path_));
   } catch (const Error&) {
     // The failure that led here is the one to report.
   }
@@ -37,7 +37,7 @@ void PartialFile::reserve(std::uint64_t bytes) {
 }
 
 void PartialFile::commit() {
-  const std::string partial = path_ + ".partial";
+  const std::string partial = partial_path(path_);
   file_->sync();  // 1
   if (overwrite_) {
     files_.rename(partial, path_);  // 2

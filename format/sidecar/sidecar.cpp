@@ -10,6 +10,7 @@
 #include "format/base/error.h"
 #include "format/base/json_text.h"
 #include "format/base/text.h"
+#include "format/io/output_names.h"
 #include "format/sidecar/json_archive.h"
 
 namespace weir {
@@ -78,15 +79,9 @@ void describe_selection(Archive& archive, S& selection) {
   archive.object("bits", [&] {
     for (std::size_t i = 0; i < kBitKeys.size(); ++i) archive.field(kBitKeys[i], selection.bits[i]);
   });
-}
-
-template <typename Archive, typename P>
-void describe_packed(Archive& archive, P& packed) {
-  archive.field("preview", packed.preview);
-  archive.object("blocks", [&] {
-    for (std::size_t i = 0; i < kBlockKeys.size(); ++i) archive.field(kBlockKeys[i], packed.blocks[i]);
+  archive.optional_object("blocks", selection.blocks, [&](auto& blocks) {
+    for (std::size_t i = 0; i < kBlockKeys.size(); ++i) archive.field(kBlockKeys[i], blocks[i]);
   });
-  archive.object("error_preview", [&] { describe_error(archive, packed.error_preview); });
 }
 
 template <typename Archive, typename G>
@@ -151,6 +146,7 @@ void describe(Archive& archive, S& s) {
     describe_error(archive, s.error);
     archive.optional_object("gradient", s.gradient, [&](auto& gradient) { describe_gradient(archive, gradient); });
   });
+  archive.optional_object("error_preview", s.error_preview, [&](auto& error) { describe_error(archive, error); });
   archive.optional_object("visible", s.visible, [&](auto& visible) {
     archive.field("scene", visible.scene);
     archive.field("blocks", visible.blocks);
@@ -158,7 +154,7 @@ void describe(Archive& archive, S& s) {
     describe_error(archive, visible.error);
     archive.optional_field("scene_digest", visible.scene_digest);
   });
-  archive.optional_object("packed", s.packed, [&](auto& packed) { describe_packed(archive, packed); });
+  archive.optional_object("packed", s.packed, [&](auto& packed) { archive.field("preview", packed.preview); });
   archive.object("macrocells", [&] {
     archive.field("cell", s.macrocells.cell);
     archive.field("dims", s.macrocells.dims);
@@ -185,11 +181,21 @@ void describe(Archive& archive, S& s) {
   });
 }
 
+// Where sidecars of 0.2 had what is elsewhere now.
+void move_older_keys(nlohmann::json& document) {
+  if (!document.contains("packed") || !document.contains("selection")) return;
+  nlohmann::json& packed = document["packed"];
+  nlohmann::json& selection = document["selection"];
+  if (!packed.is_object() || !selection.is_object()) return;
+  if (packed.contains("blocks")) selection.emplace("blocks", packed["blocks"]);
+  if (packed.contains("error_preview")) document.emplace("error_preview", packed["error_preview"]);
+}
+
 constexpr int kMaxSidecarDepth = 16;  ///< twice what one has
 
 }  // namespace
 
-std::string sidecar_path(const std::string& volume_path) { return volume_path + ".json"; }
+std::string sidecar_path(const std::string& volume_path) { return cat(volume_path, kSidecarEnding); }
 
 std::string to_json_text(const Sidecar& sidecar) {
   JsonWriter writer;
@@ -224,6 +230,7 @@ Sidecar parse_sidecar(std::string_view text, const std::string& path) {
                 path + ": a number is beyond the range of double; write the sidecar again with weir convert");
   }
   if (!document.is_object()) throw Error(ErrorKind::input, path + ": not a JSON object; give the sidecar of a volume");
+  move_older_keys(document);
   JsonReader reader(document, path);
   std::int64_t version = 0;
   reader.field("weir_sidecar", version);

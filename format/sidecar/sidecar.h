@@ -1,6 +1,6 @@
 // The sidecar OUT.nvdb.json: what one conversion read, chose, lost and wrote.
 // The struct holds every key of the JSON document under the same name; the
-// schema is format/sidecar/sidecar.schema.json. Plain data, no invariants.
+// schema is format/sidecar.schema.json. Plain data, no invariants.
 #pragma once
 
 #include <array>
@@ -132,6 +132,8 @@ struct Sidecar {
     std::uint64_t leaves_total = 0;
     std::uint64_t leaves_kept = 0;
     std::array<std::uint64_t, 6> bits{};  ///< kept leaves of 1, 2, 4, 8, 16 bits a voxel and float32
+    /// Of a packed file, blocks by kind: without a stream, mean, transform, lattice, raw.
+    std::optional<std::array<std::uint64_t, 5>> blocks;
   } selection;
 
   /// Of central differences, at the volume's faces those to the next voxel, as numpy.gradient has them; value per world
@@ -154,6 +156,8 @@ struct Sidecar {
     bool lossless = false;
   } error;
   std::optional<GradientError> gradient;  ///< error.gradient: none, and no key, where it was not asked for
+  /// Of a packed file, what readers see that know the tree alone; its two corner leaves count as means.
+  std::optional<CertifiedError> error_preview;
 
   /// With a scene that decided what matters: the same over the voxels of all 8^3 blocks of which something can be seen.
   struct Visible {
@@ -165,12 +169,9 @@ struct Sidecar {
   };
   std::optional<Visible> visible;
 
-  /// Of a packed file (FORMAT.md): its blocks, and what readers see that know the tree alone.
+  /// Of a packed file (FORMAT.md).
   struct Packed {
     bool preview = false;  ///< the tree holds each block's mean
-    /// Blocks by kind: without a stream, mean, transform, lattice, raw.
-    std::array<std::uint64_t, 5> blocks{};
-    CertifiedError error_preview;  ///< of the tree's values; the two corner leaves count as means
   };
   std::optional<Packed> packed;
 

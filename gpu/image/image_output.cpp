@@ -14,6 +14,7 @@
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "format/io/output_names.h"
 #include "format/output/output_files.h"
 #include "gpu/image/colormap.h"
 
@@ -138,7 +139,7 @@ ImageFile::ImageFile(FileSystem& files, const std::string& path, bool overwrite)
   }
   constexpr std::size_t kNameBytes = 200;  // a longer one leaves no room for what comes after it
   const std::string name = target.filename().string().substr(0, kNameBytes);
-  temporary_ = (target.parent_path() / cat('.', name, '.', ::getpid(), ".partial")).string();
+  temporary_ = (target.parent_path() / cat('.', name, '.', ::getpid(), kPartialEnding)).string();
   file_ = files_.create(temporary_);
 }
 

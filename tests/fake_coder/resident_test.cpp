@@ -102,7 +102,7 @@ TEST_F(Resident, NearlyLosslessBlocksOfACloudStayOnTheDevice) {
     const std::uint64_t before = values_copied();
     const Result result = convert_by(nullptr, *on_device(volume), options);
     EXPECT_EQ(result.file == expected.file, true);
-    const auto& [none, mean, transform, lattice, raw] = result.sidecar.packed->blocks;
+    const auto& [none, mean, transform, lattice, raw] = *result.sidecar.selection.blocks;
     EXPECT_GT(lattice, transform);
     EXPECT_LT(values_copied() - before, lattice / 8) << "those on a lattice of their own";
   }

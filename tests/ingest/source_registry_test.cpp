@@ -7,6 +7,9 @@
 #include <map>
 #include <numeric>
 
+#include "format/base/error.h"
+#include "format/base/text.h"
+#include "format/output/output_files.h"
 #include "tests/ingest/hdf5/support/chunked_file.h"
 #include "tests/ingest/support/scratch.h"
 #include "tests/stock/openvdb_file.h"
@@ -245,6 +248,15 @@ TEST(SourceRegistry, ExtensionsInCapitals_AreThoseInSmallLetters) {
   std::vector<std::byte> bytes(24);
   std::memcpy(bytes.data(), "PK\3\4", 4);
   EXPECT_EQ(open_source(scratch.write("Scan_4x3x2_uint8.RAW", bytes), {})->info().extent, kExtent);
+}
+
+TEST(SourceRegistry, NoResultIsWrittenToTheNameOfAWatchedFormat) {
+  for (const SourceFormat& format : source_formats()) {
+    for (const std::string_view ending : format.watched_endings) {
+      EXPECT_THROW(require_volume_name(cat("result", ending)), Error) << ending;
+    }
+  }
+  EXPECT_NO_THROW(require_volume_name("result.nvdb"));
 }
 
 }  // namespace

@@ -16,6 +16,7 @@ void add_completion(CLI::App& app) {
   command->footer(
       "In bash, for this session: source <(weir completion bash). An installed weir has these scripts where bash, zsh\n"
       "and fish look for them.");
+  add_log_level(*command);
   command->callback([&app, shell] {
     const std::vector<CommandDescription> commands = describe_commands(app);
     std::cout << (*shell == "bash"  ? bash_completion(commands)

@@ -113,7 +113,7 @@ std::vector<VolumeCheck> check_certificate(const Sidecar& s) {
   std::vector<VolumeCheck> checks;
   check_error("sidecar error", s.error, s.value_range, checks);
   if (s.visible) check_error("sidecar visible.error", s.visible->error, s.value_range, checks);
-  if (s.packed) check_error("sidecar packed.error_preview", s.packed->error_preview, s.value_range, checks);
+  if (s.error_preview) check_error("sidecar error_preview", *s.error_preview, s.value_range, checks);
   checks.push_back(
       {"sidecar source.extent", shown(s.source.extent), shown(s.grid.extent), s.source.extent == s.grid.extent});
   const auto voxels = static_cast<std::uint64_t>(volume(s.grid.extent));

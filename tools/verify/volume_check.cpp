@@ -83,12 +83,13 @@ std::vector<VolumeCheck> validity_checks(const TreeCensus& census, const Sidecar
 
 // Kinds of blocks, counted again.
 std::vector<VolumeCheck> packed_checks(const PackedData& packed, const Sidecar& sidecar) {
-  if (!sidecar.packed) return {{"sidecar packed", "no such object", "that of a packed file", false}};
+  if (!sidecar.packed || !sidecar.selection.blocks)
+    return {{"sidecar packed, selection.blocks", "no such objects", "those of a packed file", false}};
   const PackedCensus census = take_packed_census(packed);
   const std::array<std::uint64_t, 5> blocks{census.none, census.blocks[0], census.blocks[1], census.blocks[2],
                                             census.blocks[3]};
   return {equal("sidecar packed.preview", packed.header().preview, sidecar.packed->preview),
-          equal("sidecar packed.blocks", blocks, sidecar.packed->blocks)};
+          equal("sidecar selection.blocks", blocks, *sidecar.selection.blocks)};
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <deque>
 #include <future>
 #include <mutex>
 #include <utility>
@@ -64,11 +65,7 @@ class CudaBackend : public Backend {
   explicit CudaBackend(const CudaOptions& options) : options_(options) {
     for (const int device : options_.devices) {
       use_device(device);
-      // What a step of a series gives back serves the next one.
-      cudaMemPool_t pool = nullptr;
-      std::uint64_t keep = ~std::uint64_t{0};
-      check_cuda(cudaDeviceGetDefaultMemPool(&pool, device), "asking for the device's memory pool");
-      check_cuda(cudaMemPoolSetAttribute(pool, cudaMemPoolAttrReleaseThreshold, &keep), "keeping device memory");
+      kept_.emplace_back(device);
     }
   }
 
@@ -389,6 +386,7 @@ class CudaBackend : public Backend {
   }
 
   CudaOptions options_;
+  std::deque<KeptMemory> kept_;  // what a step of a series gives back serves the next one
 };
 
 }  // namespace

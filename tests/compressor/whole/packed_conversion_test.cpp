@@ -175,8 +175,8 @@ TEST(PackedConversion, BlocksWithSomeMissingVoxelsAreNotStoredRaw) {
   options.non_finite = NonFinitePolicy::background;
   const Converted converted = test::convert(volume, options);
   expect_certificate(volume, converted, options, "coast");
-  ASSERT_TRUE(converted.sidecar.packed.has_value());
-  EXPECT_EQ(converted.sidecar.packed->blocks[4], 0U);
+  ASSERT_TRUE(converted.sidecar.selection.blocks.has_value());
+  EXPECT_EQ((*converted.sidecar.selection.blocks)[4], 0U);
 }
 
 TEST(PackedConversion, KeptNaNOfOneKindTakesFiveBytesABlock) {
@@ -210,8 +210,8 @@ TEST(PackedConversion, LosslessOfIntegersIsShorterThanTheirBytes) {
   EXPECT_TRUE(converted.sidecar.error.lossless);
   expect_certificate(volume, converted, options, "integers");
   EXPECT_LT(converted.file.size(), static_cast<std::uint64_t>(kPackedDomain.voxels()) * 2);
-  ASSERT_TRUE(converted.sidecar.packed.has_value());
-  EXPECT_GT(converted.sidecar.packed->blocks[3], 0U);
+  ASSERT_TRUE(converted.sidecar.selection.blocks.has_value());
+  EXPECT_GT((*converted.sidecar.selection.blocks)[3], 0U);
 }
 
 TEST(PackedConversion, LosslessOfWholeNumbersInFloatsIsLittleLongerThanOfIntegers) {
@@ -269,7 +269,7 @@ TEST(PackedConversion, SaysWhatOtherReadersSee) {
     for (const float v : values) squares += (static_cast<double>(v) - mean) * (static_cast<double>(v) - mean);
   }
   const double mse = squares / static_cast<double>(kPackedDomain.voxels());
-  EXPECT_NEAR(on.sidecar.packed->error_preview.mse, mse, mse * 1e-6);
+  EXPECT_NEAR(on.sidecar.error_preview->mse, mse, mse * 1e-6);
 }
 
 class PackedHardCases : public testing::TestWithParam<test::HardCase> {};

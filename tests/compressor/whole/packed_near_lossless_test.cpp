@@ -44,7 +44,7 @@ TEST(PackedNearLossless, IsNearlyLosslessWhereTransformsEnd) {
   const ConversionOptions options = packed(Budget::Kind::size, 0.9 * static_cast<double>(lossless.file.size()));
   const Converted converted = test::convert(volume, options);
   EXPECT_GT(converted.sidecar.error.psnr_db, 145);
-  const auto& blocks = converted.sidecar.packed->blocks;
+  const auto& blocks = *converted.sidecar.selection.blocks;
   EXPECT_GT(blocks[1 + static_cast<std::size_t>(PackedKind::lattice)],
             blocks[1 + static_cast<std::size_t>(PackedKind::transform)]);
   expect_certificate(volume, converted, options, "nearly lossless");
@@ -134,8 +134,8 @@ TEST(PackedNearLossless, BlocksWithSomeMissingVoxelsAreNearlyLosslessToo) {
   options.non_finite = NonFinitePolicy::background;
   const Converted converted = test::convert(volume, options);
   EXPECT_GE(converted.sidecar.error.psnr_db.value_or(0), 135);
-  EXPECT_GT(converted.sidecar.packed->blocks[1 + static_cast<std::size_t>(PackedKind::lattice)], 300U);
-  EXPECT_EQ(converted.sidecar.packed->blocks[1 + static_cast<std::size_t>(PackedKind::raw)], 0U);
+  EXPECT_GT((*converted.sidecar.selection.blocks)[1 + static_cast<std::size_t>(PackedKind::lattice)], 300U);
+  EXPECT_EQ((*converted.sidecar.selection.blocks)[1 + static_cast<std::size_t>(PackedKind::raw)], 0U);
   expect_certificate(volume, converted, options, "135 dB");
 }
 

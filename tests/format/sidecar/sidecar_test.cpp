@@ -55,7 +55,7 @@ Sidecar sample() {
   s.background = {0.25, "modal", 0.9899};
   s.histogram = {-1, 2, {1, 0, 9007199254740993U}};
   s.budget = {"size", 1048576, 1048576, 1048592, 1.0000152587890625};
-  s.selection = {"sse", "mean", 16, 512, 100, {1, 2, 3, 4, 5, 85}};
+  s.selection = {"sse", "mean", 16, 512, 100, {1, 2, 3, 4, 5, 85}, {}};
   s.error = {1e-6, 1e-3, 2e-6, 60.5, 0.125, false};
   s.gradient = Sidecar::GradientError{0.375, 1.0 / 7.0, 8.5, 246, 14};
   s.visible = Sidecar::Visible{
@@ -190,6 +190,33 @@ TEST(Sidecar, KeysAbsentFromOlderSidecarsAreOptional) {
   EXPECT_EQ(nlohmann::json::parse(to_json_text(read)), nlohmann::json::parse(older));
 }
 
+Sidecar packed_sample() {
+  Sidecar s = sample();
+  s.packed = Sidecar::Packed{true};
+  s.selection.blocks = {332, 5, 100, 70, 5};
+  s.error_preview = Sidecar::CertifiedError{0.5, 0.625, 0.03125, 15.5, 2.25, false};
+  return s;
+}
+
+TEST(Sidecar, OfAPackedFile_HasTheErrorOfThePreviewAndTheBlocksByKind) {
+  const std::string text = to_json_text(packed_sample());
+  const auto document = nlohmann::json::parse(text);
+  EXPECT_EQ(document["error_preview"].dump(),
+            R"({"lossless":false,"max_abs":2.25,"mse":0.5,"nmse":0.03125,"psnr_db":15.5,"rmse":0.625})");
+  EXPECT_EQ(document["selection"]["blocks"].dump(), R"({"lattice":70,"mean":5,"none":332,"raw":5,"transform":100})");
+  EXPECT_EQ(to_json_text(parse_sidecar(text, "a.nvdb.json")), text);
+  EXPECT_FALSE(nlohmann::json::parse(to_json_text(sample())).contains("error_preview"));
+}
+
+TEST(Sidecar, OfAPackedFile_ReadsBlocksAndPreviewFromWhereTheyWereBefore) {
+  auto older = nlohmann::json::parse(to_json_text(packed_sample()));
+  older["packed"]["blocks"] = older["selection"]["blocks"];
+  older["packed"]["error_preview"] = older["error_preview"];
+  older["selection"].erase("blocks");
+  older.erase("error_preview");
+  EXPECT_EQ(to_json_text(parse_sidecar(older.dump(), "a.nvdb.json")), to_json_text(packed_sample()));
+}
+
 TEST(Sidecar, IgnoresKeysItDoesNotKnow) {
   EXPECT_EQ(message(edited([](auto& d) { d["later"] = {1, 2}; })), "no error");
 }
@@ -206,7 +233,7 @@ std::string validate_against_schema(const std::vector<std::string>& documents) {
       "python3 -c 'import json,sys,jsonschema; s=json.load(open(sys.argv[1])); "
       "v=jsonschema.validators.validator_for(s); v.check_schema(s); v=v(s); "
       "print(\"\".join(\"y\" if v.is_valid(json.loads(l)) else \"n\" for l in open(sys.argv[2])))' '" +
-      std::string(WEIR_SOURCE_DIR) + "/format/sidecar/sidecar.schema.json' '" + path + "' 2>/dev/null";
+      std::string(WEIR_SOURCE_DIR) + "/format/sidecar.schema.json' '" + path + "' 2>/dev/null";
   std::string answers;
   if (FILE* pipe = popen(command.c_str(), "r"); pipe != nullptr) {
     for (int c = std::fgetc(pipe); c != EOF && c != '\n'; c = std::fgetc(pipe)) answers += static_cast<char>(c);
@@ -225,7 +252,7 @@ TEST(Sidecar, SchemaAcceptsTheSampleAndRejectsAMissingKey) {
   lossless.visible.reset();
   lossless.gradient.reset();
   lossless.source.files_digest.clear();
-  std::vector<std::string> documents{to_json_text(sample()), to_json_text(lossless),
+  std::vector<std::string> documents{to_json_text(sample()), to_json_text(lossless), to_json_text(packed_sample()),
                                      edited([](auto& d) { d["file"]["digest"] = "xyz"; }),
                                      edited([](auto& d) { d["selection"]["leaves_kept"] = -1; })};
   const auto document = nlohmann::json::parse(to_json_text(sample()));
@@ -233,7 +260,7 @@ TEST(Sidecar, SchemaAcceptsTheSampleAndRejectsAMissingKey) {
     if (key == "visible" || key == "zeros") continue;  // there with a scene only; not in older sidecars
     documents.push_back(edited([k = key](auto& d) { d.erase(k); }));
   }
-  EXPECT_EQ(validate_against_schema(documents), "yy" + std::string(documents.size() - 2, 'n'));
+  EXPECT_EQ(validate_against_schema(documents), "yyy" + std::string(documents.size() - 3, 'n'));
 }
 
 TEST(Sidecar, PathIsTheVolumesWithJson) { EXPECT_EQ(sidecar_path("out/a.nvdb"), "out/a.nvdb.json"); }

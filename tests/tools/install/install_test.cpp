@@ -179,7 +179,7 @@ std::set<std::string> installed_files(bool has_cuda, const std::string& python) 
       "share/doc/weir/CONTRIBUTING.md",
       "share/doc/weir/LICENSE",
       "share/doc/weir/format/FORMAT.md",
-      "share/doc/weir/format/sidecar/sidecar.schema.json",
+      "share/doc/weir/format/sidecar.schema.json",
   };
   expected.merge(headers());
   expected.merge(python_files(python));

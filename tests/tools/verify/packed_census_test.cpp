@@ -65,16 +65,16 @@ TEST_F(PackedCensusTest, Sidecar_OtherBlocksThanItSays_IsReported) {
     return "not checked";
   };
   Sidecar sidecar;
-  EXPECT_STREQ(ok_of(sidecar, "sidecar packed"), "wrong");
+  EXPECT_STREQ(ok_of(sidecar, "sidecar packed, selection.blocks"), "wrong");
   EXPECT_STREQ(ok_of(sidecar, "sidecar selection.leaves_kept"), "not checked");
   const auto kinds = PackedSample::blocks_by_kind();
   sidecar.packed = Sidecar::Packed{};
-  sidecar.packed->blocks = {kinds[2], 0, 0, 0, kinds[0] + kinds[1]};
-  EXPECT_STREQ(ok_of(sidecar, "sidecar packed.blocks"), "ok");
+  sidecar.selection.blocks = {kinds[2], 0, 0, 0, kinds[0] + kinds[1]};
+  EXPECT_STREQ(ok_of(sidecar, "sidecar selection.blocks"), "ok");
   EXPECT_STREQ(ok_of(sidecar, "sidecar packed.preview"), "ok");
-  ++sidecar.packed->blocks[1];
+  ++(*sidecar.selection.blocks)[1];
   sidecar.packed->preview = true;
-  EXPECT_STREQ(ok_of(sidecar, "sidecar packed.blocks"), "wrong");
+  EXPECT_STREQ(ok_of(sidecar, "sidecar selection.blocks"), "wrong");
   EXPECT_STREQ(ok_of(sidecar, "sidecar packed.preview"), "wrong");
 }
 
