@@ -14,11 +14,11 @@ void GradientTally::add(const ValuePair& values, const Box& part) {
     double of_error = 0;
     double of_source = 0;
     for (const auto& [low, high, length] : neighbours_of(values, i, spacing_)) {
+      if (length == 0) continue;  // an axis of one voxel
       if (!values.finite(low) || !values.finite(high)) {
         ++left_out_;
         return;
       }
-      if (length == 0) continue;  // an axis of one voxel
       const double e = (values.error(high) - values.error(low)) / length;
       const double s = (static_cast<double>(values.source[high]) - static_cast<double>(values.source[low])) / length;
       of_error += e * e;

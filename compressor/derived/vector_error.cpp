@@ -110,9 +110,9 @@ class VectorTally {
     for (std::size_t c = 0; c < 3; ++c) {
       for (std::size_t a = 0; a < 3; ++a) {
         const auto& [low, high, length] = axes[a];
+        if (length == 0) continue;  // an axis of one voxel
         const ValuePair& one = values[c];
         if (!one.finite(low) || !one.finite(high)) return false;
-        if (length == 0) continue;  // an axis of one voxel
         error[c][a] = (one.error(high) - one.error(low)) / length;
         source[c][a] = (static_cast<double>(one.source[high]) - static_cast<double>(one.source[low])) / length;
       }

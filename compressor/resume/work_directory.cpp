@@ -26,7 +26,7 @@ void remove_if_empty(FileSystem& files, const std::string& path) noexcept {
 WorkDirectory::WorkDirectory(FileSystem& files, const std::string& output, const std::string& chosen) : files_(files) {
   if (!chosen.empty()) {
     if (!files_.exists(chosen))
-      throw Error(ErrorKind::usage, compose(option("work-dir", chosen), ": does not exist; make it or choose another"));
+      throw Error(ErrorKind::io, compose(option("work-dir", chosen), ": does not exist; make it or choose another"));
     if (std::error_code ignored; std::filesystem::is_regular_file(chosen, ignored))
       throw Error(ErrorKind::usage, compose(option("work-dir", chosen), ": is a file; choose a directory"));
     if (files_.is_memory(chosen)) {

@@ -63,11 +63,21 @@ std::string certificate_fault(const Job& job, const nlohmann::json& sidecar, con
   const auto is = [&](const char* key, const nlohmann::json& value) {
     return source.contains(key) && source[key] == value;
   };
-  if (!is("path", job.source) || !is("bytes", job.identity.bytes) || !is("mtime", utc_text(job.identity.mtime_ns)) ||
-      (state && touched_since(*state, look_at_file(path)))) {
+  if (!is("path", job.source) || !is("bytes", job.identity.bytes) || !is("mtime", utc_text(job.identity.mtime_ns))) {
     return cat(path, " is of another file, or of this one as it was before");
   }
+  if (state && touched_since(*state, look_at_file(path))) {
+    return cat("it was replaced, or its rights, owner or links were changed, after ", path,
+               " was written; let its job be done again (weir retry --force ", job.id, ")");
+  }
   return loss_fault(sidecar, path);
+}
+
+// The volume is complete before its certificate is written.
+bool written_since_certified(const std::string& path) {
+  const FileState certificate = look_at_file(sidecar_path(path));
+  const std::int64_t tick = certificate.mtime_ns % 1'000'000'000 == 0 ? 2'000'000'000 : 0;  // of FAT at most
+  return look_at_file(path).mtime_ns > certificate.mtime_ns + tick;
 }
 
 // Voxels of the volume that was read.
@@ -105,6 +115,10 @@ std::string outputs_fault(const Job& job, const std::optional<FileState>& state)
     if (sidecar.is_null()) return cat(path, " cannot be read");
     if (std::string fault = certificate_fault(job, sidecar, path, state); !fault.empty()) return fault;
     if (!is_of_output(sidecar, output)) return cat(path, " is of another volume than the job's");
+    if (written_since_certified(output.path)) {
+      return cat(output.path, " was written to after its certificate; let its job be done again (weir retry --force ",
+                 job.id, ")");
+    }
     const std::uint64_t counted = values_of(sidecar["source"]);
     if (counted == 0) {
       return cat(path, " does not say what else the file holds; let its job be done again (weir retry --force ", job.id,

@@ -106,7 +106,7 @@ const SyntheticKind& find_synthetic_kind(std::string_view name) {
     if (kind.name == name) return kind;
     known += cat(known.empty() ? "" : ", ", kind.name);
   }
-  throw Error(ErrorKind::usage, cat("unknown kind of volume '", name, "'; known: ", known));
+  throw Error(ErrorKind::usage, cat("kind of volume is \"", name, "\", it must be one of ", known));
 }
 
 std::unique_ptr<VolumeSource> open_synthetic(std::string_view kind, const SyntheticOptions& options) {

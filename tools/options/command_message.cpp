@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include <cerrno>
+#include <filesystem>
 #include <string_view>
 #include <system_error>
 #include <vector>
@@ -10,13 +11,18 @@
 namespace weir {
 namespace {
 
-// Whether `text` says that an input of `command`, given by a relative name, is not there.
-bool misses_an_input(const CLI::App& command, const std::string& text) {
+// Whether `text` says that a file which `command` was given, by a relative name, is not there.
+bool misses_a_file(const CLI::App& command, std::string_view text) {
   if (!text.ends_with(": " + std::generic_category().message(ENOENT))) return false;
+  const auto begins_with_path = [&](const std::string& path) {
+    return text.starts_with(path) && (text.substr(path.size()).starts_with(": ") || text[path.size()] == '/');
+  };
+  std::error_code ignored;
   for (const CLI::Option* option : command.get_options()) {
-    if (!option->get_positional()) continue;
     for (const std::string& word : option->results()) {
-      if (!word.starts_with('/') && text.starts_with(word + ": ")) return true;
+      if (word.empty() || word.starts_with('/')) continue;
+      const std::filesystem::path absolute = std::filesystem::absolute(word, ignored).lexically_normal();
+      if (begins_with_path(word) || begins_with_path(absolute.string())) return true;
     }
   }
   return false;
@@ -29,7 +35,7 @@ std::string command_message(const CLI::App& app, const Error& error) {
   const Message remedy = disk_full_remedy();
   const std::vector<CLI::App*> parsed = app.get_subcommands();
   if (parsed.empty()) return text;
-  if (misses_an_input(*parsed.front(), text)) return text + "; check the name and the current directory";
+  if (misses_a_file(*parsed.front(), text)) return text + "; check the name and the current directory";
   if (!text.ends_with(remedy.text())) return text;
   text.resize(text.size() - remedy.text().size());
   text += "; free space on that file system";

@@ -90,6 +90,18 @@ TEST_F(DerivedError, VoxelsBesideOnesThatAreNotFiniteAreLeftOut) {
   EXPECT_NEAR(*all.similarity.mean, 1, 1e-12);
 }
 
+// Along an axis of one voxel no difference is taken, so that the voxel itself does not count: numpy.gradient of nine
+// values with one that is not finite has seven.
+TEST_F(DerivedError, OfALineOnlyTheNeighboursOfAValueThatIsNotFiniteAreLeftOut) {
+  const Field source = [](const Index3& i) {
+    return i.x == 4 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(i.x * i.x);
+  };
+  const Field kept = [](const Index3& i) { return static_cast<float>(i.x * i.x); };
+  const DerivedErrors all = of({{0, 0, 0}, {9, 1, 1}}, source, kept);
+  EXPECT_EQ(all.gradient.voxels, 7U);
+  EXPECT_EQ(all.gradient.left_out, 2U);
+}
+
 // Begins at 0 and at 3 along each axis: 7 of the 8 windows have a voxel of index 8 or above.
 TEST_F(DerivedError, WindowsReachTheUpperFaces) {
   for (const Index3& lo : {Index3{0, 0, 0}, Index3{-5, 3, 6}}) {

@@ -45,8 +45,9 @@ class Directories final : public FileSystem {
   test::CrashFileSystem files_;
 };
 
-std::string message_of(Directories& files, const std::string& output, const std::string& chosen) {
-  return message_of_error(ErrorKind::usage, [&] { const WorkDirectory work(files, output, chosen); });
+std::string message_of(Directories& files, const std::string& output, const std::string& chosen,
+                       ErrorKind kind = ErrorKind::usage) {
+  return message_of_error(kind, [&] { const WorkDirectory work(files, output, chosen); });
 }
 
 TEST(WorkDirectory, IsHiddenBesideTheOutputAndGoneAfterwards) {
@@ -93,7 +94,7 @@ TEST(WorkDirectory, NeverLiesInMemory) {
 TEST(WorkDirectory, AMissingOneIsAnError) {
   Directories files;
   files.existing = {"/data"};
-  EXPECT_EQ(message_of(files, "/data/out.nvdb", "/nowhere"),
+  EXPECT_EQ(message_of(files, "/data/out.nvdb", "/nowhere", ErrorKind::io),
             "--work-dir /nowhere: does not exist; make it or choose another");
 }
 

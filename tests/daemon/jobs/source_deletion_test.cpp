@@ -140,7 +140,19 @@ TEST_F(SourceDeletionTest, ReplacedByOneOfTheSameSizeTimeAndInode_Stays) {
   write_file(source_, "others");
   fs::last_write_time(source_, time);
   EXPECT_TRUE(stays());
-  EXPECT_TRUE(logged(sidecar_path(output_) + " is of another file, or of this one as it was before"));
+  EXPECT_TRUE(logged("it was replaced, or its rights, owner or links were changed, after " + sidecar_path(output_) +
+                     " was written; let its job be done again (weir retry --force 1)"));
+}
+
+TEST_F(SourceDeletionTest, OutputThatWasWrittenToSinceItWasCertified_KeepsItsSource) {
+  config_.watches[0].delete_after_s = 0.2;
+  delete_done();
+  const auto bytes = fs::file_size(output_);
+  fs::resize_file(output_, 0);
+  fs::resize_file(output_, bytes);
+  EXPECT_TRUE(stays());
+  EXPECT_TRUE(logged(output_ + " was written to after its certificate; let its job be done again (weir retry --force "
+                               "1)"));
 }
 
 TEST_F(SourceDeletionTest, SourceThatTheWatchNoLongerTakes_Stays) {

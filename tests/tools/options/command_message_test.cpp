@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cerrno>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -29,7 +30,7 @@ TEST(CommandMessage, FullDisk_OffersOptionsOfTheCommandAlone) {
             "a: cannot write: Disk quota exceeded; free space on that file system or choose another with -o");
 }
 
-TEST(CommandMessage, InputThatIsNotThere_IsSaidWithARemedyWhereItsNameIsRelative) {
+TEST(CommandMessage, FileThatIsNotThere_IsSaidWithARemedyWhereItsNameIsRelative) {
   const auto missing = [](const std::string& option, const std::string& named, const std::string& path) {
     CLI::App app;
     std::string text;
@@ -43,7 +44,12 @@ TEST(CommandMessage, InputThatIsNotThere_IsSaidWithARemedyWhereItsNameIsRelative
   EXPECT_EQ(missing("input", "a.nvdb", "a.nvdb"), "a.nvdb" + absent + "; check the name and the current directory");
   EXPECT_EQ(missing("input", "/d/a.nvdb", "/d/a.nvdb"), "/d/a.nvdb" + absent);
   EXPECT_EQ(missing("input", "a.nvdb", "b.nvdb"), "b.nvdb" + absent);
-  EXPECT_EQ(missing("--scene", "a.toml", "a.toml"), "a.toml" + absent);
+  const std::string remedy = "; check the name and the current directory";
+  EXPECT_EQ(missing("--scene", "a.toml", "a.toml"), "a.toml" + absent + remedy);
+  EXPECT_EQ(missing("--work-dir", "no", "no/view-1"), "no/view-1" + absent + remedy);
+  EXPECT_EQ(missing("--work-dir", "no", "none"), "none" + absent);
+  const std::string resolved = (std::filesystem::current_path() / "a.toml").string();
+  EXPECT_EQ(missing("config", "./a.toml", resolved), resolved + absent + remedy);
 }
 
 TEST(CommandMessage, AnyOtherError_IsSaidAsItIs) { EXPECT_EQ(message({}, EIO), io_error("a", "write", EIO).what()); }
