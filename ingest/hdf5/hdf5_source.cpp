@@ -63,6 +63,7 @@ struct Opening {
   VolumeSlice slice;
   SourceInfo info;
   const SourceOptions& options;
+  bool all_stored = false;  ///< the index of its chunks has as many as there must be
 
   /// The file that was opened and those that links and mappings led to; empty names are the dataset's own.
   void note_files(const std::vector<std::string>& further) {
@@ -154,7 +155,8 @@ std::unique_ptr<VolumeSource> open_chunked(Opening opening) {
                      opening.facts.type->big_endian,
                      opening.info.mapping,
                      opening.facts.storage->fill,
-                     opening.slice.components};
+                     opening.slice.components,
+                     opening.all_stored};
   return std::make_unique<ChunkedSource>(std::move(opening.object.handle), std::move(slice), std::move(opening.info),
                                          opening.options.memory);
 }
@@ -201,7 +203,8 @@ void note_unwritten(Opening& opening) {
   const UnwrittenChunks unwritten = unwritten_chunks(
       opening.object.handle.get(), storage,
       behind ? std::span<const std::int64_t>(opening.slice.positions) : std::span<const std::int64_t>(), where);
-  if (unwritten.count == 0) return;
+  opening.all_stored = unwritten.count == 0;
+  if (opening.all_stored) return;
   const std::string count = cat(unwritten.count, " of its ", unwritten.all, unwritten.all == 1 ? " chunk" : " chunks");
   const std::string first = unwritten.first.empty() ? "" : cat(" (the first at ", corner_text(unwritten.first), ")");
   note_filled(opening, {count, unwritten.count == 1, first});

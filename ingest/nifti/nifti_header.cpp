@@ -155,7 +155,8 @@ class FieldReader {
   // "If scl_slope is nonzero, then each voxel value should be scaled"; writers also leave NaN for "no scale".
   void read_scale(NiftiHeader& header) const {
     const double slope = real(Layout::kSlope, 0);
-    if (slope == 0 || !std::isfinite(slope)) return;
+    if (slope == 0 || std::isnan(slope)) return;
+    if (!std::isfinite(slope)) throw wrong("scl_slope", Layout::kSlope, slope, "it must be finite");
     const double intercept = real(Layout::kIntercept, 0);
     if (!std::isfinite(intercept)) {
       throw wrong("scl_inter", Layout::kIntercept, intercept, cat("with scl_slope ", slope, " it must be finite"));

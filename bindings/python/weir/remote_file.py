@@ -221,6 +221,7 @@ class HttpFile(RemoteFile):
             self._headers["Authorization"] = _basic_authorization(user)
         self._connect()
         self._version: Optional[str] = None  # by which the server tells that the file has changed
+        self._total: Optional[str] = None  # bytes of the file, as the server says
 
     def _connect(self) -> None:
         import urllib3
@@ -275,7 +276,7 @@ class HttpFile(RemoteFile):
 
     def _check_range(self, response: urllib3.HTTPResponse, offset: int, count: int) -> None:
         said = response.headers.get("Content-Range", "")
-        first, last = _range_in(said)
+        first, last, total = _range_in(said)
         if response.status != 206 or first != offset or last >= offset + count:
             raise IoError(
                 f"{self._shown}: its server answers bytes {offset} to {offset + count - 1} with status "
@@ -285,6 +286,10 @@ class HttpFile(RemoteFile):
         if self._version is None:
             self._version = version
         elif version is not None and version != self._version:
+            raise InputError(f"{self._shown}: changed while it was read; open it again")
+        if self._total is None:
+            self._total = total
+        elif total is not None and total != self._total:
             raise InputError(f"{self._shown}: changed while it was read; open it again")
 
     def read_beside(self, url: str) -> Optional[str]:
@@ -522,10 +527,10 @@ def _pieces(offset: int, count: int) -> list[Range]:
     return [(at, min(_PIECE, end - at)) for at in range(offset, end, _PIECE)]
 
 
-def _range_in(said: str) -> tuple[int, int]:
-    """The first and last byte of "bytes 8-15/100"; -1 where it says none."""
-    found = re.match(r"bytes (\d+)-(\d+)/", said)
-    return (int(found[1]), int(found[2])) if found else (-1, -1)
+def _range_in(said: str) -> tuple[int, int, Optional[str]]:
+    """The first and last byte of "bytes 8-15/100", -1 where it says none, and of how many, where it says that."""
+    found = re.match(r"bytes (\d+)-(\d+)/(\d+)?", said)
+    return (int(found[1]), int(found[2]), found[3]) if found else (-1, -1, None)
 
 
 def _version(response: urllib3.HTTPResponse) -> Optional[str]:

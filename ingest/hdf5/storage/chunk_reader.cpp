@@ -105,6 +105,11 @@ std::vector<hsize_t> ChunkReader::corner_of(const Index3& chunk) const {
 std::span<const std::byte> ChunkReader::decode(const Index3& chunk, ChunkScratch& scratch) {
   const std::vector<hsize_t> corner = corner_of(chunk);
   const std::optional<ChunkStore::Chunk> stored = store_.fetch(corner, scratch.buffer.bytes());
+  if (!stored && slice_.all_stored) {
+    throw Error(ErrorKind::input, cat(slice_.name, ": chunk at ", corner_text(corner),
+                                      ": is not in the file's index, which has as many as there must be; the file is "
+                                      "damaged"));
+  }
   if (!stored) {
     ++unallocated_;
     return {};

@@ -33,6 +33,7 @@ struct ChunkedSlice {
   ValueMapping mapping;
   std::vector<std::byte> fill;      ///< one stored value: what voxels of chunks that the file does not hold read as
   VoxelComponents components = {};  ///< more than one: along the last axis, all of them in each chunk
+  bool all_stored = false;          ///< the file says that it holds every chunk: one that is missing is damage
 
   std::size_t voxel_bytes() const { return scalar_bytes(type) * static_cast<std::size_t>(components.count); }
 };

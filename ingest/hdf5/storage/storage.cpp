@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "format/base/text.h"
+#include "ingest/hdf5/file/hdf5_error.h"
 #include "ingest/hdf5/file/hdf5_handle.h"
 #include "ingest/hdf5/filters/filter_names.h"
 #include "ingest/hdf5/filters/filter_pipeline.h"
@@ -75,8 +76,14 @@ Storage storage_of(hid_t dataset) {
   if (storage.obstacle.empty() && H5Sget_simple_extent_npoints(space.get()) > 0 &&
       (storage.kind == StorageKind::contiguous || storage.kind == StorageKind::chunked) &&
       H5Dget_storage_size(dataset) == 0) {
-    storage.obstacle = "no value was ever written to it; convert it when its values are there";
-    storage.is_all_fill = storage.fill_is_set && gives_fill(creation.get());
+    hsize_t chunks = 0;
+    // A size of 0 is also what an index that cannot be read comes to.
+    if (storage.kind == StorageKind::chunked && H5Dget_num_chunks(dataset, space.get(), &chunks) < 0) {
+      storage.obstacle = cat("its chunks cannot be counted, the file is damaged or being written: ", hdf5_reason());
+    } else {
+      storage.obstacle = "no value was ever written to it; convert it when its values are there";
+      storage.is_all_fill = storage.fill_is_set && gives_fill(creation.get());
+    }
   }
   return storage;
 }

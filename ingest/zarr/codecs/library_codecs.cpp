@@ -32,6 +32,9 @@ std::size_t unpack_blosc(std::span<const std::byte> packed, std::span<std::byte>
   std::size_t stored = 0;
   std::size_t block = 0;
   blosc_cbuffer_sizes(packed.data(), &all, &stored, &block);
+  if (block > kMostBloscBlock && block > all) {  // blosc makes none larger than its buffer
+    throw Error(ErrorKind::input, cat("its blosc buffer of ", size, " bytes is damaged (its blocks are larger)"));
+  }
   if (block > kMostBloscBlock) {
     throw Error(ErrorKind::input, cat("its blosc blocks have ", block, " bytes, more than the ", kMostBloscBlock,
                                       " that are decoded; write it with blocksize 0"));

@@ -375,7 +375,7 @@ static void places(const float* values) {
                    ? (error.status = WEIR_ERROR_IO)
                    : WEIR_OK);
   options.work_dir = path_of("none");
-  CHECK_STATUS(WEIR_ERROR_USAGE, weir_convert(&volume, values, NULL, &options, path_of("b.nvdb"), &error));
+  CHECK_STATUS(WEIR_ERROR_IO, weir_convert(&volume, values, NULL, &options, path_of("b.nvdb"), &error));
   options.work_dir = directory;
   CHECK_OK(weir_convert(&volume, values, NULL, &options, path_of("b.nvdb"), &error));
   CHECK(same_files(output, path_of("b.nvdb")));

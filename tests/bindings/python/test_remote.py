@@ -382,6 +382,13 @@ class Remote(FolderTest):
         message = self.refused(weir.InputError, grid.to_numpy)
         self.assertEqual(message, f"{url}: changed while it was read; open it again")
 
+    def test_a_file_of_another_length_is_noticed_where_the_server_tells_no_versions(self):
+        server, url = self.served(tags=False)
+        grid = weir.open(url)
+        server.changed("/run/a.nvdb", self.files["/run/a.nvdb"] + bytes(8))
+        message = self.refused(weir.InputError, grid.to_numpy)
+        self.assertEqual(message, f"{url}: changed while it was read; open it again")
+
     def test_damaged_and_cut_files(self):
         data = self.files["/run/a.nvdb"]
         _, url = self.served("/a.nvdb", {"/a.nvdb": data[: len(data) // 2]})

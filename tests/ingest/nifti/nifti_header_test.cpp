@@ -61,6 +61,8 @@ TEST(NiftiHeader, InvalidSpacingIsOneAndInvalidScaleIsIgnored) {
   EXPECT_EQ(parse(NiftiBytes(1).set<float>(116, 5)).intercept, 0);
   EXPECT_EQ(refusal(NiftiBytes(1).set<float>(112, 2).set<float>(116, nan)),
             "a.nii: scl_inter at byte 116 is nan; with scl_slope 2 it must be finite");
+  EXPECT_EQ(refusal(NiftiBytes(1).set<float>(112, std::numeric_limits<float>::infinity())),
+            "a.nii: scl_slope at byte 112 is inf; it must be finite");
 }
 
 TEST(NiftiHeader, TheSformRulesOverTheQform) {

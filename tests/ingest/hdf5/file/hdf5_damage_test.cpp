@@ -151,5 +151,36 @@ patch("a.h5", at, b"????")
       << message;
 }
 
+// The number of chunks that the index has says that all are there, and one has a place that no chunk of the dataset
+// has.
+TEST_F(Hdf5Damage, ChunkThatTheIndexNamesElsewhere_IsAnErrorAndNoFillValue) {
+  write_by_h5py(scratch_, R"(
+import struct
+with h5py.File("a.h5", "w") as f:
+    f.create_dataset("d", data=np.arange(16**3, dtype="f4").reshape(16, 16, 16) + 1, chunks=(8, 8, 8), fletcher32=True)
+b = bytearray(open("a.h5", "rb").read())
+struct.pack_into("<Q", b, b.find(b"TREE\1") + 24 + 7 * 48 + 8 + 16, 24)
+open("a.h5", "wb").write(b)
+)");
+  const std::unique_ptr<VolumeSource> source = open_source(scratch_.path("a.h5"), {});
+  std::string message = message_of_error(ErrorKind::input, [&] { all_values(*source); });
+  EXPECT_EQ(message, scratch_.path("a.h5") +
+                         ": /d: chunk at 8, 8, 8: is not in the file's index, which has as many as there must be; the "
+                         "file is damaged");
+}
+
+TEST_F(Hdf5Damage, IndexOfChunksThatCannotBeRead_IsNotCalledUnwritten) {
+  write_by_h5py(scratch_, R"(
+with h5py.File("a.h5", "w") as f: f.create_dataset("d", data=np.ones((16, 16, 16), "f4"), chunks=(8, 8, 8), compression="gzip")
+b = bytearray(open("a.h5", "rb").read())
+b[b.find(b"TREE\1") + 2] = 0
+open("a.h5", "wb").write(b)
+)");
+  const std::string message = message_of_error(ErrorKind::input, [&] { open_source(scratch_.path("a.h5"), {}); });
+  EXPECT_TRUE(message.starts_with(scratch_.path("a.h5") +
+                                  ": /d: its chunks cannot be counted, the file is damaged or being written: "))
+      << message;
+}
+
 }  // namespace
 }  // namespace weir::hdf5_damage_test

@@ -123,6 +123,9 @@ TEST(CodecChain, BloscBlocksLargerThanTheirMemory_AreRefused) {
   header[12] = std::byte{24};
   EXPECT_EQ(refusal_of(blosc, shape, header),
             "its blosc blocks have 8388608 bytes, more than the 4194304 that are decoded; write it with blocksize 0");
+  header[11] = std::byte{0x80};
+  EXPECT_EQ(refusal_of(blosc, shape, header), "its blosc buffer of 8388608 bytes is damaged (its blocks are larger)");
+  header[11] = std::byte{0};
   header[7] = std::byte{0x7F};
   EXPECT_EQ(refusal_of(blosc, shape, header), "its blosc buffer holds 2139095040 bytes, more than 8388608");
   EXPECT_EQ(refusal_of(blosc, shape, std::span(header).first(8)), "its 8 bytes are no whole blosc buffer");
