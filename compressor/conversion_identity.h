@@ -5,7 +5,7 @@
 #include <string>
 
 #include "compressor/conversion_options.h"
-#include "compressor/survey/checkpoint.h"
+#include "compressor/resume/checkpoint.h"
 #include "ingest/source/volume_source.h"
 
 namespace weir {

@@ -23,7 +23,7 @@
 #include <string>
 #include <vector>
 
-#include "compressor/survey/checkpoint.h"
+#include "compressor/resume/checkpoint.h"
 #include "format/base/message.h"
 #include "format/base/trace.h"
 #include "format/io/file_system.h"

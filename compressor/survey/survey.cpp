@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "compressor/survey/checkpoint.h"
 #include "compressor/survey/resident_survey.h"
 #include "compressor/survey/row_pieces.h"
+#include "compressor/survey/tally_json.h"
 #include "compressor/team/region_share.h"
 #include "format/io/digest.h"
 

@@ -43,10 +43,6 @@ struct Checkpoint {
 /// A line with version and digest, then JSON.
 std::string to_text(const Checkpoint& checkpoint);
 
-/// A tally alone, and back: nothing is lost.
-std::string tally_text(const SurveyTally& tally);
-SurveyTally parse_tally(std::string_view text);
-
 /// nullopt where `text` is not a whole checkpoint of this version.
 std::optional<Checkpoint> parse_checkpoint(std::string_view text);
 

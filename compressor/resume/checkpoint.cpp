@@ -1,11 +1,10 @@
-#include "compressor/survey/checkpoint.h"
+#include "compressor/resume/checkpoint.h"
 
-#include <bit>
 #include <nlohmann/json.hpp>
 #include <span>
-#include <stdexcept>
-#include <vector>
 
+#include "compressor/survey/json_bits.h"
+#include "compressor/survey/tally_json.h"
 #include "format/base/json_text.h"
 #include "format/base/text.h"
 
@@ -16,12 +15,6 @@ using Json = nlohmann::json;
 
 /// Raised whenever what a checkpoint or one of its files means changes.
 constexpr std::string_view kFormat = "weir checkpoint 8 ";
-
-// JSON has no infinity, and not every reader tells -0.0 from 0.0.
-Json bits(float value) { return std::bit_cast<std::uint32_t>(value); }
-Json bits(double value) { return std::bit_cast<std::uint64_t>(value); }
-float float_of(const Json& json) { return std::bit_cast<float>(json.get<std::uint32_t>()); }
-double double_of(const Json& json) { return std::bit_cast<double>(json.get<std::uint64_t>()); }
 
 Json to_json(const BoxSet& set) {
   Json boxes = Json::array();
@@ -36,53 +29,6 @@ BoxSet boxes_of(const Json& json) {
     set.add({{at(0), at(1), at(2)}, {at(3), at(4), at(5)}});
   }
   return set;
-}
-
-Json to_json(const SurveyTally& t) {
-  return {
-      {"min", bits(t.min)},
-      {"max", bits(t.max)},
-      {"finite", t.finite},
-      {"missing", t.missing},
-      {"non_finite", t.non_finite},
-      {"first_non_finite", t.first_non_finite},
-      {"first_non_finite_value", bits(t.first_non_finite_value)},
-      {"first_missing", t.first_missing},
-      {"histogram",
-       {{"exponent", t.histogram.exponent()}, {"base", bits(t.histogram.base())}, {"counts", t.histogram.counts()}}},
-      {"value_counts", t.value_counts},
-      {"loss",
-       {{"inexact", t.loss.inexact},
-        {"overflow", t.loss.overflow},
-        {"max_abs_error", bits(t.loss.max_abs_error)},
-        {"unmarked", t.loss.unmarked}}},
-      {"sums", {{"rows", t.sums.rows}, {"faces", t.sums.faces}, {"ladders", t.sums.ladders}}}};
-}
-
-SurveyTally tally_of(const Json& json) {
-  SurveyTally t;
-  t.min = float_of(json.at("min"));
-  t.max = float_of(json.at("max"));
-  json.at("finite").get_to(t.finite);
-  json.at("missing").get_to(t.missing);
-  json.at("non_finite").get_to(t.non_finite);
-  json.at("first_non_finite").get_to(t.first_non_finite);
-  t.first_non_finite_value = float_of(json.at("first_non_finite_value"));
-  json.at("first_missing").get_to(t.first_missing);
-  const Json& histogram = json.at("histogram");
-  const auto counts = histogram.at("counts").get<std::vector<std::uint64_t>>();
-  if (counts.size() > RangeHistogram::kMaxBins) throw std::out_of_range("histogram");
-  t.histogram = RangeHistogram::restored(histogram.at("exponent").get<int>(), double_of(histogram.at("base")), counts);
-  json.at("value_counts").get_to(t.value_counts);
-  const Json& loss = json.at("loss");
-  loss.at("inexact").get_to(t.loss.inexact);
-  loss.at("overflow").get_to(t.loss.overflow);
-  t.loss.max_abs_error = double_of(loss.at("max_abs_error"));
-  loss.at("unmarked").get_to(t.loss.unmarked);
-  const Json& sums = json.at("sums");
-  t.sums = {sums.at("rows").get<std::uint64_t>(), sums.at("faces").get<std::uint64_t>(),
-            sums.at("ladders").get<std::array<std::uint64_t, 3>>()};
-  return t;
 }
 
 Checkpoint checkpoint_of(const Json& json) {
@@ -131,7 +77,7 @@ std::string to_text(const Checkpoint& c) {
             {"spill_directory", c.spill_directory},
             {"files", c.files},
             {"surveyed", to_json(c.survey.done)},
-            {"tally", to_json(c.survey.tally)},
+            {"tally", tally_json(c.survey.tally)},
             {"ladders",
              {{"decided", c.ladders.decided},
               {"near", static_cast<int>(c.ladders.near)},
@@ -175,9 +121,5 @@ std::optional<Checkpoint> parse_checkpoint(std::string_view text) {
     return std::nullopt;  // whole, and yet not what to_text writes
   }
 }
-
-std::string tally_text(const SurveyTally& tally) { return to_json(tally).dump(); }
-
-SurveyTally parse_tally(std::string_view text) { return tally_of(Json::parse(text)); }
 
 }  // namespace weir

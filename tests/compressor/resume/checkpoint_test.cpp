@@ -1,4 +1,4 @@
-#include "compressor/survey/checkpoint.h"
+#include "compressor/resume/checkpoint.h"
 
 #include <gtest/gtest.h>
 
