@@ -133,7 +133,7 @@ class Cleaner {
 
   /// Removes `paths`, which are of `output`, work directories only where nobody needs them.
   void clean(const fs::path& output, const std::vector<fs::path>& paths, const Worthless& worthless) {
-    const std::string lock_path = output.string() + std::string(kPartialEnding);
+    const std::string lock_path = partial_path(output.string());
     try {
       const bool was_there = files->exists(lock_path);
       // Held, so that no conversion begins on what is looked at and removed here.

@@ -1,5 +1,7 @@
 #include "tools/options/backend_choice.h"
 
+#include <spdlog/spdlog.h>
+
 #include "format/base/error.h"
 #include "format/nanovdb/macrocells.h"
 #ifdef WEIR_HAVE_CUDA
@@ -24,6 +26,9 @@ std::unique_ptr<Backend> make_backend(const BackendChoice& choice) {
                                           option("backend", "cpu"), " or auto"));
   }
 #endif
+  if (choice.device_memory || choice.devices != std::vector{0}) {
+    spdlog::warn("no CUDA device answers: the CPU draws, and --devices and --device-memory have no effect");
+  }
   return make_cpu_backend(choice.threads, choice.memory);
 }
 

@@ -160,6 +160,16 @@ TEST_F(Render, ColorBar_StandsRightOfThePictureThatIsAsWithoutIt) {
   EXPECT_EQ(both.at(41, 40), (Float3{1, 1, 1}));
 }
 
+TEST_F(Render, OptionsOfADeviceWithoutOne_AreSaidToHaveNoEffect) {
+  if (run_weir(arguments("c.png", {"--backend", "cuda"})).exit_code == 0) GTEST_SKIP() << "there is a device";
+  const CommandResult drawn = run_weir(arguments("a.png", {"--device-memory", "1GiB"}));
+  EXPECT_EQ(drawn.exit_code, 0) << drawn.err;
+  EXPECT_NE(drawn.err.find("no CUDA device answers: the CPU draws, and --devices and --device-memory have no effect"),
+            std::string::npos)
+      << drawn.err;
+  EXPECT_EQ(run_weir(arguments("b.png")).err.find("no CUDA device"), std::string::npos);
+}
+
 TEST_F(Render, Refusals) {
 #ifndef WEIR_HAVE_CUDA
   expect_refused(arguments("a.png", {"--backend", "cuda"}), 2,
