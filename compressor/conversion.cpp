@@ -98,6 +98,7 @@ void forget_damaged(Journal& journal, const SurveyStores& stores, const std::opt
 // All of it but what comes after an error.
 Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const ConversionControl& control,
                    OutputFiles& output, WorkDirectory& work, Journal* journal, Team& team, std::uint64_t held) {
+  const ForkGuard forks;
   const auto started = std::chrono::steady_clock::now();
   const SourceInfo& info = source.info();
   say_axes(info, control.notice);
@@ -109,7 +110,6 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
   }
   std::size_t threads = workers.threads;
   team.run([&] { threads = startable_workers(workers.threads, control.notice); });
-  const ForkGuard forks;
   const tbb::global_control parallelism(tbb::global_control::max_allowed_parallelism, threads);
 
   MemoryPlan memory;

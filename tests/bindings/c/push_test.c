@@ -226,12 +226,14 @@ static void forked(const float* values) {
   CHECK_OK(weir_convert(&volume, values, NULL, &options, path_of("parent.nvdb"), &error));
   CHECK(WIFEXITED(status) && WEXITSTATUS(status) == 0);
 
+#if !defined(__SANITIZE_THREAD__) /* which lets no child start threads */
   /* Between conversions a child has what it needs. */
   const pid_t child = fork();
   if (child == 0)
     _exit(weir_convert(&volume, values, NULL, &options, path_of("child.nvdb"), &error) == WEIR_OK ? 0 : 1);
   CHECK(child > 0 && waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0);
   CHECK(same_files(path_of("parent.nvdb"), path_of("child.nvdb")));
+#endif
 }
 
 int main(void) {
