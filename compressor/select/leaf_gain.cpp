@@ -119,9 +119,16 @@ double bounded_error(const LeafRow& row, std::int64_t voxels, float background, 
   }
   if (range.min == range.max) return 0;
   const unsigned bits = 1U << bits_log2_of(width);
-  const auto quantum = static_cast<double>(range_quantiser(range, bits).quantum);
-  if (quantum == 0) return std::numeric_limits<double>::infinity();
+  const Quantiser levels = range_quantiser(range, bits);
+  const auto quantum = static_cast<double>(levels.quantum);
   const auto magnitude = static_cast<double>(std::max(std::fabs(range.min), std::fabs(range.max)));
+  if (quantum == 0) {  // one level: where not all is finite anywhere in the range
+    const auto least = static_cast<double>(range.min);
+    const auto most = static_cast<double>(range.max);
+    const auto level = static_cast<double>(levels.minimum);
+    return row.finite < voxels ? most - least
+                               : std::max(most - level, level - least) + magnitude * std::ldexp(1.0, -21);
+  }
   // A code is found in single precision: near the middle between two levels either may be taken. The product and
   // the sum round, half an ulp each, and the levels' quantum did: half an ulp of it a level.
   const double half = 0.5 + std::ldexp(1.0, static_cast<int>(bits) - 22);

@@ -238,5 +238,22 @@ TEST(ErrorTargets, HoldForADecoderWithFusedMultiplyAdd) {
   }
 }
 
+// Float holds no two levels so far apart: such a leaf reads as one value, whose error is known as well.
+TEST(ErrorTarget, OfALeafThatSpansAllOfFloat_IsThatOfOneLevel) {
+  constexpr float kMost = std::numeric_limits<float>::max();
+  const auto ends = [](const Index3& i) { return (i.x + i.y + i.z) % 2 == 0 ? kMost : -kMost; };
+  for (const Encoding encoding : {Encoding::fpn, Encoding::fp4, Encoding::fp16}) {
+    MemoryVolume volume({{0, 0, 0}, {8, 8, 8}}, ends);
+    ConversionOptions options;
+    options.encoding = encoding;
+    options.budget.kind = Budget::Kind::max_error;
+    options.budget.target = 5e38;
+    const Converted converted = test::convert(volume, options);
+    EXPECT_LE(converted.sidecar.error.max_abs, 5e38) << encoding_name(encoding);
+    options.budget.target = 1e38;
+    EXPECT_THROW(test::convert(volume, options), Error) << encoding_name(encoding);
+  }
+}
+
 }  // namespace
 }  // namespace weir::error_target_test
