@@ -75,9 +75,8 @@ std::string certificate_fault(const Job& job, const nlohmann::json& sidecar, con
 
 // The volume is complete before its certificate is written.
 bool written_since_certified(const std::string& path) {
-  const FileState certificate = look_at_file(sidecar_path(path));
-  const std::int64_t tick = certificate.mtime_ns % 1'000'000'000 == 0 ? 2'000'000'000 : 0;  // of FAT at most
-  return look_at_file(path).mtime_ns > certificate.mtime_ns + tick;
+  const std::int64_t certified = look_at_file(sidecar_path(path)).mtime_ns;
+  return look_at_file(path).mtime_ns > certified + tick_of(certified);
 }
 
 // Voxels of the volume that was read.

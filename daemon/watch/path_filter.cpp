@@ -1,7 +1,6 @@
 #include "daemon/watch/path_filter.h"
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 
 #include "daemon/watch/glob.h"
@@ -18,10 +17,6 @@ namespace weir {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::string_view kVolumeEnding = ".nvdb";
-// Of what a conversion writes or is in the middle of writing.
-constexpr std::array kEndingsBesideVolumes{kSidecarEnding, kSidecarPreviousEnding};
 
 std::string_view name_of(std::string_view path) { return path.substr(path.find_last_of('/') + 1); }
 
@@ -53,10 +48,10 @@ bool is_known_format(std::string_view path, bool any_raw) {
   });
 }
 
+// What a conversion writes beside a volume, or is in the middle of writing.
 bool is_of_weir(std::string_view path) {
-  return path.ends_with(kPartialEnding) || std::ranges::any_of(kEndingsBesideVolumes, [&](std::string_view ending) {
-           return path.ends_with(ending) && path.substr(0, path.size() - ending.size()).ends_with(kVolumeEnding);
-         });
+  const auto is_beside_volume = [&](std::string_view ending) { return path.ends_with(cat(".nvdb", ending)); };
+  return path.ends_with(kPartialEnding) || is_beside_volume(kSidecarEnding) || is_beside_volume(kSidecarPreviousEnding);
 }
 
 bool is_at_or_below(std::string_view path, std::string_view directory) {

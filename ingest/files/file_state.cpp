@@ -46,9 +46,11 @@ FileState look_at_file(const std::string& path) {
   return missing;
 }
 
+std::int64_t tick_of(std::int64_t time_ns) { return time_ns % 1'000'000'000 == 0 ? 2'000'000'000 : 0; }
+
 bool touched_since(const FileState& file, const FileState& record) {
-  const std::int64_t tick = file.ctime_ns % 1'000'000'000 == 0 ? 2'000'000'000 : 0;
-  return file.ctime_ns + tick >= record.mtime_ns;  // as old: within one tick of the clock, and after it
+  // As old: within one tick of the clock, and after it.
+  return file.ctime_ns + tick_of(file.ctime_ns) >= record.mtime_ns;
 }
 
 Error changed_error(const std::string& path, const std::string& what) {

@@ -45,6 +45,9 @@ Error changed_error(const std::string& path, const std::string& what);
 /// longer the file that was opened by that name; as the path that its name leads to. nullopt: all of them do.
 std::optional<std::string> file_outside(std::span<const FileState> files, const std::string& directory);
 
+/// Nanoseconds by which a time may be off, as file systems keep it: those that count whole seconds count two at most.
+std::int64_t tick_of(std::int64_t time_ns);
+
 /// Whether the status of `file` is not older than the content of `record`, which was written after it: then the file
 /// was replaced (cp -p, rsync -t), or rewritten and its time set back. On a file system that counts whole seconds (FAT
 /// counts two) it is true rather once too often.

@@ -262,7 +262,7 @@ class HttpFile(RemoteFile):
                     f"{self._shown}: ends before byte {offset + count}; is it complete, and a NanoVDB file?"
                 )
             if response.status == 200 and self._version is not None:
-                raise InputError(f"{self._shown}: changed while it was read; open it again")
+                raise _changed(self._shown)
             if response.status == 200:
                 raise InputError(
                     f"{self._shown}: its server sends whole files only (status 200); copy the file to this machine"
@@ -286,11 +286,11 @@ class HttpFile(RemoteFile):
         if self._version is None:
             self._version = version
         elif version is not None and version != self._version:
-            raise InputError(f"{self._shown}: changed while it was read; open it again")
+            raise _changed(self._shown)
         if self._total is None:
             self._total = total
         elif total is not None and total != self._total:
-            raise InputError(f"{self._shown}: changed while it was read; open it again")
+            raise _changed(self._shown)
 
     def read_beside(self, url: str) -> Optional[str]:
         self._leave_the_forks_connections()
@@ -410,7 +410,7 @@ class FsspecFile(RemoteFile):
         found = super().read(ranges)
         version = self._run(self._found_version, [(0, 0)])[0]
         if self._version is not None and version is not None and version != self._version:
-            raise InputError(f"{self._shown}: changed while it was read; open it again")
+            raise _changed(self._shown)
         return found
 
     def _connect(self) -> None:
@@ -539,6 +539,10 @@ def _version(response: urllib3.HTTPResponse) -> Optional[str]:
     if tag is not None and not tag.startswith("W/"):
         return tag
     return response.headers.get("Last-Modified")
+
+
+def _changed(url: str) -> InputError:
+    return InputError(f"{url}: changed while it was read; open it again")
 
 
 def _check_status(url: str, response: urllib3.HTTPResponse) -> None:

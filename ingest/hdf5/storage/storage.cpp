@@ -79,7 +79,7 @@ Storage storage_of(hid_t dataset) {
     hsize_t chunks = 0;
     // A size of 0 is also what an index that cannot be read comes to.
     if (storage.kind == StorageKind::chunked && H5Dget_num_chunks(dataset, space.get(), &chunks) < 0) {
-      storage.obstacle = cat("its chunks cannot be counted, the file is damaged or being written: ", hdf5_reason());
+      storage.obstacle = cat(kUncountedChunks, ": ", hdf5_reason());
     } else {
       storage.obstacle = "no value was ever written to it; convert it when its values are there";
       storage.is_all_fill = storage.fill_is_set && gives_fill(creation.get());

@@ -11,6 +11,9 @@
 
 namespace weir {
 
+/// What messages say of a dataset whose index of chunks cannot be read; the library's reason follows.
+inline constexpr const char* kUncountedChunks = "its chunks cannot be counted, the file is damaged or being written";
+
 enum class StorageKind {
   contiguous,
   external,  ///< contiguous, in files of their own

@@ -21,7 +21,7 @@ UnwrittenChunks unwritten_chunks(hid_t dataset, const Storage& storage, std::spa
   hsize_t written = 0;
   if (H5Sget_simple_extent_dims(space.get(), extent.data(), nullptr) != static_cast<int>(rank) ||
       H5Dget_num_chunks(dataset, space.get(), &written) < 0) {
-    throw hdf5_error(where, "its chunks cannot be counted, the file is damaged or being written");
+    throw hdf5_error(where, kUncountedChunks);
   }
   std::uint64_t all = 1;
   std::uint64_t of_part = 1;
