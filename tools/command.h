@@ -3,8 +3,6 @@
 #pragma once
 
 #include <atomic>
-#include <optional>
-#include <string>
 
 namespace CLI {
 class App;

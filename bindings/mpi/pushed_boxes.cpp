@@ -18,12 +18,6 @@ namespace {
 
 constexpr std::uint64_t kPieceBytes = std::uint64_t{4} << 20U;  // gathered before they are written
 
-SourceInfo as_pushed(SourceInfo info) {
-  info.format = "pushed";
-  info.file_bytes = checked_volume_bytes(info.extent, scalar_bytes(info.type), info.path);
-  return info;
-}
-
 std::string box_text(const Box& box, const Index3& origin) {
   const Index3 lo = box.lo - origin;
   const Index3 hi = box.hi - origin;

@@ -1,7 +1,6 @@
 // A box of a volume's values and of what a file reads there, as the derived errors look at them.
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <span>

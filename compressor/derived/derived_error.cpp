@@ -2,7 +2,6 @@
 
 #include <oneapi/tbb/enumerable_thread_specific.h>
 
-#include <algorithm>
 #include <cmath>
 #include <vector>
 

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 
 #include "compressor/compare/compare.h"
 #include "compressor/derived/error_histogram.h"

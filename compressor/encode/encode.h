@@ -2,8 +2,6 @@
 // writes every leaf at its place in the file.
 #pragma once
 
-#include <cstdint>
-
 #include "compressor/encode/layer_encoder.h"
 #include "compressor/survey/encoded_state.h"
 #include "compressor/survey/pauses.h"

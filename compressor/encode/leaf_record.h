@@ -2,7 +2,6 @@
 // leaf ordinal.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>

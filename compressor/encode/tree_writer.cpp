@@ -44,7 +44,7 @@ class LowerWriter {
   LowerWriter(const TreeParts& parts, File& out)
       : parts_(parts),
         out_(out),
-        statistics(parts.tree.regions.size()),
+        statistics_(parts.tree.regions.size()),
         macrocells_(parts.tree.leaves.domain, parts.fill.background),
         images_(NodeImage(NodeImage::Level::lower, parts.fill.background)) {}
 
@@ -66,6 +66,8 @@ class LowerWriter {
   }
 
   std::uint64_t active_tiles() const { return active_tiles_; }
+  /// Of the lower nodes, by region.
+  const std::vector<NodeStatistics>& statistics() const { return statistics_; }
   /// Of all voxels of a packed file.
   const MinMax& decoded() const { return decoded_; }
 
@@ -115,7 +117,7 @@ class LowerWriter {
     const NodeStatistics total = table.total();
     image.set_statistics(total);
     out_.write_at(node, image.bytes());
-    statistics[static_cast<std::size_t>(index)] = total;
+    statistics_[static_cast<std::size_t>(index)] = total;
     active_tiles_ += table.active_tiles();
   }
 
@@ -171,7 +173,7 @@ class LowerWriter {
     const NodeStatistics total = table.total();
     image.set_statistics(total);
     out_.write_at(node, image.bytes());
-    statistics[static_cast<std::size_t>(index)] = total;
+    statistics_[static_cast<std::size_t>(index)] = total;
     active_tiles_ += table.active_tiles();
   }
 
@@ -201,11 +203,7 @@ class LowerWriter {
 
   const TreeParts& parts_;
   File& out_;
-
- public:
-  std::vector<NodeStatistics> statistics;  // of the lower nodes, by region
-
- private:
+  std::vector<NodeStatistics> statistics_;  // of the lower nodes, by region
   MacrocellBuilder macrocells_;
   tbb::enumerable_thread_specific<NodeImage> images_;
   std::atomic<std::uint64_t> active_tiles_{0};
@@ -259,7 +257,7 @@ std::uint32_t write_tree(const TreeParts& parts, GridHead head, File& out) {
     tile.origin = tree.upper_lattice.node_box(at).lo;
     if (upper.open && has_nodes) {
       tile.child = parts.layout.upper_offset(upper.node);
-      total.add(write_upper(parts, u, lowers.statistics, image, out, head.active_tiles[1]));
+      total.add(write_upper(parts, u, lowers.statistics(), image, out, head.active_tiles[1]));
     } else {
       tile.value = tile_value(parts.fill, upper.sums);
       tile.active = has_nodes && parts.fill.active(upper.sums.valued) && !tree.upper_lattice.overhangs(at);

@@ -2,9 +2,7 @@
 // the file is a NanoVDB grid.
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <string>
 
 #include "compressor/encode/layer_encoder.h"
 #include "compressor/encode/leaf_record.h"

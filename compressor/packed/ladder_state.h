@@ -2,7 +2,6 @@
 // journal.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 
 #include "compressor/packed/ladder_window.h"

@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <string>
 
 #include "compressor/select/region_rows.h"
 #include "format/base/index.h"

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 
 #include "compressor/plan/memory_plan.h"
 #include "format/base/message.h"

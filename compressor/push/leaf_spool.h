@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <vector>
 
 #include "compressor/survey/leaf_store.h"
 #include "format/base/index.h"

@@ -37,12 +37,6 @@
 namespace weir {
 namespace {
 
-SourceInfo as_pushed(SourceInfo info) {
-  info.format = "pushed";
-  info.file_bytes = checked_volume_bytes(info.extent, scalar_bytes(info.type), info.path);
-  return info;
-}
-
 // What the process holds besides is the simulation's, and no part of the ceiling.
 MemoryPlan memory_for(const ConversionOptions& options, std::size_t threads, const Box& domain) {
   return plan_memory(options.memory, 0, threads, domain, region_bytes(options), record_bytes(options, domain));
@@ -60,8 +54,7 @@ BlockPlan plan_slices(const Box& domain, std::size_t value_bytes, std::uint64_t 
   plan.leaves.x = std::min(leaves, count.x);
   plan.leaves.y = std::clamp<std::int64_t>(leaves / count.x, 1, count.y);
   plan.leaves.z = 1;
-  const auto pieces = [](std::int64_t all, std::int64_t each) { return (all + each - 1) / each; };
-  plan.count = {pieces(count.x, plan.leaves.x), pieces(count.y, plan.leaves.y), count.z};
+  plan.count = {ceil_div(count.x, plan.leaves.x), ceil_div(count.y, plan.leaves.y), count.z};
   return plan;
 }
 

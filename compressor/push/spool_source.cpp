@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <bit>
-#include <cstring>
 #include <mutex>
 #include <span>
 #include <utility>
@@ -167,6 +165,12 @@ class SpoolSource final : public VolumeSource {
 };
 
 }  // namespace
+
+SourceInfo as_pushed(SourceInfo info) {
+  info.format = "pushed";
+  info.file_bytes = checked_volume_bytes(info.extent, scalar_bytes(info.type), info.path);
+  return info;
+}
 
 std::unique_ptr<VolumeSource> open_spool(const LeafSpool& spool, SourceInfo info) {
   return std::make_unique<SpoolSource>(spool, std::move(info));

@@ -2,7 +2,6 @@
 // encoding that may be used, and the choice between them.
 #pragma once
 
-#include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 
 #include "compressor/leaf/fill.h"
 #include "compressor/resume/work_directory.h"

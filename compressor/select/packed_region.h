@@ -5,7 +5,6 @@
 #include <array>
 #include <cstdint>
 #include <memory>
-#include <span>
 
 #include "compressor/leaf/fill.h"
 #include "compressor/packed/packed_ladder.h"

@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <optional>
-#include <vector>
 
 #include "compressor/select/leaf_gain.h"
 #include "compressor/select/region_rows.h"

@@ -67,7 +67,7 @@ void for_each_region(const TreeRegions& tree, const RowStore& store, const Box& 
   const Index3 extent = regions.extent();
   const std::int64_t busy = 4 * static_cast<std::int64_t>(tbb::this_task_arena::max_concurrency());
   const std::int64_t segment = std::clamp<std::int64_t>(regions.voxels() / busy, 1, store.room().segment_regions);
-  const Index3 tasks{(extent.x + segment - 1) / segment, extent.y, extent.z};
+  const Index3 tasks{ceil_div(extent.x, segment), extent.y, extent.z};
   tbb::enumerable_thread_specific<RowBuffers> buffers;
   tbb::parallel_for(std::int64_t{0}, volume(tasks), [&](std::int64_t task) {
     const Index3 at = index_at(task, tasks);

@@ -1,7 +1,6 @@
 #include "compressor/select/tree_regions.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace weir {
 

@@ -1,8 +1,6 @@
 // The background: the value that most of the volume has.
 #pragma once
 
-#include <atomic>
-#include <optional>
 #include <string>
 
 #include "compressor/survey/row_store.h"

@@ -2,8 +2,6 @@
 // missing or not finite, whose place the background takes, and the near rungs, of use where nearly everything is kept.
 #pragma once
 
-#include <cstdint>
-
 #include "compressor/packed/ladder_builder.h"
 #include "compressor/survey/row_store.h"
 #include "ingest/plan/block_plan.h"

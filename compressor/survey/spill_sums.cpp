@@ -65,7 +65,7 @@ std::optional<std::string_view> damaged_spill(const RowStore& rows, const LeafSt
     const Index3 extent = box.extent();
     const std::int64_t x_most = std::min(extent.x, kMostLeaves);
     const std::int64_t y_most = std::clamp<std::int64_t>(kMostLeaves / x_most, 1, extent.y);
-    const Index3 parts{(extent.x + x_most - 1) / x_most, (extent.y + y_most - 1) / y_most, extent.z};
+    const Index3 parts{ceil_div(extent.x, x_most), ceil_div(extent.y, y_most), extent.z};
     tbb::parallel_for(std::int64_t{0}, volume(parts), [&](std::int64_t i) {
       const Index3 part = index_at(i, parts);
       const Index3 lo = box.lo + Index3{part.x * x_most, part.y * y_most, part.z};

@@ -4,7 +4,6 @@
 #include <cstring>
 #include <exception>
 #include <string>
-#include <utility>
 
 #include "format/base/error.h"
 

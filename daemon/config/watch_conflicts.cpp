@@ -1,6 +1,5 @@
 #include "daemon/config/watch_conflicts.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <string_view>
 #include <tuple>

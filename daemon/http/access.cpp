@@ -1,7 +1,5 @@
 #include "daemon/http/access.h"
 
-#include <algorithm>
-
 #include "daemon/config/listen_address.h"
 #include "format/base/ascii.h"
 #include "format/base/text.h"

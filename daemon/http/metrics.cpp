@@ -1,7 +1,6 @@
 #include "daemon/http/metrics.h"
 
 #include <cmath>
-#include <concepts>
 #include <initializer_list>
 #include <string_view>
 #include <utility>

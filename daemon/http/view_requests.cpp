@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string_view>
-#include <utility>
 
 #include "daemon/http/page_response.h"
 #include "daemon/http/request_target.h"

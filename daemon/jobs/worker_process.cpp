@@ -21,6 +21,7 @@
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "format/io/descriptor.h"
+#include "format/process/page_size.h"
 
 namespace weir {
 namespace {
@@ -300,7 +301,7 @@ std::uint64_t WorkerProcess::resident_bytes() const {
   std::uint64_t size = 0;
   std::uint64_t resident = 0;
   statm >> size >> resident;
-  return resident * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+  return resident * page_bytes();
 }
 
 std::uint64_t WorkerProcess::anonymous_bytes() const {

@@ -7,7 +7,6 @@
 #include <memory>
 #include <string>
 #include <string_view>
-#include <utility>
 
 #include "daemon/config/config.h"
 #include "format/base/text.h"

@@ -17,7 +17,6 @@
 // full among them); the store stays usable and unchanged, and the call may be repeated.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <initializer_list>

@@ -5,7 +5,6 @@
 #include <dirent.h>
 #include <sys/stat.h>
 
-#include <cstddef>
 #include <deque>
 #include <functional>
 #include <memory>

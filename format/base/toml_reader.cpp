@@ -1,6 +1,5 @@
 #include "format/base/toml_reader.h"
 
-#include <cmath>
 #include <vector>
 
 #include "format/base/nearest_name.h"

@@ -12,6 +12,7 @@
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "format/io/refused_open.h"
+#include "format/process/page_size.h"
 
 namespace weir {
 namespace {
@@ -33,8 +34,6 @@ struct stat status_of(const Descriptor& file, const std::string& path) {
   if (::fstat(file.get(), &status) != 0) throw io_error(path, "look at it", errno);
   return status;
 }
-
-std::uint64_t page_bytes() { return static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE)); }
 
 // MAP_SHARED, so that pages pinned for a device are those of the page cache: of a private mapping the kernel would
 // copy every page first, in case it is written to. A few file systems (FUSE past the page cache) have private ones

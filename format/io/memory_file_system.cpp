@@ -11,6 +11,7 @@
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "format/process/page_size.h"
 #include "format/process/process_memory.h"
 
 namespace weir {
@@ -49,9 +50,8 @@ class MemoryFileSystem::Pages {
     const std::scoped_lock lock(mutex_);
     if (bytes > capacity_) {
       constexpr std::uint64_t kLeast = std::uint64_t{1} << 20U;
-      const auto page = static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
       const std::uint64_t wanted = ahead ? std::max({bytes, capacity_ + capacity_ / 2, kLeast}) : bytes;
-      const std::uint64_t capacity = (wanted + page - 1) / page * page;
+      const std::uint64_t capacity = round_up_to_page(wanted);
       void* const moved = begin_ == nullptr ? ::mmap(nullptr, capacity, PROT_READ | PROT_WRITE,
                                                      MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0)
                                             : ::mremap(begin_, capacity_, capacity, MREMAP_MAYMOVE);

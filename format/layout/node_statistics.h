@@ -4,7 +4,6 @@
 // Method: Welford 1962 for single values, Chan et al. 1979 for merging.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>

@@ -1,7 +1,6 @@
 #include "format/leaf/quantised_codec.h"
 
 #include <algorithm>
-#include <cstring>
 
 #include "format/base/little_endian.h"
 #include "format/layout/nanovdb_layout.h"

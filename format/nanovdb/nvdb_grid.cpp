@@ -177,8 +177,6 @@ void NvdbGrid::decode_leaf(const std::byte* leaf, std::span<float, 512> values) 
   }
 }
 
-bool NvdbGrid::leaf_voxel_active(const std::byte* leaf, unsigned offset) { return leaf_active(leaf, offset); }
-
 void NvdbGrid::for_each_root_entry(const std::function<void(const RootEntry&)>& visit) const {
   const std::byte* grid = data().data();
   for (std::uint32_t t = 0; t < root_tiles_; ++t) {

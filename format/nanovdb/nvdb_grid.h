@@ -91,8 +91,6 @@ class NvdbGrid {
   void decode_leaf(const std::byte* leaf, std::span<float, 512> values) const;
   /// Bits a voxel of a leaf: 1, 2, 4, 8, 16 or 32. Throws as decode_leaf.
   unsigned leaf_bits(const std::byte* leaf) const;
-  /// True where voxel (x<<6 | y<<3 | z) of a leaf is active.
-  static bool leaf_voxel_active(const std::byte* leaf, unsigned offset);
   /// Calls `visit` for every entry of the root's table, in file order; of the tree also where the grid is packed.
   void for_each_root_entry(const std::function<void(const RootEntry&)>& visit) const;
   /// Calls `visit` for every leaf and every value tile in file order: root tiles, then per upper

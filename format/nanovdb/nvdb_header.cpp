@@ -1,6 +1,5 @@
 #include "format/nanovdb/nvdb_header.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string_view>

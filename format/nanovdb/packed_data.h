@@ -3,7 +3,6 @@
 // calls are const and thread-safe. See FORMAT.md, "Packed data".
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>

@@ -2,7 +2,6 @@
 
 #include <cerrno>
 #include <cstdint>
-#include <memory>
 #include <span>
 
 #include "format/base/error.h"

@@ -11,6 +11,7 @@
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "format/process/page_size.h"
 
 namespace weir {
 namespace {
@@ -96,8 +97,7 @@ void FetchedBytes::add(const ByteRange& range) {
 
 void FetchedBytes::forget_from(std::uint64_t offset) {
   if (offset >= bytes_.size()) return;
-  const auto page = static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
-  const std::uint64_t whole = std::min((offset + page - 1) / page * page, std::uint64_t{bytes_.size()});
+  const std::uint64_t whole = std::min(round_up_to_page(offset), std::uint64_t{bytes_.size()});
   std::ranges::fill(bytes_.subspan(offset, whole - offset), std::byte{0});
   if (whole < bytes_.size()) ::madvise(bytes_.data() + whole, bytes_.size() - whole, MADV_DONTNEED);
   for (auto next = there_.begin(); next != there_.end();) {

@@ -1,7 +1,6 @@
 // The heads of a packed grid in a file that lies elsewhere: two requests where weir wrote it.
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <string>
 

@@ -1,10 +1,8 @@
 #include "format/sidecar/sidecar.h"
 
-#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdio>
-#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "format/base/error.h"

@@ -2,7 +2,6 @@
 // out in linear light.
 #pragma once
 
-#include <string>
 #include <string_view>
 #include <vector>
 

@@ -1,10 +1,8 @@
 #include "gpu/image/flip_filters.h"
 
-#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
-#include <span>
 
 namespace weir {
 

@@ -10,7 +10,6 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <span>
 
 #include "format/base/error.h"
 #include "format/base/text.h"

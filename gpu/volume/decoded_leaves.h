@@ -2,7 +2,6 @@
 // leaves of its own. Takes 2144 bytes for each coded block.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

@@ -1,7 +1,6 @@
 // Levels of detail of a volume on the CPU: means of its voxels in memory.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "gpu/volume/block_lattice.h"

@@ -1,7 +1,6 @@
 // Linear values between the centres of coarse cells.
 #pragma once
 
-#include <cstdint>
 #include <span>
 
 #include "format/base/index.h"

@@ -12,6 +12,7 @@
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "format/io/refused_open.h"
+#include "format/process/page_size.h"
 
 namespace weir {
 namespace {
@@ -20,19 +21,14 @@ Error open_error(const std::string& path, const std::string& what) {
   return Error(ErrorKind::input, cat(path, ": ", what));
 }
 
-std::uint64_t page_bytes() {
-  static const auto bytes = static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
-  return bytes;
-}
-
-std::uint64_t round_down(std::uint64_t value, std::uint64_t unit) { return value / unit * unit; }
-std::uint64_t round_up(std::uint64_t value, std::uint64_t unit) { return round_down(value + unit - 1, unit); }
-
 // Since Linux 5.2 mincore tells only the owner of a file and those who may write it; to others every
 // page seems cached.
 bool may_see_residency(const std::string& path, const struct stat& status) {
   return status.st_uid == ::geteuid() || ::faccessat(AT_FDCWD, path.c_str(), W_OK, AT_EACCESS) == 0;
 }
+
+std::uint64_t round_down(std::uint64_t value, std::uint64_t unit) { return value / unit * unit; }
+std::uint64_t round_up(std::uint64_t value, std::uint64_t unit) { return round_down(value + unit - 1, unit); }
 
 }  // namespace
 
@@ -68,7 +64,7 @@ InputFile::~InputFile() {
 
 void InputFile::look(std::uint64_t first, std::span<unsigned char> resident) const {
   const std::uint64_t begin = first * page_bytes();
-  const std::uint64_t end = std::min(begin + resident.size() * page_bytes(), round_up(size_, page_bytes()));
+  const std::uint64_t end = std::min(begin + resident.size() * page_bytes(), round_up_to_page(size_));
   if (::mincore(mapping_ + begin, end - begin, resident.data()) == 0) return;
   std::fill(resident.begin(), resident.end(), std::uint8_t{1});  // unknown: treat as someone else's
 }

@@ -4,7 +4,6 @@
 #include <bit>
 #include <cmath>
 #include <optional>
-#include <type_traits>
 
 #include "format/base/error.h"
 #include "format/base/text.h"

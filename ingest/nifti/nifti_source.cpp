@@ -1,7 +1,6 @@
 #include "ingest/nifti/nifti_source.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <filesystem>
 #include <optional>

@@ -1,7 +1,6 @@
 #include "ingest/plan/block_parts.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cstring>
 #include <utility>

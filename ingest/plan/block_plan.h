@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include "format/base/index.h"
 #include "ingest/source/volume_source.h"

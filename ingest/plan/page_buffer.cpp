@@ -9,6 +9,7 @@
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "format/process/page_size.h"
 
 namespace weir {
 namespace {
@@ -23,8 +24,7 @@ PageBuffer::PageBuffer(std::size_t size) {
   if (size == 0) return;
   const std::size_t large = size / kLargePage * kLargePage;
   const std::size_t spare = large > 0 ? kLargePage : 0;
-  const std::size_t page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
-  const std::size_t kept = up_to_multiple(size, page);
+  const std::size_t kept = round_up_to_page(size);
   void* const memory = ::mmap(nullptr, kept + spare, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (memory == MAP_FAILED) {
     throw io_error("memory", compose("get ", size, " bytes for reading; lower ", option("memory")), errno);

@@ -17,7 +17,7 @@
 #include "ingest/source/extent.h"
 #include "ingest/values/axis_placement.h"
 #include "ingest/vdb/grid_placement.h"
-#include "ingest/vdb/nvdb_tree.h"
+#include "ingest/vdb/nvdb_leaf_tree.h"
 #include "ingest/vdb/packed_tree.h"
 
 namespace weir {
@@ -123,7 +123,7 @@ std::unique_ptr<VolumeSource> open_nvdb(const std::string& path, const SourceOpt
   info.files = {file->state()};
   const bool cached = file->looks_cached();
   auto tree = grid.packed() != nullptr ? make_packed_tree(std::move(file), grid, cached)
-                                       : make_nvdb_tree(std::move(file), grid, cached);
+                                       : make_nvdb_leaf_tree(std::move(file), grid, cached);
   return make_leaf_source(std::move(tree), std::move(info));
 }
 

@@ -4,7 +4,6 @@
 #include <openvdb/openvdb.h>
 #include <openvdb/tree/ValueAccessor.h>
 
-#include <algorithm>
 #include <cstring>
 #include <exception>
 #include <new>

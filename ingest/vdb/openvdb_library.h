@@ -5,7 +5,6 @@
 #include <istream>
 #include <memory>
 #include <ostream>
-#include <span>
 #include <string>
 
 #include "ingest/vdb/leaf_source.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "format/packed/packed_layout.h"
-#include "ingest/vdb/nvdb_tree.h"
+#include "ingest/vdb/nvdb_leaf_tree.h"
 
 namespace weir {
 namespace {

@@ -1,5 +1,5 @@
-// The packed grid of a NanoVDB file as a tree of blocks. Read by pread and not by a mapping, as nvdb_tree.h: a file
-// that is cut or rewritten meanwhile is an error, not a signal.
+// The packed grid of a NanoVDB file as a tree of blocks. Read by pread and not by a mapping, as nvdb_leaf_tree.h: a
+// file that is cut or rewritten meanwhile is an error, not a signal.
 #pragma once
 
 #include <memory>

@@ -1,7 +1,5 @@
 #include "ingest/vdb/vdb_header.h"
 
-#include <algorithm>
-#include <map>
 #include <string_view>
 
 #include "ingest/headers/header_text.h"

@@ -2,7 +2,6 @@
 
 #include <bit>
 #include <cstddef>
-#include <limits>
 #include <set>
 #include <tuple>
 

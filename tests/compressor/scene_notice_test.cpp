@@ -1,8 +1,8 @@
+#include <cmath>
+
 #include "compressor/scene_notice.h"
 
 #include <gtest/gtest.h>
-
-#include <cmath>
 
 namespace weir::scene_notice_test {
 namespace {

@@ -9,7 +9,6 @@
 #include <cstddef>
 #include <cstring>
 #include <optional>
-#include <string>
 #include <utility>
 #include <vector>
 

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <limits>
-#include <memory>
 
 #include "gpu/cuda/render/cuda_backend.h"
 #include "gpu/cuda/runtime/device_array.h"

@@ -6,7 +6,6 @@
 #include <fstream>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "format/base/error.h"
 #include "format/base/text.h"

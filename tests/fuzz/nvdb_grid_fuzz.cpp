@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "format/base/error.h"
+#include "format/leaf/leaf_decode.h"
 #include "format/nanovdb/nvdb_checksum.h"
 #include "format/nanovdb/nvdb_grid.h"
 #include "tests/fuzz/tiny_grid.h"
@@ -134,7 +135,7 @@ void use(const NvdbGrid& grid, Input& input) {
     ++leaves;
     for (unsigned n = 0; n < values.size(); ++n) sum += leaf_value(grid.type(), block.leaf, n);
     may_throw_input([&] { grid.decode_leaf(block.leaf, values); });
-    sum += NvdbGrid::leaf_voxel_active(block.leaf, 511) ? 1.0F : 0.0F;
+    sum += leaf_active(block.leaf, 511) ? 1.0F : 0.0F;
     require(block.leaf >= grid.data().data() && block.leaf < grid.data().data() + grid.data().size());
     may_throw_input([&] { sum += grid.value(block.origin + Index3{7, 7, 7}); });
   });

@@ -3,6 +3,7 @@
 #include <sys/stat.h>
 
 #include <cstdint>
+#include <cstring>
 #include <functional>
 #include <map>
 #include <numeric>

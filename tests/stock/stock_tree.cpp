@@ -1,7 +1,5 @@
 #include "tests/stock/stock_tree.h"
 
-#include <iostream>  // GridValidator.h of 10.0.1 uses it without saying so
-
 #include <nanovdb/util/GridStats.h>
 #include <nanovdb/util/GridValidator.h>
 #include <nanovdb/util/IO.h>

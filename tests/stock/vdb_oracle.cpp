@@ -1,4 +1,5 @@
 #include "tests/stock/vdb_oracle.h"
+#include "format/leaf/leaf_decode.h"
 
 #include <openvdb/openvdb.h>
 
@@ -88,7 +89,7 @@ std::string difference(const NvdbGrid& grid, const std::string& path, const std:
     }
     grid.decode_leaf(block.leaf, values);
     for (unsigned i = 0; i < values.size(); ++i) {
-      if (leaf->isValueOn(i) != NvdbGrid::leaf_voxel_active(block.leaf, i)) found = cat(where, " other state of ", i);
+      if (leaf->isValueOn(i) != leaf_active(block.leaf, i)) found = cat(where, " other state of ", i);
       if (!same(leaf->getValue(i), expected(values[i]))) found = cat(where, " value ", leaf->getValue(i), " of ", i);
     }
   });

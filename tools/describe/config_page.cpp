@@ -1,7 +1,5 @@
 #include "tools/describe/config_page.h"
 
-#include <algorithm>
-
 #include "compressor/options/conversion_request.h"
 #include "format/base/message.h"
 #include "format/base/text.h"

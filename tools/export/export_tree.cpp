@@ -1,7 +1,5 @@
 #include "tools/export/export_tree.h"
 
-#include <cstring>
-
 #include "format/leaf/leaf_decode.h"
 
 namespace weir {

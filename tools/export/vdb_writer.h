@@ -2,7 +2,6 @@
 // 2 KiB and more for each leaf, is never built.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <functional>
 

@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <cstddef>
 
 #include "format/base/nearest_name.h"
 #include "format/base/text.h"

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <memory>
-#include <span>
 #include <vector>
 
 #include "format/base/error.h"

@@ -2,7 +2,6 @@
 
 #include <spdlog/spdlog.h>
 
-#include <cstdint>
 #include <nlohmann/json.hpp>
 
 #include "format/base/json_text.h"

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <memory>
 #include <numeric>
-#include <vector>
 
 #include "format/base/text.h"
 #include "tools/plot/plot_axis.h"

@@ -12,8 +12,6 @@
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
-#include <utility>
 #include <vector>
 
 #include "daemon/config/load_config.h"

@@ -1,7 +1,6 @@
 #include "tools/spectrum/spectrum_plot.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <memory>

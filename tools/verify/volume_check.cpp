@@ -1,9 +1,7 @@
 #include "tools/verify/volume_check.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "format/base/text.h"

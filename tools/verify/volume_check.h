@@ -1,7 +1,6 @@
 // The checks of `weir verify`: a volume against itself and against its sidecar.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 

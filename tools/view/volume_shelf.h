@@ -4,7 +4,6 @@
 
 #include <condition_variable>
 #include <cstddef>
-#include <exception>
 #include <list>
 #include <memory>
 #include <mutex>

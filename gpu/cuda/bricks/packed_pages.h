@@ -1,7 +1,6 @@
 // The pages of a packed grid: which blocks need a brick. For host and device.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "format/nanovdb/packed_data.h"

@@ -2,7 +2,6 @@
 // will decode to: the first step of encoding. For host and device.
 #pragma once
 
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 

@@ -1,7 +1,6 @@
 // The blocks of a box, on a device: what is found of them, and their streams (format/packed/block_coder.h).
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>

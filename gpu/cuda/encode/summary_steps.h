@@ -2,7 +2,6 @@
 // values are counted in bins, and copied block by block. For host and device.
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 
 #include "format/base/host_device.h"

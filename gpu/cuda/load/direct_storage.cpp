@@ -8,7 +8,6 @@
 #include <cstring>
 #include <mutex>
 #include <type_traits>
-#include <utility>
 
 #include "format/base/text.h"
 #include "format/io/descriptor.h"

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "format/base/text.h"
+#include "format/process/page_size.h"
 #include "gpu/cuda/load/copy_event.h"
 #include "gpu/cuda/load/load_chunks.h"
 #include "gpu/cuda/load/registered_range.h"
@@ -32,8 +33,7 @@ class Pipeline {
   explicit Pipeline(const CopyTask& task)
       : task_(task),
         context_(task.device),
-        chunks_(plan_load_chunks(task.offset, task.bytes, static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE)),
-                                 task.chunk_bytes)),
+        chunks_(plan_load_chunks(task.offset, task.bytes, page_bytes(), task.chunk_bytes)),
         most_locked_(static_cast<std::size_t>(task.threads) + kChunksBeyondThreads) {}
 
   CopyOutcome run() {

@@ -5,6 +5,7 @@
 #include <mutex>
 #include <utility>
 
+#include "format/process/page_size.h"
 #include "gpu/cuda/load/parallel_read.h"
 
 namespace weir {
@@ -32,9 +33,8 @@ std::optional<ZeroCopyRange> ZeroCopyRange::make(const CopyTask& task, bool own_
   if (own_pages) {
     for_each_piece_timed(task, stages.populate_s,
                          [&](const FilePiece& piece) { task.file.populate(task.offset + piece.offset, piece.bytes); });
-    const auto page = static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
-    const std::uint64_t begin = task.offset / page * page;
-    const std::uint64_t end = (task.offset + task.bytes + page - 1) / page * page;
+    const std::uint64_t begin = round_down_to_page(task.offset);
+    const std::uint64_t end = round_up_to_page(task.offset + task.bytes);
     const StageClock clock(stages.register_s);
     auto range =
         RegisteredRange::make({task.file.bytes().data() + begin, end - begin}, RegisteredRange::Use::in_place, refusal);

@@ -2,7 +2,6 @@
 // streams alike. For host and device.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 
 #include "format/base/host_device.h"

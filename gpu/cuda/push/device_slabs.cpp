@@ -71,7 +71,7 @@ void DeviceSlabs::make_slots(std::uint64_t device_bytes) {
   const std::uint64_t most = device_bytes > 0 ? std::min(kPieceBytes, device_bytes / 2) : kPieceBytes;
   piece_planes_ = std::clamp<std::int64_t>(static_cast<std::int64_t>(most / plane_bytes_), 1, extent_.z);
   const std::uint64_t piece_bytes = static_cast<std::uint64_t>(piece_planes_) * plane_bytes_;
-  const std::uint64_t pieces = static_cast<std::uint64_t>((extent_.z + piece_planes_ - 1) / piece_planes_);
+  const std::uint64_t pieces = static_cast<std::uint64_t>(ceil_div(extent_.z, piece_planes_));
   const std::uint64_t wanted = device_bytes > 0            ? device_bytes / piece_bytes
                                : piece_bytes > kPieceBytes ? 2
                                                            : kPinnedSlots;

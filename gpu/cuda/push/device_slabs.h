@@ -6,7 +6,6 @@
 // bus in a stream of lower priority while the caller's stream goes on.
 #pragma once
 
-#include <array>
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>

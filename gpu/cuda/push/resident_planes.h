@@ -2,7 +2,6 @@
 // device's own speed.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <deque>

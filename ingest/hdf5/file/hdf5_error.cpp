@@ -6,7 +6,6 @@
 #include <array>
 #include <new>
 #include <string>
-#include <string_view>
 
 #include "format/base/text.h"
 

@@ -1,7 +1,6 @@
 #include "ingest/hdf5/meaning/field_meaning.h"
 
 #include <cstddef>
-#include <utility>
 #include <vector>
 
 #include "ingest/axes/axis_details.h"

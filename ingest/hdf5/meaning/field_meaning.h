@@ -1,7 +1,6 @@
 // What a dataset's attributes and coordinates say of a volume for its sidecar: long name, time, irregular axes.
 #pragma once
 
-#include <cstddef>
 #include <span>
 #include <string>
 

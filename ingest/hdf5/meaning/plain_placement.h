@@ -4,7 +4,6 @@
 #include <hdf5.h>
 
 #include <span>
-#include <string>
 
 #include "ingest/axes/axis_place.h"
 #include "ingest/hdf5/file/hdf5_handle.h"

@@ -7,7 +7,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "ingest/hdf5/file/hdf5_type.h"
 #include "ingest/source/stored_value.h"

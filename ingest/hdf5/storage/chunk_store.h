@@ -11,7 +11,6 @@
 #include <hdf5.h>
 
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>

@@ -8,7 +8,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "ingest/axes/axis_place.h"
 #include "ingest/axes/volume_time.h"

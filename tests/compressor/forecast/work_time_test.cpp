@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <span>
 
 namespace weir::work_time_test {
 namespace {

@@ -7,7 +7,6 @@
 #include <functional>
 #include <limits>
 #include <numeric>
-#include <string>
 #include <vector>
 
 #include "compressor/resume/work_directory.h"

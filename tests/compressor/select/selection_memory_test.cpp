@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include <cstdlib>
 #include <vector>
 
 #include "compressor/plan/memory_plan.h"

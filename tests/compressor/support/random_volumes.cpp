@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <random>
-#include <string>
 #include <utility>
 #include <vector>
 

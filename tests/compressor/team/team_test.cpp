@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
-#include <mutex>
 #include <numeric>
 #include <stdexcept>
 #include <string>

@@ -8,7 +8,6 @@
 #include <limits>
 #include <map>
 #include <optional>
-#include <string>
 
 #include "format/base/error.h"
 #include "ingest/synthetic/synthetic.h"

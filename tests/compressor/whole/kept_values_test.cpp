@@ -4,8 +4,6 @@
 
 #include <cmath>
 #include <limits>
-#include <string>
-#include <vector>
 
 #include "format/process/process_memory.h"
 #include "tests/compressor/support/budget_of.h"

@@ -1,7 +1,6 @@
 // Values that float32 does not hold: bounds count their rounding, and what no error counts is said.
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <string>
 #include <vector>

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <string>
 
 #include "daemon/jobs/source_deletion.h"
 #include "tests/daemon/support/deleting_watch.h"

@@ -4,11 +4,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <chrono>
-#include <csignal>
-#include <random>
-#include <thread>
-
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "tests/daemon/support/stored_jobs.h"

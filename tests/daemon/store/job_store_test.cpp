@@ -6,8 +6,6 @@
 
 #include <chrono>
 #include <csignal>
-#include <random>
-#include <thread>
 
 #include "format/base/error.h"
 #include "format/base/text.h"

@@ -9,7 +9,6 @@
 #include <boost/asio/read_until.hpp>
 #include <boost/asio/write.hpp>
 #include <filesystem>
-#include <thread>
 
 #include "daemon/http/view_requests.h"
 #include "format/base/text.h"

@@ -9,8 +9,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
-#include <random>
 #include <set>
 
 #include "tests/daemon/support/watched_directory.h"

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <string>
-
 #include "format/base/error.h"
 #include "format/base/text.h"
 

@@ -5,7 +5,6 @@
 #include <nanovdb/NanoVDB.h>
 
 #include <array>
-#include <vector>
 
 #include "format/leaf/leaf_codec.h"
 #include "format/leaf/leaf_decode.h"

@@ -4,8 +4,6 @@
 #include <nanovdb/NanoVDB.h>
 
 #include <cstring>
-#include <memory>
-#include <new>
 #include <vector>
 
 namespace weir::node_image_test {

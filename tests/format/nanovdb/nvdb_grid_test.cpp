@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <bit>
-#include <cmath>
 #include <cstring>
 #include <limits>
 #include <vector>
@@ -43,9 +42,9 @@ TEST_P(StockFile, ReadsTheSameValuesAndStatesAsTheStockAccessor) {
           << i.x << ' ' << i.y << ' ' << i.z << ": " << grid.value(i) << " instead of " << expected;
       const GridBlock block = grid.block_at(i);
       const Index3 in = i - block.origin;
-      const bool active = block.leaf != nullptr ? NvdbGrid::leaf_voxel_active(
-                                                      block.leaf, static_cast<unsigned>(in.x << 6 | in.y << 3 | in.z))
-                                                : block.active;
+      const bool active = block.leaf != nullptr
+                              ? leaf_active(block.leaf, static_cast<unsigned>(in.x << 6 | in.y << 3 | in.z))
+                              : block.active;
       ASSERT_EQ(active, stock.active(i)) << i.x << ' ' << i.y << ' ' << i.z;
     }
   }
@@ -97,7 +96,7 @@ TEST_P(StockFile, WalkVisitsEveryBlockOnce) {
     ++leaves;
     grid.decode_leaf(block.leaf, std::span<float, 512>(values));
     for (unsigned n = 0; n < 512; ++n) {
-      active += NvdbGrid::leaf_voxel_active(block.leaf, n) ? 1 : 0;
+      active += leaf_active(block.leaf, n) ? 1 : 0;
       const Index3 i = block.origin + Index3{n >> 6U, n >> 3U & 7U, n & 7U};
       ASSERT_EQ(values[n], stock.value(i));
     }

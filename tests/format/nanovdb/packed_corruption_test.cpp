@@ -1,7 +1,6 @@
 // Every check of packed data, by the damage that trips it and the message it gives.
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <limits>
 #include <string>
 

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <bit>
-#include <set>
 
 #include "format/nanovdb/nvdb_grid.h"
 #include "format/nanovdb/read_box.h"

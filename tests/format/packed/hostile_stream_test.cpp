@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "tests/format/packed/block_samples.h"
 #include "tests/format/packed/reference_decoder.h"
 

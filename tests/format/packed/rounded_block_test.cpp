@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "format/packed/near_rungs.h"
 #include "tests/format/packed/block_samples.h"

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <vector>
 
 #include "tests/gpu/expand/host_expansion.h"
 #include "tests/stock/stock_nvdb.h"

@@ -4,7 +4,6 @@
 #include <png.h>
 #include <zlib.h>
 
-#include <array>
 #include <fstream>
 #include <string>
 #include <vector>

@@ -5,8 +5,6 @@
 
 #include <atomic>
 #include <filesystem>
-#include <fstream>
-#include <functional>
 
 #include "ingest/series.h"
 #include "ingest/source_registry.h"

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <atomic>
 #include <random>
-#include <string>
 #include <vector>
 
 #include "tests/support/message_of_error.h"

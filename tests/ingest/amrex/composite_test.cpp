@@ -1,7 +1,6 @@
 // The composited grid of generated plotfiles against a look at every box for every cell.
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <random>
 #include <vector>
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <string>
 #include <string_view>
-#include <utility>
 
 #include "ingest/amrex/amrex_header.h"
 #include "ingest/amrex/cell_header.h"

@@ -5,8 +5,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <array>
-
 #include "format/io/descriptor.h"
 #include "ingest/plan/page_buffer.h"
 #include "tests/ingest/support/scratch.h"

@@ -1,11 +1,7 @@
 // Which volume of an HDF5 file is meant, and what is said where none is.
 #include "ingest/hdf5/hdf5_source.h"
 
-#include <atomic>
-#include <chrono>
-#include <cmath>
 #include <filesystem>
-#include <thread>
 
 #include "ingest/hdf5/file/hdf5_lock.h"
 #include "ingest/series.h"

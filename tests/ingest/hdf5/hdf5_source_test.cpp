@@ -4,7 +4,7 @@
 
 #include <atomic>
 #include <chrono>
-#include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <thread>
 

@@ -1,6 +1,5 @@
 #include "ingest/plan/block_plan.h"
 
-#include <map>
 #include <vector>
 
 #include "tests/ingest/support/scratch.h"

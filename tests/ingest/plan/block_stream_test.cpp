@@ -1,7 +1,6 @@
 #include "ingest/plan/block_stream.h"
 
 #include <algorithm>
-#include <chrono>
 #include <mutex>
 #include <set>
 #include <stdexcept>

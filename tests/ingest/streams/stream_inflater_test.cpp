@@ -1,7 +1,5 @@
 #include "ingest/streams/stream_inflater.h"
 
-#include <numeric>
-
 #include "tests/ingest/support/packed.h"
 #include "tests/ingest/support/scratch.h"
 

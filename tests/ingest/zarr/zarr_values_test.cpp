@@ -1,4 +1,5 @@
 // What the attributes of a Zarr array say of its values, by the conventions of CF.
+
 #include <cmath>
 
 #include "ingest/zarr/meaning/array_meaning.h"

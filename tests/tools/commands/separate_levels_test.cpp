@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "format/leaf/leaf_decode.h"
 #include "format/nanovdb/nvdb_file.h"
 #include "format/sidecar/sidecar.h"
 #include "tests/support/plotfile_writer.h"
@@ -82,7 +83,7 @@ TEST_F(SeparateLevels, EachFileHasTheCellsThatNoFinerLevelHas_AndNoOtherIsActive
       const GridBlock block = grid.block_at(i);
       const Index3 inside = i - block.origin;
       const auto offset = static_cast<unsigned>(inside.x << 6 | inside.y << 3 | inside.z);
-      const bool active = block.leaf != nullptr ? NvdbGrid::leaf_voxel_active(block.leaf, offset) : block.active;
+      const bool active = block.leaf != nullptr ? leaf_active(block.leaf, offset) : block.active;
       const bool pinned = i == bounds.lo || i == bounds.hi - Index3{1, 1, 1};
       ASSERT_EQ(active, mine || pinned) << i.x << ' ' << i.y << ' ' << i.z;
       ASSERT_EQ(grid.value(i), mine ? static_cast<float>(plan.value(level, 0, at)) : -1.0F);

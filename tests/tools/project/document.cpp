@@ -1,7 +1,6 @@
 #include "tests/tools/project/document.h"
 
 #include <algorithm>
-#include <optional>
 #include <regex>
 #include <sstream>
 #include <stdexcept>

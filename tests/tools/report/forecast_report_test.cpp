@@ -1,8 +1,8 @@
+#include <cmath>
+
 #include "tools/report/forecast_report.h"
 
 #include <gtest/gtest.h>
-
-#include <cmath>
 
 namespace weir::forecast_report_test {
 namespace {

@@ -6,7 +6,6 @@
 #include <CLI/CLI.hpp>
 
 #include <array>
-#include <cstdlib>
 #include <memory>
 #include <stdexcept>
 #include <string>

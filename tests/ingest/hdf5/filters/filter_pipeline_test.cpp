@@ -1,7 +1,6 @@
 #include "ingest/hdf5/filters/filter_pipeline.h"
 
 #include <functional>
-#include <string>
 #include <vector>
 
 #include "ingest/hdf5/filters/undo_filters.h"

@@ -1,6 +1,5 @@
 // Where volumes of HDF5 files lie and what their values mean: openPMD, NetCDF-4
 // and plain attributes, as the libraries of each convention write them.
-#include <cmath>
 
 #include "ingest/hdf5/hdf5_source.h"
 #include "tests/ingest/hdf5/support/h5py_file.h"

@@ -4,10 +4,9 @@
 
 #include <bit>
 #include <cstdint>
-#include <fstream>
+#include <cstring>
 #include <functional>
 #include <ostream>
-#include <random>
 #include <vector>
 
 #include "ingest/plan/block_plan.h"

@@ -1,8 +1,7 @@
-#include "ingest/vdb/nvdb_tree.h"
+#include "ingest/vdb/nvdb_leaf_tree.h"
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cstring>
 
 #include "format/base/error.h"
@@ -191,7 +190,7 @@ NvdbNodes::Node NvdbNodes::read(std::uint64_t at, std::uint64_t bytes, std::uint
   return fresh;
 }
 
-std::unique_ptr<LeafTree> make_nvdb_tree(std::unique_ptr<InputFile> file, const NvdbGrid& grid, bool cached) {
+std::unique_ptr<LeafTree> make_nvdb_leaf_tree(std::unique_ptr<InputFile> file, const NvdbGrid& grid, bool cached) {
   return std::make_unique<StoredNvdbTree>(std::move(file), grid, cached);
 }
 

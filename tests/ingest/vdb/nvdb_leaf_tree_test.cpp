@@ -1,4 +1,4 @@
-#include "ingest/vdb/nvdb_tree.h"
+#include "ingest/vdb/nvdb_leaf_tree.h"
 
 #include <filesystem>
 #include <fstream>

@@ -50,6 +50,6 @@ class NvdbNodes {
 
 /// `grid`, which is not packed (packed_tree.h), is a view of what `file` held when it was opened, and is looked at
 /// during this call only; `cached` tells that its pages are in memory already.
-std::unique_ptr<LeafTree> make_nvdb_tree(std::unique_ptr<InputFile> file, const NvdbGrid& grid, bool cached);
+std::unique_ptr<LeafTree> make_nvdb_leaf_tree(std::unique_ptr<InputFile> file, const NvdbGrid& grid, bool cached);
 
 }  // namespace weir
