@@ -46,7 +46,8 @@ py::array Grid::render(const GivenOptions& options, bool linear, const py::objec
     PictureRequest request = read_picture_request(options);
     request.sampling.cancel = &watch.cancelled();
     request.sampling.progress = [&](std::uint64_t done) { watch.advance(done); };
-    const std::unique_ptr<Backend> backend = make_backend(request.backend);
+    const std::unique_ptr<Backend> backend =
+        make_backend(request.backend, [&](const Message& line) { watch.notice(line); });
     const std::unique_ptr<LoadedVolume> volume = backend->load(file->file, 0, nullptr);
     std::optional<Image> bar;
     if (request.colorbar) {
@@ -56,6 +57,9 @@ py::array Grid::render(const GivenOptions& options, bool linear, const py::objec
     watch.start("render", request.pixel_samples());
     picture = backend->render(*volume, request.scene, request.options, request.sampling);
     if (bar) picture = with_color_bar(picture, *bar);
+    for (const std::string& note : {picture.memory_note, picture.levels_note}) {
+      if (!note.empty()) watch.notice(note);
+    }
   });
   return linear ? linear_pixels(picture.image) : display_pixels(picture);
 }

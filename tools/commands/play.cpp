@@ -150,7 +150,7 @@ void play_series(const PlayArguments& arguments) {
   request.sampling.cancel = &interrupt_flag();
   const std::vector<std::string> volumes = expand_volumes(arguments.inputs);
   if (volumes.size() > 1) request.backend.memory.volumes = 2;  // play() holds as many
-  const std::unique_ptr<Backend> backend = make_backend(request.backend);
+  const std::unique_ptr<Backend> backend = make_backend(request.backend, warn);
   const std::unique_ptr<FileSystem> files = make_posix_file_system();
   std::optional<ResultDirectory> directory;
   if (!arguments.output.empty()) directory.emplace(*files, arguments.output);

@@ -101,7 +101,7 @@ void render(const RenderArguments& arguments) {
     throw Error(ErrorKind::usage, compose(arguments.output, ": holds radiance, and ", option("colorbar"),
                                           " colours as a screen shows them; choose a name that ends in .png"));
   }
-  const std::unique_ptr<Backend> backend = make_backend(request.backend);
+  const std::unique_ptr<Backend> backend = make_backend(request.backend, warn);
   Progress progress(arguments.progress);
   const auto start = std::chrono::steady_clock::now();
   const auto [volume, title, range] = arguments.volume == "dense"

@@ -156,7 +156,7 @@ void view(const ViewArguments& arguments) {
     files.key = viewed_key({arguments.input, arguments.series}, arguments.against);
   }
   choice.memory.volumes = volumes_held(files);
-  const std::unique_ptr<Backend> backend = make_backend(choice);
+  const std::unique_ptr<Backend> backend = make_backend(choice, warn);
   if (const SeriesSummary& seen = files.heads.summary(); !seen.turned.empty()) spdlog::warn("{}", seen.turned);
   if (const std::string& difference = files.heads.summary().difference; !difference.empty()) {
     spdlog::warn("{}", difference);

@@ -11,7 +11,7 @@
 
 namespace weir {
 
-std::unique_ptr<Backend> make_backend(const BackendChoice& choice) {
+std::unique_ptr<Backend> make_backend(const BackendChoice& choice, const std::function<void(const Message&)>& notice) {
 #ifdef WEIR_HAVE_CUDA
   if (choice.name == "cuda" || (choice.name == "auto" && device_count() > 0)) {
     return make_cuda_backend({.devices = choice.devices,
@@ -27,10 +27,13 @@ std::unique_ptr<Backend> make_backend(const BackendChoice& choice) {
   }
 #endif
   if (choice.device_memory || choice.devices != std::vector{0}) {
-    spdlog::warn("no CUDA device answers: the CPU draws, and --devices and --device-memory have no effect");
+    notice(compose("no CUDA device answers: the CPU draws, and ", option("devices"), " and ", option("device-memory"),
+                   " have no effect"));
   }
   return make_cpu_backend(choice.threads, choice.memory);
 }
+
+void warn(const Message& notice) { spdlog::warn("{}", notice.text()); }
 
 std::int64_t own_macrocell([[maybe_unused]] const Backend& backend) {
 #ifdef WEIR_HAVE_CUDA

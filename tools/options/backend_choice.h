@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "format/base/message.h"
 #include "gpu/render/backend.h"
 
 namespace weir {
@@ -19,8 +21,12 @@ struct BackendChoice {
   std::optional<std::uint64_t> device_memory = std::nullopt;  ///< of each CUDA device, bytes
 };
 
-/// Throws Error(usage) for "cuda" where this build or this machine has none.
-std::unique_ptr<Backend> make_backend(const BackendChoice& choice);
+/// `notice` is called with a warning where the choice is of devices and the CPU draws. Throws Error(usage) for "cuda"
+/// where this build or this machine has none.
+std::unique_ptr<Backend> make_backend(const BackendChoice& choice, const std::function<void(const Message&)>& notice);
+
+/// Such a notice as a warning in the log.
+void warn(const Message& notice);
 
 /// Voxels along the edge of the macrocells that the back end takes where Backend::load is asked for none.
 std::int64_t own_macrocell(const Backend& backend);

@@ -307,9 +307,13 @@ class Grid:
         range: Optional[Numbers] = None,
         iso: Optional[float] = None,
         camera: Optional[Numbers] = None,
+        lod: Optional[Union[float, str]] = None,
+        lod_scattered: Optional[float] = None,
         backend: Optional[str] = None,
+        devices: Optional[Union[int, Sequence[int]]] = None,
         threads: Optional[int] = None,
         memory: Optional[Union[int, str]] = None,
+        device_memory: Optional[Union[int, str]] = None,
         linear: bool = False,
         progress: Optional[Progress] = None,
     ) -> NDArray[Any]:
@@ -320,7 +324,9 @@ class Grid:
         ("viridis" for instance); colorbar, whether the colours with their values, name and units stand at the right
         of the picture, which is wider by them; range (low, high) of colours and opacity; iso, the surface's value;
         scene, the path of a scene file, which the others overrule; filter "trilinear", "stochastic" or "nearest";
-        backend "auto", "cpu" or "cuda"; threads, 0: all; memory, bytes or "512MiB", of the CPU: a packed file that
+        lod, level of detail, "auto", "off" or that many levels coarser, and lod_scattered, further levels of light that
+        mode "path" scatters; backend "auto", "cpu" or "cuda"; devices, numbers of CUDA devices that share the samples;
+        threads, 0: all; memory, bytes or "512MiB", of the CPU, and device_memory of each device: a packed file that
         decodes to more is rendered from a cache. Returns uint8 sRGB or, where `linear`, float32 radiance before tone
         mapping. progress is called with "render" and samples.
         """
@@ -338,9 +344,13 @@ class Grid:
             range=range,
             iso=iso,
             camera=camera,
+            lod=lod,
+            lod_scattered=lod_scattered,
             backend=backend,
+            devices=devices,
             threads=threads,
             memory=memory,
+            device_memory=device_memory,
         )
         return self._core.render(options, linear, progress)
 

@@ -37,6 +37,35 @@ class Render(FolderTest):
                 numpy.testing.assert_array_equal(picture, read_png(self.folder / "a.png"))
                 self.assertGreater(picture.std(), 5)
 
+    def test_levels_of_detail_are_those_of_the_command(self):
+        grid = self.lossless(ball(64))
+        fine = grid.render(size=(60, 40), backend="cpu", spp=2)
+        for keywords, options in (
+            ({"lod": "auto"}, ["--lod", "auto"]),
+            ({"lod": 1.5}, ["--lod", "1.5"]),
+            ({"lod": 1, "lod_scattered": 2}, ["--lod", "1", "--lod-scattered", "2"]),
+        ):
+            with self.subTest(keywords):
+                picture = grid.render(size=(60, 40), backend="cpu", spp=2, **keywords)
+                run_weir("render", grid.path, "-o", self.folder / "a.png", "--size", "60x40", "--backend", "cpu", "--spp", 2, "--overwrite", *options)
+                numpy.testing.assert_array_equal(picture, read_png(self.folder / "a.png"))
+                self.assertTrue((picture != fine).any() or keywords["lod"] == "auto")
+        self.assertEqual(
+            self.refused(weir.UsageError, grid.render, lod_scattered=1),
+            "lod_scattered needs lod auto or a number of levels",
+        )
+
+    def test_options_of_devices_have_no_effect_without_one(self):
+        grid = self.lossless(ball())
+        plain = grid.render(size=(16, 9), mode="mip", backend="cpu")
+        with self.assertLogs("weir", "WARNING") as logs:
+            picture = grid.render(size=(16, 9), mode="mip", backend="cpu", devices=[0, 1], device_memory="1GiB")
+        numpy.testing.assert_array_equal(picture, plain)
+        self.assertEqual(
+            logs.output,
+            ["WARNING:weir:no CUDA device answers: the CPU draws, and devices and device_memory have no effect"],
+        )
+
     def test_linear_is_radiance(self):
         picture = self.lossless(ball()).render(size=(30, 20), mode="dvr", linear=True)
         self.assertEqual((picture.shape, picture.dtype), ((20, 30, 3), numpy.float32))
