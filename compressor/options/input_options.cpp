@@ -265,8 +265,8 @@ constexpr ConversionOption kInputOptions[] = {
       .unit = "voxels",
       .standard = "the whole volume",
       .help =
-          "only this box of voxels, x0 inclusive, x1 exclusive; an end left out is the volume's, one below 0 counts "
-          "from its end",
+          "only this box of voxels, x0 inclusive, x1 exclusive, by the file's own indices; an end left out is the "
+          "volume's, one below 0 counts from its end unless the file's indices begin below 0",
       .group = "region"},
      read_roi},
     {{.key = "ghost",

@@ -1,6 +1,7 @@
 #include "ingest/source/dataset_info.h"
 
 #include <algorithm>
+#include <string_view>
 #include <utility>
 
 #include "format/base/error.h"
@@ -22,6 +23,11 @@ std::string listed(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += cat(text.empty() ? "" : ", ", name);
   return text;
+}
+
+// HDF5 and Zarr take "/run/density" and "run/density" for the same.
+std::string_view without_slash(std::string_view name) {
+  return name.starts_with('/') ? name.substr(1) : name;
 }
 
 // What is wrong with options.index_choices, which do not fit `dataset`.
@@ -57,8 +63,9 @@ const DatasetInfo& dataset_of_choices(const std::string& path, const std::vector
   std::vector<const DatasetInfo*> volumes;
   std::vector<const DatasetInfo*> fitting;
   for (const DatasetInfo& dataset : datasets) {
-    const bool meant = name.empty() ? dataset.obstacle.empty() && !dataset.by_name_only
-                                    : dataset.name == name || dataset.name == '/' + name;
+    const bool alone = datasets.size() == 1;  // then it is meant, whatever keeps it from being read
+    const bool meant = name.empty() ? alone || (dataset.obstacle.empty() && !dataset.by_name_only)
+                                    : without_slash(dataset.name) == without_slash(name);
     if (!meant) continue;
     volumes.push_back(&dataset);
     if (choices_fit(choices, axes_to_choose_on(dataset, options))) fitting.push_back(&dataset);
@@ -70,7 +77,11 @@ const DatasetInfo& dataset_of_choices(const std::string& path, const std::vector
     throw usage_error(compose(path, ": ", option("index"), " fits the axes of several datasets; choose one with ",
                               option("dataset")));
   }
-  if (volumes.size() == 1) throw unfit(path, *volumes.front(), options);
+  if (volumes.size() == 1) {
+    const DatasetInfo& only = *volumes.front();
+    if (!only.obstacle.empty()) throw input_error(only.name.empty() ? path : cat(path, ": ", only.name), only.obstacle);
+    throw unfit(path, only, options);
+  }
   throw usage_error(compose(path, ": ", option("index"), " has ", choices.size(),
                             choices.size() == 1 ? " position" : " positions",
                             ", and no dataset has such axes; weir inspect lists what there is"));

@@ -9,8 +9,9 @@
 
 namespace weir {
 
-/// Per axis [first, end), half open. An end that is left out is the volume's own. Where a volume's indices begin at 0
-/// or above, as all do but some of OpenVDB's grids, an end below 0 counts from the volume's end.
+/// Per axis [first, end), half open, by the file's own indices. An end that is left out is the volume's own, and one
+/// below 0 counts from the volume's end, unless its indices begin below 0 on that axis, as those of OpenVDB's grids,
+/// VTK's WholeExtent and AMReX's domains may: there it is such an index.
 struct VolumeRegion {
   std::array<std::optional<std::int64_t>, 3> first;
   std::array<std::optional<std::int64_t>, 3> end;

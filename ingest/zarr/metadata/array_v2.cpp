@@ -43,7 +43,9 @@ ZarrFilter read_delta(const nlohmann::json& filter, const ZarrArray& array, cons
   const auto type = parse_scalar(dtype.empty() ? std::string_view() : std::string_view(dtype).substr(1));
   const bool narrow = type == ScalarType::float16 || type == ScalarType::bfloat16;
   if (!type || narrow || scalar_bytes(*type) != scalar_bytes(array.type) || (!astype.empty() && astype != dtype)) {
-    throw input_error(where, cat("has the filter 'delta' from ", dtype, " to ", astype.empty() ? dtype : astype,
+    const std::string types =
+        dtype.empty() ? std::string("without a dtype") : cat("from ", dtype, " to ", astype.empty() ? dtype : astype);
+    throw input_error(where, cat("has the filter 'delta' ", types,
                                  ", and it is undone of one type, an integer or float32 or float64 as wide as the "
                                  "array's; write the array without it"));
   }
@@ -104,7 +106,7 @@ ZarrArray parse_zarr_v2(const nlohmann::json& metadata, nlohmann::json attribute
   const nlohmann::json& separator = json_member(metadata, "dimension_separator");
   array.keys = {false, separator.is_null() ? '.' : read_separator(separator, "dimension_separator", where)};
   const nlohmann::json fill =
-      number_of_fill(json_member(metadata, "fill_value"), json_member(metadata, "dtype") == "|b1");
+      number_of_fill(json_member(metadata, "fill_value"), json_member(metadata, "dtype") == "|b1", where);
   array.fill_text = json_text(fill);
   if (!fill.is_null()) array.fill = fill_bytes(fill, array.type, array.codecs.big_endian, where);
   array.attributes = std::move(attributes);

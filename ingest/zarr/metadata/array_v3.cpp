@@ -82,7 +82,7 @@ ZarrArray parse_zarr_v3(const nlohmann::json& metadata, const std::string& where
   array.keys = read_keys(json_member(metadata, "chunk_key_encoding"), where);
   read_codecs(json_member(metadata, "codecs"), array, where);
   const nlohmann::json fill =
-      number_of_fill(json_member(metadata, "fill_value"), json_member(metadata, "data_type") == "bool");
+      number_of_fill(json_member(metadata, "fill_value"), json_member(metadata, "data_type") == "bool", where);
   array.fill_text = json_text(fill);
   array.fill = fill_bytes(fill, array.type, array.values().big_endian, where);
   array.attributes = json_member(metadata, "attributes");

@@ -1,7 +1,6 @@
 #include "ingest/zarr/metadata/fill_value.h"
 
 #include <algorithm>
-#include <bit>
 #include <charconv>
 #include <cstdint>
 #include <cstring>
@@ -135,8 +134,11 @@ std::optional<double> double_in_base64(const nlohmann::json& value) {
   return number;
 }
 
-nlohmann::json number_of_fill(const nlohmann::json& fill, bool of_bool) {
-  return of_bool && fill.is_boolean() ? nlohmann::json(fill.get<bool>() ? 1 : 0) : fill;
+nlohmann::json number_of_fill(const nlohmann::json& fill, bool of_bool, const std::string& where) {
+  if (!of_bool || fill.is_null() || fill == 0 || fill == 1) return fill;
+  if (fill.is_boolean()) return fill.get<bool>() ? 1 : 0;
+  throw input_error(where, cat("fill_value is ", json_text(fill),
+                               ", and of an array of bool it must be true or false; the file is damaged"));
 }
 
 }  // namespace weir

@@ -27,7 +27,8 @@ std::optional<StoredValue> number_in_fill(const nlohmann::json& fill);
 /// writes _FillValue of floats in version 3 (FillValueCoder in xarray/backends/zarr.py). nullopt where it has none.
 std::optional<double> double_in_base64(const nlohmann::json& value);
 
-/// `fill`, with 1 for true and 0 for false where the array is one of bool.
-nlohmann::json number_of_fill(const nlohmann::json& fill, bool of_bool);
+/// `fill`, with 1 for true and 0 for false where the array, whose metadata are at `where`, is one of bool. Throws
+/// Error(input) where it is no value of bool then.
+nlohmann::json number_of_fill(const nlohmann::json& fill, bool of_bool, const std::string& where);
 
 }  // namespace weir

@@ -4,6 +4,7 @@
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "ingest/source/dataset_info.h"
 #include "tests/support/message_of_error.h"
 
 namespace weir::index_choice_test {
@@ -75,6 +76,41 @@ TEST(IndexChoice, MoreVolumesThanACallIsFor_AreRefusedBeforeTheyAreListed) {
             "a.zarr: --index stands for more than 1000000 volumes: 4000000000 along time; give ranges of positions, "
             "FIRST:END");
   EXPECT_EQ(chosen_positions("a.zarr", axes, parsed("7:10,*")).size(), 6U);
+}
+
+DatasetInfo array(const std::string& name, const std::string& obstacle = "") {
+  DatasetInfo info;
+  info.name = name;
+  info.obstacle = obstacle;
+  if (obstacle.empty()) info.index_axes = kAxes;
+  return info;
+}
+
+std::string refused_index(const std::vector<DatasetInfo>& datasets, const std::string& dataset, ErrorKind kind) {
+  SourceOptions options;
+  options.dataset = dataset;
+  options.index_choices = parsed("-1,0");
+  return message_of_error(kind, [&] { index_positions("a.zarr", datasets, options); });
+}
+
+TEST(IndexChoice, ADatasetThatCannotBeRead_IsRefusedForThatReason) {
+  const DatasetInfo unread = array("run/d", "has the filter 'quantize'");
+  for (const char* name : {"", "run/d", "/run/d"}) {
+    EXPECT_EQ(refused_index({unread}, name, ErrorKind::input), "a.zarr: run/d: has the filter 'quantize'") << name;
+  }
+  EXPECT_EQ(refused_index({unread, array("e")}, "run/d", ErrorKind::input),
+            "a.zarr: run/d: has the filter 'quantize'");
+}
+
+TEST(IndexChoice, ASlashBeforeTheName_MakesNoDifference) {
+  for (const char* given : {"run/d", "/run/d"}) {
+    for (const char* listed : {"run/d", "/run/d"}) {
+      SourceOptions options;
+      options.dataset = given;
+      options.index_choices = parsed("-1,0");
+      EXPECT_EQ(index_positions("a", {array(listed), array("e")}, options).positions, (Positions{{3, 0}})) << given;
+    }
+  }
 }
 
 }  // namespace

@@ -91,6 +91,8 @@ TEST(ZarrMetadata, Version2_FiltersAndBool_AreReadAsTheyAreWritten) {
   EXPECT_EQ(array.layout_text(), "chunked 3 x 3 x 3, delta, shuffle");
   EXPECT_EQ(v2(zarray("[9,9,9]", "[3,3,3]", "|b1", "true")).fill, bytes({1}));
   EXPECT_EQ(v3(zarr_json("[9,9,9]", "[3,3,3]", R"([{"name":"bytes"}])", "bool", "false")).fill, bytes({0}));
+  EXPECT_EQ(refusal_v2(zarray("[9,9,9]", "[3,3,3]", "|b1", "2")),
+            "a: fill_value is 2, and of an array of bool it must be true or false; the file is damaged");
 }
 
 TEST(ZarrMetadata, FillValues_AreReadInEveryForm) {
