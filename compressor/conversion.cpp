@@ -182,6 +182,15 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
                           started);
 }
 
+// Of an error that is reported in its place.
+void discard_quietly(Journal& journal) noexcept {
+  try {
+    journal.discard();
+  } catch (const Error&) {
+    // The next conversion of the output removes what is left.
+  }
+}
+
 }  // namespace
 
 Sidecar convert_volume(VolumeSource& source, const ConversionOptions& options, const ConversionControl& control,
@@ -210,6 +219,10 @@ Sidecar convert_volume(VolumeSource& source, const ConversionOptions& options, c
     return sidecar;
   } catch (const Error& error) {
     const Error cause = with_its_cause(error, source.info());
+    if (output.committed()) {  // there is nothing to continue
+      if (journal) discard_quietly(*journal);
+      throw cause;
+    }
     throw journal ? ended_with(cause, *journal) : cause;
   }
 }

@@ -37,7 +37,7 @@ using Clock = std::chrono::steady_clock;
 /// An interrupted conversion that nobody continues; it may hold as much disk as its result.
 constexpr std::chrono::hours kKeptFor{7 * 24};
 
-constexpr std::string_view kThumbnail = ".png.";
+const std::string kPicturePartialEnding = cat(".png", kPartialEnding);
 
 // The output that `path` was left by, if it is of a conversion: something.nvdb.
 std::optional<fs::path> output_of(const fs::path& path) {
@@ -50,12 +50,10 @@ std::optional<fs::path> output_of(const fs::path& path) {
   };
   if (name.starts_with('.')) {
     if (auto output = without(kWorkEnding, 1)) return output;
-    const std::size_t thumbnail = name.find(cat(".nvdb", kThumbnail));
-    if (thumbnail != std::string::npos && name.ends_with(kPartialEnding)) {
-      return path.parent_path() / name.substr(1, thumbnail + std::string_view(".nvdb").size() - 1);
-    }
   }
-  for (const std::string_view ending : {kSidecarPartialEnding, kSidecarPreviousEnding, kPartialEnding}) {
+  const std::initializer_list<std::string_view> endings{kSidecarPartialEnding, kSidecarPreviousEnding,
+                                                        kPicturePartialEnding, kPartialEnding};
+  for (const std::string_view ending : endings) {
     if (auto output = without(ending, 0)) return output;
   }
   return std::nullopt;
@@ -63,18 +61,7 @@ std::optional<fs::path> output_of(const fs::path& path) {
 
 bool is_work(const fs::path& path) { return path.filename().string().ends_with(kWorkEnding); }
 
-bool is_picture(const fs::path& path) {
-  const std::string name = path.filename().string();
-  return name.starts_with('.') && name.ends_with(kPartialEnding) && name.find(kThumbnail) != std::string::npos;
-}
-
-// Whether the process lives whose ID is in the name .X.nvdb.png.ID.partial.
-bool names_living_process(const fs::path& picture) {
-  const std::string id = picture.stem().extension().string();
-  const auto process = id.empty() ? std::nullopt : parse_int(std::string_view(id).substr(1));
-  if (!process || *process <= 0) return false;
-  return ::kill(static_cast<pid_t>(*process), 0) == 0 || errno == EPERM;
-}
+bool is_picture(const fs::path& path) { return path.filename().string().ends_with(kPicturePartialEnding); }
 
 // The file's lock is its writer's.
 bool is_locked_by_writer(const std::string& path) {
@@ -203,13 +190,9 @@ class Cleaner {
     if (error) leave(path, error.message());
   }
 
-  // Who renders it has not the lock of its volume but one on the picture itself; where files cannot be locked, its name
-  // says who that is.
+  // Who renders it has not the lock of its volume but one on the picture itself.
   void remove_picture(const fs::path& path) {
-    const Descriptor file(::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
-    const bool locked = file && ::flock(file.get(), LOCK_EX | LOCK_NB) == 0;
-    if (!locked && (errno == EWOULDBLOCK || names_living_process(path))) return;
-    remove(path);
+    if (!is_locked_by_writer(path.string())) remove(path);
   }
 
   // The sidecar of the volume that was to be replaced: see the numbered steps in format/output/output_files.cpp. It

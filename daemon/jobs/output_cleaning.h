@@ -14,7 +14,7 @@ struct CleaningReport {
 };
 
 /// Removes from `directory` (and below it, where `recursive`; a missing one is no error): X.nvdb.partial and
-/// X.nvdb.json.partial, hidden thumbnails that nobody writes any more (.X.nvdb.png.PID.partial) and work directories
+/// X.nvdb.json.partial, pictures that nobody writes any more (X.nvdb.png.partial) and work directories
 /// (.X.nvdb.work), but not one that a conversion can be continued from: of a source elsewhere than in `sources` as long
 /// as it is there (a user's, who will come back to it), of one in it until that source has gone or changed or the
 /// directory was not written to for seven days. X.nvdb.json.previous becomes X.nvdb.json again where that is missing.

@@ -34,6 +34,8 @@ constexpr std::size_t kTakenUp = 100;
 constexpr milliseconds kAgain{10'000};
 constexpr milliseconds kSoon{200};  // where delete_after is shorter than that
 
+constexpr const char* kInUse = "a program has it open for writing";
+
 milliseconds delay_of(const WatchConfig& watch) {
   return milliseconds(static_cast<std::int64_t>(watch.delete_after_s * 1000));
 }
@@ -57,7 +59,7 @@ SourceDeletion::SourceDeletion(boost::asio::io_context& io, const JobStore& stor
 
 void SourceDeletion::configure(const DaemonConfig& config) {
   const std::vector<WatchConfig> before = std::exchange(watches_, {});
-  in_use_.clear();
+  waits_for_.clear();
   for (const WatchConfig& watch : config.watches) {
     if (watch.source == AfterDone::delete_after_verify) watches_.push_back(watch);
   }
@@ -157,17 +159,18 @@ void SourceDeletion::look() {
       ++at;
       continue;
     }
-    in_use_.erase(at->first);
+    waits_for_.erase(at->first);
     named_back_.erase(at->first);
     at = due_.erase(at);
   }
 }
 
-// One that cannot be looked at keeps no other waiting.
+// One that cannot be looked at keeps no other waiting. What a file system refuses it may do later.
 SourceDeletion::Outcome SourceDeletion::try_to_delete(const Job& job, const WatchConfig& watch) {
   try {
     return look_at(job, watch);
   } catch (const Error& error) {
+    if (error.kind() == ErrorKind::io) return wait_for(job, error.what());
     keep(job, error.what());
     return Outcome::over;
   }
@@ -194,7 +197,7 @@ SourceDeletion::Outcome SourceDeletion::look_at(const Job& job, const WatchConfi
   }
   flush_outputs(job, watch);
   const FileWriters writers(job.source);
-  if (writers.some()) return wait_for_writer(job);
+  if (writers.some()) return wait_for(job, kInUse);
   if (!writers.known() && !says_when_done(watch.complete)) {
     keep(job,
          "whether a program writes to it cannot be known here; use complete = \"rename\" or \"marker\", or run the "
@@ -224,9 +227,14 @@ std::optional<FileState> SourceDeletion::state_since_certified(const Job& job) c
   return back != named_back_.end() && back->second == state.ctime_ns ? std::nullopt : std::optional(state);
 }
 
-SourceDeletion::Outcome SourceDeletion::wait_for_writer(const Job& job) {
-  if (in_use_.insert(job.id).second) keep(job, "a program has it open for writing; tried again later");
+SourceDeletion::Outcome SourceDeletion::wait_for(const Job& job, const std::string& reason) {
+  if (std::exchange(waits_for_[job.id], reason) != reason) keep(job, cat(reason, "; tried again later"));
   return Outcome::later;
+}
+
+void SourceDeletion::give_name_back(const Job& job) {
+  files_->rename_new(hidden_name(job), job.source);
+  named_back_[job.id] = look_at_file(job.source).ctime_ns;
 }
 
 // Under a hidden name first, which is never a source: what took its place meanwhile gets its name back, and so does
@@ -241,13 +249,12 @@ SourceDeletion::Outcome SourceDeletion::remove(const Job& job, const WatchConfig
       files_->remove(doomed);
       removed(job, watch, writers.known());
     } else {
-      files_->rename_new(doomed, job.source);
-      named_back_[job.id] = look_at_file(job.source).ctime_ns;
-      if (one_waits) return wait_for_writer(job);
+      give_name_back(job);
+      if (one_waits) return wait_for(job, kInUse);
     }
-  } catch (const Error& error) {
-    if (files_->exists(doomed)) files_->rename_new(doomed, job.source);
-    keep(job, error.what());
+  } catch (const Error&) {
+    if (files_->exists(doomed)) give_name_back(job);
+    throw;
   }
   return Outcome::over;
 }
@@ -266,7 +273,7 @@ void SourceDeletion::removed(const Job& job, const WatchConfig& watch, bool writ
 SourceDeletion::Outcome SourceDeletion::finish_interrupted(const Job& job, const WatchConfig& watch) {
   const std::string doomed = hidden_name(job);
   const bool is_source = identify(doomed) == job.identity;
-  if (is_source && FileWriters(doomed).some()) return wait_for_writer(job);  // who opened it before it was hidden
+  if (is_source && FileWriters(doomed).some()) return wait_for(job, kInUse);  // who opened it before it was hidden
   const std::string fault = is_source ? outputs_fault(job, std::nullopt) : "";
   if (is_source && fault.empty()) {
     flush_outputs(job, watch);

@@ -71,7 +71,8 @@ class SourceDeletion {
   Outcome look_at(const Job& job, const WatchConfig& watch);
   void flush_outputs(const Job& job, const WatchConfig& watch) const;
   std::optional<FileState> state_since_certified(const Job& job) const;
-  Outcome wait_for_writer(const Job& job);
+  Outcome wait_for(const Job& job, const std::string& reason);
+  void give_name_back(const Job& job);
   Outcome remove(const Job& job, const WatchConfig& watch, const FileWriters& writers);
   void removed(const Job& job, const WatchConfig& watch, bool writers_known) const;
   Outcome finish_interrupted(const Job& job, const WatchConfig& watch);
@@ -82,9 +83,9 @@ class SourceDeletion {
   const JobStore& store_;
   const EventLog& log_;
   Held held_;
-  std::vector<WatchConfig> watches_;  ///< those that delete
-  std::map<std::int64_t, Due> due_;   ///< by job
-  std::set<std::int64_t> in_use_;     ///< of which it was said
+  std::vector<WatchConfig> watches_;               ///< those that delete
+  std::map<std::int64_t, Due> due_;                ///< by job
+  std::map<std::int64_t, std::string> waits_for_;  ///< by job: what was said of it
   std::map<std::int64_t, std::int64_t>
       named_back_;  ///< by job: FileState::ctime_ns of sources that got their name back
   bool taking_up_ = false;

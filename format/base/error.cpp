@@ -30,6 +30,8 @@ Error io_error(const std::string& path, const Message& action, int errno_value) 
     remedy = "; check the permissions or choose another place";
   } else if (errno_value == EFBIG) {
     remedy = "; raise the limit of file size (ulimit -f) or choose another file system";
+  } else if (errno_value == EIO || errno_value == ESTALE) {
+    remedy = "; check the disk or the file server";
   }
   return {ErrorKind::io, compose(path, ": cannot ", action, ": ", std::generic_category().message(errno_value), remedy),
           SystemFailure{errno_value, path}};

@@ -88,6 +88,16 @@ void place_new(FileSystem& files, const std::string& written, const std::string&
   }
 }
 
+void flush_name(FileSystem& files, const std::string& path) {
+  try {
+    files.sync_directory(directory_of(path));
+  } catch (const Error& error) {
+    throw Error(error.kind(),
+                compose(path, ": is there and whole, but may be gone after a power failure: ", error.message()),
+                error.system_failure());
+  }
+}
+
 OutputFiles::OutputFiles(FileSystem& files, const std::string& path, bool overwrite)
     : files_(files),
       owner_(::getpid()),
@@ -265,7 +275,7 @@ void OutputFiles::commit(const std::string& sidecar_text) {
   }
   committed_ = true;
   if (replaces) remove_quietly(previous);  // 6
-  files_.sync_directory(directory_);       // 7
+  flush_name(files_, path_);               // 7
 }
 
 }  // namespace weir

@@ -49,8 +49,10 @@ class OutputFiles {
   bool in_memory() const { return files_.is_memory(directory_); }
 
   /// The protocol's end, see the numbered steps in the source. After it returned, both files are
-  /// durable under their names.
+  /// durable under their names. Where committed() it has failed to make them durable alone.
   void commit(const std::string& sidecar_text);
+  /// Whether both files have their names.
+  bool committed() const { return committed_; }
 
  private:
   void refuse_existing(const std::string& path);
@@ -87,6 +89,9 @@ void require_alone(const File& partial);
 /// FileSystem::rename_new of what was written to the name `path`; Error(io) of EEXIST with a remedy where something has
 /// got that name meanwhile.
 void place_new(FileSystem& files, const std::string& written, const std::string& path);
+
+/// Makes the name of `path`, whose file is whole and flushed, durable. Throws Error(io) that says that it is there.
+void flush_name(FileSystem& files, const std::string& path);
 
 /// Directory part of a path, "." where there is none.
 std::string directory_of(const std::string& path);

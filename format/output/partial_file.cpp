@@ -45,7 +45,7 @@ void PartialFile::commit() {
     place_new(files_, partial, path_);
   }
   committed_ = true;
-  files_.sync_directory(directory_of(path_));  // 3
+  flush_name(files_, path_);  // 3
 }
 
 }  // namespace weir

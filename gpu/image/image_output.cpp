@@ -32,6 +32,19 @@ std::string extension_of(const std::string& path) {
   return extension;
 }
 
+// By the name that is asked for.
+bool is_exr(const std::string& path) {
+  const std::string extension = extension_of(path);
+  if (extension != ".exr" && extension != ".png") {
+    throw Error(ErrorKind::usage, compose(option("output", path), ": an image's name must end in .png or .exr"));
+  }
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) {
+    throw Error(ErrorKind::usage, cat(path, ": is a directory; name a file in it"));
+  }
+  return extension == ".exr";
+}
+
 }  // namespace
 
 float tone_map(float radiance, const ToneMapping& tone) {
@@ -116,51 +129,12 @@ std::vector<std::byte> encode_exr(const Image& image) {
 }
 
 ImageFile::ImageFile(FileSystem& files, const std::string& path, bool overwrite)
-    : files_(files), path_(path), overwrite_(overwrite), exr_(extension_of(path) == ".exr") {
-  if (!exr_ && extension_of(path) != ".png") {
-    throw Error(ErrorKind::usage, compose(option("output", path), ": an image's name must end in .png or .exr"));
-  }
-  const std::filesystem::path target(path);
-  std::error_code ignored;
-  if (std::filesystem::is_directory(target, ignored)) {
-    throw Error(ErrorKind::usage, cat(path, ": is a directory; name a file in it"));
-  }
-  if (!files_.is_replaceable(path)) {
-    throw Error(ErrorKind::usage, cat(path, ": is no regular file, and nothing else is replaced; choose another name"));
-  }
-  if (!overwrite && files_.exists(path)) {
-    throw usage_error(cat(path, ": exists; choose another name or pass --overwrite"));
-  }
-  if (const std::string directory = directory_of(path); !files_.exists(directory)) {
-    throw Error(ErrorKind::io,
-                cat(path, ": the directory ", directory, " does not exist; make it or choose another name"),
-                SystemFailure{ENOENT, directory});
-  }
-  constexpr std::size_t kNameBytes = 200;  // a longer one leaves no room for what comes after it
-  const std::string name = target.filename().string().substr(0, kNameBytes);
-  temporary_ = (target.parent_path() / cat('.', name, '.', ::getpid(), kPartialEnding)).string();
-  file_ = files_.create(temporary_);
-}
-
-ImageFile::~ImageFile() {
-  if (!file_) return;
-  try {
-    files_.remove(temporary_);
-  } catch (const Error&) {  // already on the way out with another error; the name says what is left
-  }
-}
+    : exr_(is_exr(path)), file_(files, path, overwrite) {}
 
 std::uint64_t ImageFile::commit(const Image& image, const ToneMapping& tone) {
   const std::vector<std::byte> bytes = exr_ ? encode_exr(image) : encode_png(image, tone);
-  file_->write_at(0, bytes);
-  file_->sync();
-  if (overwrite_) {
-    files_.rename(temporary_, path_);
-  } else {
-    files_.rename_new(temporary_, path_);
-  }
-  file_.reset();
-  files_.sync_directory(directory_of(path_));
+  file_.file().write_at(0, bytes);
+  file_.commit();
   return bytes.size();
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "format/io/file_system.h"
+#include "format/output/partial_file.h"
 #include "gpu/image/image.h"
 
 namespace weir {
@@ -31,31 +32,21 @@ std::vector<std::byte> encode_png(const Image& image, const ToneMapping& tone);
 /// Channels B, G, R in float32, radiance as it is.
 std::vector<std::byte> encode_exr(const Image& image);
 
-/// An image file to be. Opening it finds out before the rendering whether it can be written; until
-/// `commit` there is only a hidden temporary file beside it, which the destructor removes.
+/// An image file to be. Opening it finds out before the rendering whether it can be written.
 class ImageFile {
  public:
-  /// Throws Error(usage) where `path`, which the option `output` gives, does not end in .png or .exr, is a directory,
-  /// or exists and `overwrite` is false, Error(io) where its directory is missing or read-only. `files` must outlive
-  /// the object.
+  /// Throws Error(usage) where `path`, which the option `output` gives, does not end in .png or .exr, or is a
+  /// directory, and as PartialFile. `files` must outlive the object.
   ImageFile(FileSystem& files, const std::string& path, bool overwrite);
-  ~ImageFile();
-  ImageFile(const ImageFile&) = delete;
-  ImageFile& operator=(const ImageFile&) = delete;
 
   /// Whether it will hold radiance, as OpenEXR does, and not what a screen shows.
   bool linear() const { return exr_; }
-  /// Encodes by the extension, writes, renames to `path`; returns the bytes written. Throws Error(io) where a file came
-  /// to lie there meanwhile that is not to be overwritten.
+  /// Encodes by the extension, writes, renames to `path`; returns the bytes written. Throws as PartialFile::commit.
   std::uint64_t commit(const Image& image, const ToneMapping& tone);
 
  private:
-  FileSystem& files_;
-  std::string path_;
-  std::string temporary_;
-  bool overwrite_;
   bool exr_;
-  std::unique_ptr<File> file_;
+  PartialFile file_;
 };
 
 }  // namespace weir

@@ -2,10 +2,12 @@
 // error is reported, and the directory is what it was before.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <filesystem>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "compressor/conversion.h"
 #include "format/base/error.h"
@@ -26,12 +28,13 @@ class ConversionFaultTest : public ::testing::Test {
   }
 
   // One thread: the calls then come in one order.
-  void convert(FileSystem& files) const {
+  void convert(FileSystem& files, Resume resume = Resume::automatic) const {
     const auto source = open_synthetic("cloud", {{40, 33, 21}, 1});
     ConversionOptions options;
     options.output = directory_ / "out.nvdb";
     options.threads = 1;
     options.work_dir = work_dir_;
+    options.resume = resume;
     convert_volume(*source, options, {}, files);
   }
 
@@ -71,6 +74,33 @@ TEST_F(ConversionFaultTest, EveryCallFailsInTurnAndNothingIsLeft) {
         EXPECT_EQ(listing(), name == "sync_directory" ? result : std::set<std::string>{});
       }
     }
+  }
+}
+
+TEST_F(ConversionFaultTest, NamesThatCannotBeFlushed_AreThereAndLeaveNothingToContinue) {
+  for (const Resume resume : {Resume::off, Resume::on}) {
+    FaultyFileSystem none(*real_, -1, 0);
+    convert(none, resume);
+    const std::set<std::string> result = listing();
+    EXPECT_EQ(result, (std::set<std::string>{"out.nvdb", "out.nvdb.json"}));
+    for (const std::string& name : result) std::filesystem::remove(directory_ / name);
+    const std::vector<std::string> calls = none.calls();
+    const auto last = std::find(calls.rbegin(), calls.rend(), "sync_directory");
+    ASSERT_NE(last, calls.rend());
+    FaultyFileSystem files(*real_, static_cast<int>(calls.rend() - last) - 1, EIO);
+    std::string message;
+    try {
+      convert(files, resume);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::io);
+      message = error.what();
+    }
+    EXPECT_TRUE(message.starts_with((directory_ / "out.nvdb") +
+                                    ": is there and whole, but may be gone after a power failure: "))
+        << message;
+    EXPECT_TRUE(message.ends_with("check the disk or the file server")) << message;
+    EXPECT_EQ(listing(), result);
+    for (const std::string& name : result) std::filesystem::remove(directory_ / name);
   }
 }
 

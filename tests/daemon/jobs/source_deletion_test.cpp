@@ -6,6 +6,7 @@
 
 #include <sys/mman.h>
 
+#include <cerrno>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -15,6 +16,7 @@
 #include <thread>
 #include <utility>
 
+#include "format/base/error.h"
 #include "format/io/descriptor.h"
 #include "tests/daemon/support/deleting_watch.h"
 #include "tests/daemon/support/stepped_file_system.h"
@@ -73,6 +75,30 @@ TEST_F(SourceDeletionTest, OpenedWhileItIsLookedAtAndNotWritten_IsDeletedLater) 
   EXPECT_TRUE(logged("a program has it open for writing; tried again later"));
   EXPECT_FALSE(fs::exists(source_));
   EXPECT_TRUE(logged(" deleted job=1 source=" + source_));
+}
+
+// What a disk or a server refuses once it does later, and the name that the source had meanwhile makes it no other
+// file.
+TEST_F(SourceDeletionTest, RemovalThatFails_IsSaidOnceAndTriedAgain) {
+  auto files = std::make_unique<SteppedFileSystem>();
+  int failures = 3;
+  files->before_remove = [&failures](const std::string& path) {
+    if (failures-- > 0) throw io_error(path, "remove", EIO);
+  };
+  SourceDeletion deletion(io_, store_, log_, {}, std::move(files));
+  std::this_thread::sleep_for(milliseconds(20));  // a later tick of the clock of files: the renames are seen
+  deletion.configure(config_);
+  const std::int64_t id = convert();
+  deletion.done(id);
+  EXPECT_TRUE(run_until([&] { return deletion.idle(); }));
+  EXPECT_FALSE(fs::exists(source_));
+  EXPECT_FALSE(fs::exists(hidden(id)));
+  EXPECT_TRUE(logged(" deleted job=1 source=" + source_));
+  const std::string log = read_file(directory_ / "log");
+  const std::string reason =
+      hidden(id) + ": cannot remove: Input/output error; check the disk or the file server; tried again later";
+  EXPECT_NE(log.find(reason), std::string::npos) << log;
+  EXPECT_EQ(log.find("not-deleted"), log.rfind("not-deleted")) << log;
 }
 
 TEST_F(SourceDeletionTest, SourceIsDeletedAfterTheDelay) {

@@ -48,15 +48,18 @@ TEST_F(WrongOutputTest, VolumeAndSidecar_AreRemovedAndTheDirectoryFlushed) {
 
 TEST_F(WrongOutputTest, VolumeThatCannotBeRemoved_IsNamedAndKeepsItsSidecar) {
   const std::string outcome = remove_with_fault(1);
-  EXPECT_EQ(outcome, cat("not removed: ", output_, ": cannot do call 1 (remove): Input/output error; remove it and ",
+  EXPECT_EQ(outcome, cat("not removed: ", output_,
+                         ": cannot do call 1 (remove): Input/output error; check the disk or the "
+                         "file server; remove it and ",
                          output_, ".json"));
   EXPECT_EQ(names(), (Names{"a.nvdb", "a.nvdb.json"}));
 }
 
 TEST_F(WrongOutputTest, SidecarThatCannotBeRemoved_IsNamed) {
   const std::string outcome = remove_with_fault(2);
-  EXPECT_EQ(outcome, cat("not removed: its sidecar, ", output_, ".json: cannot do call 2 (remove): Input/output ",
-                         "error; remove ", output_, ".json before the next attempt"));
+  EXPECT_EQ(outcome,
+            cat("not removed: its sidecar, ", output_, ".json: cannot do call 2 (remove): Input/output ",
+                "error; check the disk or the file server; remove ", output_, ".json before the next attempt"));
   EXPECT_EQ(names(), Names{"a.nvdb.json"});
 }
 

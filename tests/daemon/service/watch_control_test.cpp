@@ -211,10 +211,10 @@ TEST(WatchControl, ReloadOfAnUnchangedConfiguration_LeavesWhatRunsAlone) {
   service.start();
   const std::string name = add_long(service);
   ASSERT_TRUE(started(service)) << service.log();
-  const auto picture = make_posix_file_system()->create(service.out(".a.nvdb.png.123.partial"));
+  const auto picture = make_posix_file_system()->create(service.out("a.nvdb.png.partial"));
   service.signal(SIGHUP);
   ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" reload config=") == 1; })) << service.log();
-  EXPECT_TRUE(fs::exists(service.out(".a.nvdb.png.123.partial")));
+  EXPECT_TRUE(fs::exists(service.out("a.nvdb.png.partial")));
   EXPECT_EQ(service.logged("cleaned "), 0U) << service.log();
   service.kill();
   fs::remove(service.in(name));

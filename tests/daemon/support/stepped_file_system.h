@@ -1,4 +1,4 @@
-// The real file system, with a step of a test before a rename.
+// The real file system, with a step of a test before a rename or a removal.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,8 @@ namespace weir {
 
 class SteppedFileSystem final : public FileSystem {
  public:
-  std::function<void(const std::string& from)> before_rename;  ///< before each rename_new
+  std::function<void(const std::string& from)> before_rename = [](const std::string&) {};  ///< before each rename_new
+  std::function<void(const std::string& path)> before_remove = [](const std::string&) {};
 
   std::unique_ptr<File> create(const std::string& path) override { return real_->create(path); }
   std::unique_ptr<File> open(const std::string& path) override { return real_->open(path); }
@@ -23,7 +24,10 @@ class SteppedFileSystem final : public FileSystem {
     real_->rename_new(from, to);
   }
   bool link(const std::string& from, const std::string& to) override { return real_->link(from, to); }
-  void remove(const std::string& path) override { real_->remove(path); }
+  void remove(const std::string& path) override {
+    before_remove(path);
+    real_->remove(path);
+  }
   void make_directory(const std::string& path) override { real_->make_directory(path); }
   void remove_directory(const std::string& path) override { real_->remove_directory(path); }
   void sync_directory(const std::string& path) override { real_->sync_directory(path); }
