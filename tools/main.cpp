@@ -109,7 +109,8 @@ int run(int argc, char** argv) {
     const bool interrupted = error.kind() == weir::ErrorKind::interrupted;
     return fail(weir::command_message(app, error), interrupted ? weir::interrupted_exit_code() : error.exit_code());
   } catch (const std::bad_alloc&) {
-    return fail("out of memory; use a smaller --memory or free some", static_cast<int>(weir::ErrorKind::internal));
+    return fail("out of memory; free some, or use a smaller --memory, or a smaller --size of a picture",
+                static_cast<int>(weir::ErrorKind::internal));
   } catch (const std::system_error& error) {
     if (error.code() != std::errc::resource_unavailable_try_again) return fail_internally(error);
     return fail(weir::kNoMoreThreads, static_cast<int>(weir::ErrorKind::io));

@@ -17,6 +17,14 @@ std::optional<FileId> file_id(const std::string& path) {
   return FileId{status.st_dev, status.st_ino};
 }
 
+std::vector<FileId> file_ids(std::span<const std::string> paths) {
+  std::vector<FileId> ids;
+  for (const std::string& path : paths) {
+    if (const auto id = file_id(path)) ids.push_back(*id);
+  }
+  return ids;
+}
+
 void require_not_input(std::span<const FileId> inputs, const std::string& output) {
   for (const std::string_view ending : kOutputEndings) {
     const std::string path = cat(output, ending);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace weir {
 
@@ -16,6 +17,9 @@ struct FileId {
 
 /// By way of symbolic links; nullopt where there is none.
 std::optional<FileId> file_id(const std::string& path);
+
+/// Of those of the files that there are.
+std::vector<FileId> file_ids(std::span<const std::string> paths);
 
 /// Throws Error(usage) where one of `inputs` is the file at `output` or at one of weir's own names beside it, and so
 /// would be replaced or removed.

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "format/base/toml_reader.h"
+#include "format/sidecar/colormap_names.h"
 
 namespace weir {
 
@@ -87,8 +88,18 @@ void read_region(TomlReader& reader, SceneVolume& volume) {
   volume.region = Box{{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}};
 }
 
+void read_colormap(TomlReader& reader, std::string& colormap) {
+  if (!reader.read("colormap", colormap) || colormap.empty()) return;
+  std::string known;
+  for (const std::string& name : split(kColormapNames, '|')) {
+    if (name == colormap) return;
+    known += cat(known.empty() ? "" : ", ", name);
+  }
+  reader.fail(*reader.find("colormap"), cat("colormap is \"", colormap, "\", it must be one of ", known));
+}
+
 void read_volume(TomlReader reader, SceneVolume& volume) {
-  reader.read("colormap", volume.colormap);
+  read_colormap(reader, volume.colormap);
   if (reader.read("range", volume.range, kFloats) && (*volume.range)[0] > (*volume.range)[1]) {
     reader.fail(*reader.find("range"), "range must not fall");
   }

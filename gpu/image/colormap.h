@@ -13,10 +13,7 @@ namespace weir {
 float srgb_from_linear(float linear);
 float linear_from_srgb(float srgb);
 
-/// Names known, in the order of documentation.
-inline constexpr std::string_view kColormapNames =
-    "gray|white|heat|cool-warm|dusk|ct|water|magma|viridis|plasma|inferno|cividis";
-/// The same one by one.
+/// Those of kColormapNames, one by one.
 std::vector<std::string_view> colormap_names();
 /// Linear RGB at `entries` equal distances over [0, 1]. Throws Error(usage) listing the names where
 /// `name` is none of them.

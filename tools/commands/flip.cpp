@@ -89,14 +89,6 @@ Picture draw_map(const FlipArguments& arguments, std::span<const float> errors, 
   return with_color_bar(map, draw_color_bar(TransferFunction(std::move(colors), 0, 1), "FLIP error", reference.height));
 }
 
-std::vector<FileId> ids_of(std::initializer_list<std::string> paths) {
-  std::vector<FileId> ids;
-  for (const std::string& path : paths) {
-    if (const auto id = file_id(path)) ids.push_back(*id);
-  }
-  return ids;
-}
-
 void flip(const FlipArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   const Image reference = read_png(arguments.reference);
@@ -108,7 +100,7 @@ void flip(const FlipArguments& arguments) {
     if (!arguments.output.ends_with(".png")) {
       throw Error(ErrorKind::usage, cat("--output is \"", arguments.output, "\", it must end in .png"));
     }
-    require_not_input(ids_of({arguments.reference, arguments.test}), arguments.output);
+    require_not_input(file_ids(std::array{arguments.reference, arguments.test}), arguments.output);
     map.emplace(*files, arguments.output, arguments.overwrite);
   }
 

@@ -19,6 +19,7 @@
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "format/io/file_id.h"
 #include "format/io/file_system.h"
 #include "gpu/image/image_output.h"
 #include "gpu/render/playback.h"
@@ -154,6 +155,14 @@ void play_series(const PlayArguments& arguments) {
   const std::unique_ptr<FileSystem> files = make_posix_file_system();
   std::optional<ResultDirectory> directory;
   if (!arguments.output.empty()) directory.emplace(*files, arguments.output);
+  if (!arguments.output.empty()) {
+    std::vector<std::string> inputs = picture_inputs(arguments.picture, request);
+    inputs.insert(inputs.end(), volumes.begin(), volumes.end());
+    const std::vector<FileId> ids = file_ids(inputs);
+    for (std::size_t frame = 0; frame < volumes.size(); ++frame) {
+      require_not_input(ids, frame_path(arguments.output, frame));
+    }
+  }
   const FrameWriter write = open_output(arguments, *files, volumes.size());
   fix_look(request, volumes);
   const std::optional<Image> bar = bar_of_series(request, volumes.front());

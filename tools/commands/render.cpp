@@ -2,6 +2,7 @@
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <iostream>
@@ -9,11 +10,13 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "compressor/options/conversion_request.h"
 #include "format/base/error.h"
 #include "format/base/seconds_since.h"
 #include "format/base/text.h"
+#include "format/io/file_id.h"
 #include "format/io/file_system.h"
 #include "format/nanovdb/nvdb_file.h"
 #include "gpu/image/image_output.h"
@@ -74,6 +77,9 @@ LoadedInput load_file(Backend& backend, const RenderArguments& arguments) {
 LoadedInput load_dense(Backend& backend, const RenderArguments& arguments, std::optional<std::uint64_t> ceiling,
                        Progress& progress) {
   const auto source = open_source(arguments.input, read_conversion_request(arguments.source).source);
+  for (const FileState& file : source->info().files) {
+    if (file.exists) require_not_input(std::array{FileId{file.device, file.inode}}, arguments.output);
+  }
   progress.start("read", static_cast<std::uint64_t>(source->info().domain().voxels()) * sizeof(float));
   StreamOptions options;
   options.cancel = &interrupt_flag();
@@ -96,6 +102,9 @@ void render(const RenderArguments& arguments) {
   request.sampling.cancel = &interrupt_flag();
   const auto threads = limit_threads(0);
   const std::unique_ptr<FileSystem> files = make_posix_file_system();
+  std::vector<std::string> inputs = picture_inputs(arguments.picture, request);
+  inputs.push_back(arguments.input);
+  require_not_input(file_ids(inputs), arguments.output);
   ImageFile image_file(*files, arguments.output, arguments.overwrite);
   if (request.colorbar && image_file.linear()) {
     throw Error(ErrorKind::usage, compose(arguments.output, ": holds radiance, and ", option("colorbar"),

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "format/base/error.h"
-#include "gpu/image/colormap.h"
+#include "format/sidecar/colormap_names.h"
 #include "tools/options/table_options.h"
 
 namespace weir {
@@ -314,6 +314,15 @@ PictureRequest read_picture_request(const GivenOptions& given) {
   if (request.sampling.samples == 0) request.sampling.samples = default_samples(request.scene.mode);
   request.options.environment = load_environment(request.scene);
   return request;
+}
+
+std::vector<std::string> picture_inputs(const GivenOptions& given, const PictureRequest& request) {
+  std::vector<std::string> paths;
+  if (const auto scene = given.find("scene"); scene != given.end()) paths.push_back(scene->second);
+  if (const std::string& environment = request.scene.lighting.environment; !environment.empty()) {
+    paths.push_back(environment);
+  }
+  return paths;
 }
 
 }  // namespace weir

@@ -128,11 +128,11 @@ HttpResponse ViewServer::answer(const HttpRequest& request) const {
 HttpResponse ViewServer::route(const HttpRequest& request) const {
   const auto target = parse_target(request.target);
   const bool page = target && is_page_file(*target);
-  if (auto refused = refuse(rules_, request, page)) return *std::move(refused);
-  if (!target) return error_response(400, "the request's target is no path with parameters, each given once");
   if (request.method != "GET" && request.method != "HEAD") {
     return error_response(405, cat(request.method, " is not for ", request.target, "; use GET"));
   }
+  if (auto refused = refuse(rules_, request, page)) return *std::move(refused);
+  if (!target) return error_response(400, "the request's target is no path with parameters, each given once");
   if (page) {
     const std::string name = target->path.empty() ? "index.html" : target->path[1];
     return page_response({view_page_files(), page_files()}, name);

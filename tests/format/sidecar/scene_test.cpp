@@ -182,6 +182,9 @@ TEST(Scene, ValuesOutOfRange) {
   EXPECT_EQ(message("[volume]\nrange = [2, 1]"), "s.toml:2:9: range must not fall");
   EXPECT_EQ(message("[volume]\nopacity = [[0.5, 1], [0.25, 0]]"),
             "s.toml:2:22: opacity has position 0.25 behind 0.5; positions rise");
+  EXPECT_EQ(message("[volume]\ncolormap = \"jet\""),
+            "s.toml:2:12: colormap is \"jet\", it must be one of gray, white, heat, cool-warm, dusk, ct, water, magma, "
+            "viridis, plasma, inferno, cividis");
   EXPECT_EQ(message("[camera]\nup = [0, 0, 0]"), "s.toml:2:6: up is (0, 0, 0), it must have a direction");
   EXPECT_EQ(message("[[light]]\nirradiance = [1, 1, 1]"), "s.toml:1:1: a light needs a direction");
   std::string five;

@@ -2,10 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "format/base/error.h"
+#include "format/base/text.h"
+#include "format/sidecar/colormap_names.h"
 
 namespace weir::colormap_test {
 namespace {
@@ -16,6 +19,12 @@ TEST(Colormap, GrayIsLinearInSrgb) {
     EXPECT_NEAR(srgb_from_linear(gray[i].x), static_cast<float>(i) / 255, 1e-5F);
     EXPECT_EQ(gray[i].x, gray[i].z);
   }
+}
+
+TEST(Colormap, EachNameThatASceneMayGiveHasColours) {
+  std::string names;
+  for (const std::string_view name : colormap_names()) names += cat(names.empty() ? "" : "|", name);
+  EXPECT_EQ(names, kColormapNames);
 }
 
 TEST(Colormap, EndsAreControlPoints) {

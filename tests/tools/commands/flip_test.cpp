@@ -125,13 +125,13 @@ TEST_F(FlipCommand, Refusals) {
                  (directory_ / "no.png") + ": not a PNG file; give a picture as .png");
   write_file(directory_ / "map.png", "precious");
   expect_refused({"flip", a, a, "-o", directory_ / "map.png"}, 2,
-                 (directory_ / "map.png") + ": exists; choose another name or pass --overwrite");
+                 (directory_ / "map.png") + ": exists; choose another output or pass --overwrite");
   EXPECT_EQ(read_file(directory_ / "map.png"), "precious");
   EXPECT_EQ(run_weir({"flip", a, a, "-o", directory_ / "map.png", "--overwrite"}).exit_code, 0);
   EXPECT_EQ(read_png(directory_ / "map.png").width, 6);
   expect_refused({"flip", a, a, "-o", directory_ / "no/map.png"}, 5,
                  (directory_ / "no/map.png") + ": the directory " + (directory_ / "no") +
-                     " does not exist; make it or choose another name");
+                     " does not exist; make it or choose another output");
 }
 
 TEST_F(FlipCommand, OutputThatIsAnInput_IsRefused) {

@@ -191,7 +191,7 @@ TEST_F(Render, Refusals) {
                    "them out");
   }
   expect_refused(arguments("no/a.png"), 5,
-                 out_ + "/no/a.png: the directory " + out_ + "/no does not exist; make it or choose another name");
+                 out_ + "/no/a.png: the directory " + out_ + "/no does not exist; make it or choose another output");
   expect_refused(arguments("a.jpg"), 2, "-o " + out_ + "/a.jpg: an image's name must end in .png or .exr");
   expect_refused(
       arguments("a.png", {"--colormap", "jet"}), 2,
@@ -270,7 +270,7 @@ TEST_F(Render, ExistingPicture_IsReplacedWithOverwriteOnly) {
   const std::string picture = directory_ / "a.png";
   write_file(picture, "precious");
   expect_refused({"render", volume_, "-o", picture, "--spp", "1000000"}, 2,
-                 picture + ": exists; choose another name or pass --overwrite");
+                 picture + ": exists; choose another output or pass --overwrite");
   EXPECT_EQ(read_file(picture), "precious");
   EXPECT_EQ(run_weir({"render", volume_, "-o", picture, "--size", "8x6", "--spp", "1", "--overwrite"}).exit_code, 0);
   EXPECT_EQ(read_file(picture).substr(1, 3), "PNG");

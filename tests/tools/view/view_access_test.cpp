@@ -5,6 +5,8 @@
 #include <string>
 
 #include "format/base/error.h"
+#include "format/base/text.h"
+#include "tests/daemon/support/raw_client.h"
 #include "tests/tools/support/converted_volume.h"
 #include "tests/tools/view/served_view.h"
 #include "tests/tools/view/view_client.h"
@@ -36,6 +38,17 @@ TEST_F(ViewAccessTest, ForeignPages_AreRefused) {
   EXPECT_EQ(answer_to(served, {"evil.example", "http://evil.example"}).substr(0, 3), "421");
   EXPECT_EQ(get(served.port(), "/api/state", {"evil.example"}).first, 421);
   EXPECT_EQ(answer_to(served, {.target = "/api/state"}).substr(0, 3), "404");
+}
+
+TEST_F(ViewAccessTest, OtherMethodsThanGet_AreRefusedForThat) {
+  const ServedView served(volume_);
+  for (const char* method : {"POST", "PUT", "DELETE"}) {
+    RawClient client(served.port());
+    const RawResponse response =
+        client.ask(cat(method, " /api/state HTTP/1.1\r\nHost: 127.0.0.1:1\r\nContent-Length: 0\r\n\r\n"));
+    EXPECT_EQ(response.status, 405);
+    EXPECT_EQ(response.body, cat("{\"error\":\"", method, " is not for /api/state; use GET\"}\n"));
+  }
 }
 
 TEST_F(ViewAccessTest, Token_IsNeededForAllButThePage) {
