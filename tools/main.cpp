@@ -17,6 +17,7 @@
 
 #include "compressor/plan/startable_threads.h"
 #include "format/base/error.h"
+#include "format/base/printable.h"
 #include "ingest/drivers/hdf5_crash.h"
 #include "tools/command.h"
 #include "tools/interrupt.h"
@@ -25,7 +26,6 @@
 #include "tools/options/help_words.h"
 #include "tools/options/parse_message.h"
 #include "tools/report/error_line.h"
-#include "tools/report/printable.h"
 #include "tools/report/standard_output.h"
 
 namespace {

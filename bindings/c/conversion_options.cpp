@@ -13,6 +13,7 @@
 #include "bindings/c/wording.h"
 #include "compressor/build_commit.h"
 #include "compressor/options/conversion_request.h"
+#include "format/base/printable.h"
 #include "format/base/scalar_type.h"
 #include "format/base/utf8.h"
 #include "format/nanovdb/grid_head.h"
@@ -240,7 +241,7 @@ ConversionControl Callbacks::control() {
   if (options_.notice != nullptr) {
     control.notice = [this](const Message& line) {
       const std::scoped_lock lock(mutex_);
-      options_.notice(options_.user, line.worded(c_wording).c_str());
+      options_.notice(options_.user, one_line(line.worded(c_wording)).c_str());
     };
   }
   return control;
@@ -260,6 +261,11 @@ void Callbacks::advance(std::uint64_t done_bytes) {
   if (options_.progress != nullptr && !pass_.empty()) {
     options_.progress(options_.user, pass_.c_str(), std::min(done_bytes, total_bytes_), total_bytes_);
   }
+  ask_cancel();
+}
+
+void Callbacks::look_for_cancel() {
+  const std::scoped_lock lock(mutex_);
   ask_cancel();
 }
 

@@ -40,6 +40,8 @@ class Callbacks {
 
   /// For a conversion that this object outlives.
   ConversionControl control();
+  /// Asks whether to go on; where not, whatever looks at control().cancel ends.
+  void look_for_cancel();
 
  private:
   void start(const std::string& pass, std::uint64_t total_bytes);

@@ -67,6 +67,7 @@ weir_status weir_push_slab(weir_push* push, int64_t z0, int64_t nz, const void* 
                            weir_error* error) {
   return guarded(error, [&] {
     weir_push& taken = *required(push, "push");
+    taken.callbacks.look_for_cancel();
     push_host_slab(taken, z0, nz, data, slab_stride(*taken.volume, stride));
   });
 }

@@ -5,6 +5,7 @@
 #include <new>
 
 #include "bindings/c/wording.h"
+#include "format/base/printable.h"
 
 namespace weir::c {
 
@@ -29,7 +30,7 @@ weir_status end_with_exception(weir_error* error) noexcept {
     throw;
   } catch (const Error& e) {
     try {
-      return end_call(error, e.exit_code(), e.message().worded(c_wording).c_str());
+      return end_call(error, e.exit_code(), one_line(e.message().worded(c_wording)).c_str());
     } catch (const std::bad_alloc&) {  // no memory for its words
       return end_call(error, e.exit_code(), e.what());
     }

@@ -155,7 +155,8 @@ typedef struct weir_convert_options {
      the call lasts (for weir_push until its end). They must return, soon, and make no call that has the same handle. */
   /* Float32 bytes that a pass, "survey", "encode" or "certify", has worked on; it may begin again. */
   void (*progress)(void* user, const char* pass, uint64_t done_bytes, uint64_t total_bytes);
-  int (*cancel)(void* user); /* asked several times a second in most passes; not 0 ends the call: WEIR_INTERRUPTED */
+  int (*cancel)(void* user); /* asked several times a second in most passes, and by each weir_push_slab; not 0 ends the
+                                call: WEIR_INTERRUPTED */
   void (*notice)(void* user, const char* line); /* what the user should know and is no error */
   void* user;
   int32_t budget_kind; /* WEIR_BUDGET_... */

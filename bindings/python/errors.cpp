@@ -3,6 +3,7 @@
 #include <exception>
 
 #include "format/base/error.h"
+#include "format/base/printable.h"
 
 namespace weir::python {
 
@@ -57,6 +58,6 @@ void translate_errors() {
   });
 }
 
-py::str python_text(const Message& message) { return decoded_text(message.worded(key_wording)); }
+py::str python_text(const Message& message) { return decoded_text(one_line_of_bytes(message.worded(key_wording))); }
 
 }  // namespace weir::python

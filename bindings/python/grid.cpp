@@ -92,6 +92,11 @@ void Grid::Opened::require_unchanged() const {
   }
 }
 
+void Grid::Opened::require_at(const std::string& path) const {
+  if (file->mapping().is_at(path)) return;
+  throw input_error(file->path(), "was replaced or removed since it was opened; open it again");
+}
+
 void Grid::Opened::with_boxes(const std::function<std::vector<Box>()>& boxes, const std::function<void()>& use) const {
   if (remote == nullptr) return use();
   remote->with_blocks(in_index_space(boxes(), grid()), use);
@@ -148,6 +153,7 @@ int Grid::levels() const { return level_count(opened().source->info().extent); }
 
 std::optional<std::string> Grid::sidecar() const {
   const auto file = with_file("its sidecar");
+  file->require_at(absolute_);
   const std::string path = find_sidecar(absolute_);
   if (!std::filesystem::exists(path)) return std::nullopt;
   return text_of(read_sidecar(path), path);
@@ -244,6 +250,7 @@ std::vector<std::tuple<std::string, std::string, std::string, bool>> Grid::verif
   std::vector<std::tuple<std::string, std::string, std::string, bool>> all;
   run_watched(progress, [&](Watch& watch) {
     file->require_unchanged();
+    file->require_at(absolute_);
     VerificationWatch verification;
     verification.pass_started = [&](const std::string& pass, std::uint64_t bytes) { watch.start(pass, bytes); };
     verification.pass_advanced = [&](std::uint64_t done) { watch.advance(done); };

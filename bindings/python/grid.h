@@ -90,6 +90,8 @@ class Grid {
     /// or end the process. One that was replaced by a rename is as it was. Of what lies elsewhere the reader tells. One
     /// call of the system, which may wait for a server: without the interpreter's lock.
     void require_unchanged() const;
+    /// Throws Error(input) where `path` does not lead to the file that is open.
+    void require_at(const std::string& path) const;
     /// Calls `use` while what touches boxes(), in voxels from the lowest one, can be read from `source`; of a file
     /// nobody asks for them.
     void with_boxes(const std::function<std::vector<Box>()>& boxes, const std::function<void()>& use) const;

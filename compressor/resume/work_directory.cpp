@@ -1,5 +1,6 @@
 #include "compressor/resume/work_directory.h"
 
+#include <cerrno>
 #include <filesystem>
 #include <system_error>
 
@@ -26,7 +27,8 @@ void remove_if_empty(FileSystem& files, const std::string& path) noexcept {
 WorkDirectory::WorkDirectory(FileSystem& files, const std::string& output, const std::string& chosen) : files_(files) {
   if (!chosen.empty()) {
     if (!files_.exists(chosen))
-      throw Error(ErrorKind::io, compose(option("work-dir", chosen), ": does not exist; make it or choose another"));
+      throw Error(ErrorKind::io, compose(option("work-dir", chosen), ": does not exist; make it or choose another"),
+                  SystemFailure{ENOENT, chosen});
     if (std::error_code ignored; std::filesystem::is_regular_file(chosen, ignored))
       throw Error(ErrorKind::usage, compose(option("work-dir", chosen), ": is a file; choose a directory"));
     if (files_.is_memory(chosen)) {

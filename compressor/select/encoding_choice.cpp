@@ -304,7 +304,7 @@ Error unmet_target(const FileRequest& request, Encoding encoding, double squared
                                        " cannot be lossless: a leaf of it reads other bits; use ",
                                        option("encoding", "auto"), " or float")};
   }
-  if (psnr && squared_error > 0) {
+  if (psnr && squared_error > 0 && request.squared_error > 0) {
     const double short_by = 10 * std::log10(squared_error / request.squared_error);
     best = cat(" reaches about ", std::floor((request.budget.target - short_by) * 10) / 10, " dB at most");
   } else {

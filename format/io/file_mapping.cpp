@@ -131,4 +131,11 @@ void FileMapping::check_unchanged() const {
   }
 }
 
+bool FileMapping::is_at(const std::string& path) const {
+  struct stat there {};
+  if (::stat(path.c_str(), &there) != 0) return false;
+  const struct stat mapped = status_of(file_, path_);
+  return there.st_dev == mapped.st_dev && there.st_ino == mapped.st_ino;
+}
+
 }  // namespace weir

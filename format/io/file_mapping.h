@@ -47,6 +47,8 @@ class FileMapping {
   /// Throws Error(input) where the file's size or time of change is not that at opening. A change through another
   /// mapping may be noticed late.
   void check_unchanged() const;
+  /// Whether `path` leads to the file that is mapped: another one may have been given its name.
+  bool is_at(const std::string& path) const;
 
  private:
   std::string path_;

@@ -68,7 +68,10 @@ std::vector<NumberedFile> numbered_files(const std::string& pattern) {
     if (!number || !(entry->is_regular_file(ignored) || is_input_directory(entry->path().string()))) continue;
     files.push_back({*number, (path.parent_path() / entry->path().filename()).string()});
   }
-  if (error) throw Error(ErrorKind::input, cat(directory.string(), ": cannot list: ", error.message()));
+  if (error) {
+    throw Error(ErrorKind::input, cat(directory.string(), ": cannot list: ", error.message(), "; check the pattern"),
+                SystemFailure{error.value(), directory.string()});
+  }
   if (files.empty()) throw Error(ErrorKind::input, cat(pattern, ": no file's name matches; check the pattern"));
   std::sort(files.begin(), files.end(), [](const auto& a, const auto& b) { return a.number < b.number; });
   return files;

@@ -13,6 +13,7 @@
 #include "compressor/options/conversion_request.h"
 #include "format/base/error.h"
 #include "format/base/json_text.h"
+#include "format/base/printable.h"
 #include "format/base/seconds_since.h"
 #include "format/base/text.h"
 #include "format/io/file_id.h"
@@ -30,7 +31,6 @@
 #include "tools/export/vdb_writer.h"
 #include "tools/options/run_options.h"
 #include "tools/report/foreign_file.h"
-#include "tools/report/printable.h"
 #include "tools/report/read_sidecar.h"
 
 namespace weir {

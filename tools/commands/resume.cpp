@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "format/base/printable.h"
 #include "format/base/text.h"
 #include "tools/command.h"
-#include "tools/report/printable.h"
 #include "tools/service/service_client.h"
 
 namespace weir {

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "format/base/error.h"
+#include "format/base/printable.h"
 #include "format/base/text.h"
 #include "tools/command.h"
-#include "tools/report/printable.h"
 #include "tools/service/service_client.h"
 
 namespace weir {

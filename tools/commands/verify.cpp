@@ -11,6 +11,7 @@
 
 #include "format/base/error.h"
 #include "format/base/json_text.h"
+#include "format/base/printable.h"
 #include "format/base/text.h"
 #include "format/sidecar/find_sidecar.h"
 #include "format/sidecar/sidecar.h"
@@ -19,7 +20,6 @@
 #include "tools/options/trace_option.h"
 #include "tools/options/volume_series.h"
 #include "tools/report/error_line.h"
-#include "tools/report/printable.h"
 #include "tools/report/progress.h"
 #include "tools/verify/volume_verification.h"
 

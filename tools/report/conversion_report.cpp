@@ -5,11 +5,11 @@
 #include <nlohmann/json.hpp>
 
 #include "format/base/json_text.h"
+#include "format/base/printable.h"
 #include "format/base/text.h"
 #include "format/sidecar/valid_voxels.h"
 #include "ingest/source/extent.h"
 #include "tools/report/error_text.h"
-#include "tools/report/printable.h"
 #include "tools/report/volume_title.h"
 
 namespace weir {

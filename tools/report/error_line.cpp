@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-#include "tools/report/printable.h"
+#include "format/base/printable.h"
 
 namespace weir {
 

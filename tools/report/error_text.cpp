@@ -1,8 +1,8 @@
 #include "tools/report/error_text.h"
 
+#include "format/base/printable.h"
 #include "format/base/text.h"
 #include "format/sidecar/valid_voxels.h"
-#include "tools/report/printable.h"
 
 namespace weir {
 

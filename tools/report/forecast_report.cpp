@@ -4,13 +4,13 @@
 #include <cmath>
 #include <cstdint>
 
+#include "format/base/printable.h"
 #include "format/base/scalar_type.h"
 #include "format/base/share_text.h"
 #include "format/base/text.h"
 #include "ingest/source/extent.h"
 #include "tools/report/error_text.h"
 #include "tools/report/json_loss.h"
-#include "tools/report/printable.h"
 
 namespace weir {
 namespace {

@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 
 #include "format/base/error.h"
+#include "format/base/printable.h"
 #include "format/base/text.h"
 #include "ingest/dataset_pattern.h"
 #include "ingest/source/convert_command.h"
-#include "tools/report/printable.h"
 
 namespace weir {
 namespace {

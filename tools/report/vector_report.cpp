@@ -1,7 +1,7 @@
 #include "tools/report/vector_report.h"
 
+#include "format/base/printable.h"
 #include "format/base/text.h"
-#include "tools/report/printable.h"
 
 namespace weir {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <filesystem>
 
+#include "format/base/printable.h"
 #include "format/base/text.h"
-#include "tools/report/printable.h"
 
 namespace weir {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "format/base/printable.h"
 #include "format/base/text.h"
-#include "tools/report/printable.h"
 
 namespace weir {
 namespace {

@@ -8,13 +8,13 @@ from .conversion import Progress
 __version__: str
 
 def convert_files(
-    source: bytes, output: bytes, options: dict[str, str], several: bool, progress: Optional[Progress]
+    source: bytes, output: bytes, options: dict[str, bytes], several: bool, progress: Optional[Progress]
 ) -> list[str]: ...
 def convert_array(
     source: NDArray[Any],
     type: str,
     output: bytes,
-    options: dict[str, str],
+    options: dict[str, bytes],
     meaning: dict[str, Any],
     progress: Optional[Progress],
 ) -> str: ...
@@ -25,7 +25,7 @@ def convert_device_array(
     type: str,
     stream: Optional[int],
     output: bytes,
-    options: dict[str, str],
+    options: dict[str, bytes],
     meaning: dict[str, Any],
     progress: Optional[Progress],
 ) -> str: ...
@@ -68,5 +68,5 @@ class Grid:
     ) -> NDArray[numpy.float32]: ...
     def sample(self, points: NDArray[numpy.float32], trilinear: bool) -> NDArray[numpy.float32]: ...
     def macrocells(self) -> tuple[int, tuple[int, int, int], NDArray[numpy.float32], NDArray[numpy.float32]]: ...
-    def render(self, options: dict[str, str], linear: bool, progress: Optional[Progress]) -> NDArray[Any]: ...
+    def render(self, options: dict[str, bytes], linear: bool, progress: Optional[Progress]) -> NDArray[Any]: ...
     def verify(self, progress: Optional[Progress]) -> list[tuple[str, str, str, bool]]: ...

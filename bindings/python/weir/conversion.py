@@ -252,7 +252,7 @@ def _remedy(source: Any) -> str:
 
 
 def _convert_array(
-    source: Any, target: bytes, options: dict[str, str], meaning: dict[str, Any], progress: Optional[Progress]
+    source: Any, target: bytes, options: dict[str, bytes], meaning: dict[str, Any], progress: Optional[Progress]
 ) -> str:
     """The sidecar's text."""
     array = source if isinstance(source, numpy.ndarray) else array_of(source)

@@ -117,8 +117,11 @@ def size_text(size: Any) -> str:
 _FLAGS = {"at_most", "colorbar", "lossless", "stack", "overwrite"}
 
 
-def given_options(**keywords: Any) -> dict[str, str]:
-    """{"max-error": "0.5", "lossless": "true"}: what is None, and a flag that is False, is not given."""
+def given_options(**keywords: Any) -> dict[str, bytes]:
+    """{"max-error": b"0.5", "lossless": b"true"}: what is None, and a flag that is False, is not given.
+
+    Bytes, since a path may hold any. Raises UsageError for a text that is none of UTF-8.
+    """
     given = {}
     for name, value in keywords.items():
         value = _alone(value)
@@ -128,5 +131,8 @@ def given_options(**keywords: Any) -> dict[str, str]:
             text = text_of(value)
             if "\0" in text:
                 raise UsageError(f"{name} has a null character, which ends a text; leave it out")
-            given[name.replace("_", "-")] = text
+            try:
+                given[name.replace("_", "-")] = os.fsencode(text)
+            except UnicodeEncodeError:
+                raise UsageError(f"{name} is {text!r}, which no file system and no file can hold; correct it") from None
     return given

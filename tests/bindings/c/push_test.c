@@ -157,9 +157,7 @@ static void after_a_failure(const float* values) {
   CHECK_OK(weir_push_begin(&volume, &options, path_of("stopped.nvdb"), &push, &error));
   CHECK_OK(weir_push_slab(push, 0, 1, values, NULL, &error));
   stop = 1;
-  weir_status status = weir_push_slab(push, 1, NZ - 1, values + NX * NY, NULL, &error);
-  if (status == WEIR_OK) status = weir_push_end(push, &error);
-  CHECK(status == WEIR_INTERRUPTED);
+  CHECK_STATUS(WEIR_INTERRUPTED, weir_push_slab(push, 1, NZ - 1, values + NX * NY, NULL, &error));
   CHECK_STATUS(WEIR_INTERRUPTED, weir_push_end(push, &error));
   weir_push_free(push);
   CHECK(!exists(path_of("stopped.nvdb")) && !exists(path_of("stopped.nvdb.partial")));

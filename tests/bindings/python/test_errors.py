@@ -206,6 +206,34 @@ class OpenErrors(FolderTest):
         message = self.refused(InputNotFoundError, weir.open, self.folder / "a.nvdb")
         self.assertEqual(message, "a.nvdb: cannot open: No such file or directory")
 
+    def test_a_message_is_one_line_whatever_a_path_holds(self):
+        for name, shown in (("no\nfile", "no\\nfile"), ("\x1b[31mred", "\\x1b[31mred")):
+            with self.assertRaises(FileNotFoundError) as raised:
+                weir.open(self.folder / name)
+            self.assertEqual(
+                str(raised.exception).replace(f"{self.folder}/", ""), f"{shown}: cannot open: No such file or directory"
+            )
+            self.assertEqual(raised.exception.filename, str(self.folder / name))
+
+    def test_options_may_be_paths_of_any_bytes(self):
+        odd = os.path.join(os.fsencode(self.folder), b"w\xff")
+        os.mkdir(odd)
+        weir.convert(ramp(9, 9, 9), self.folder / "a.nvdb", lossless=True, work_dir=odd)
+        message = self.refused(
+            weir.UsageError, weir.convert, ramp(9, 9, 9), self.folder / "b.nvdb", lossless=True, dataset="\ud800"
+        )
+        self.assertEqual(message, "dataset is '\\ud800', which no file system and no file can hold; correct it")
+
+    def test_directories_that_are_missing(self):
+        for keywords, source in (
+            ({"lossless": True, "work_dir": self.folder / "no"}, ramp(9, 9, 9)),
+            ({"stack": True, "dims": (3, 3, 3), "type": "uint8"}, self.folder / "no/a%05d.raw"),
+        ):
+            with self.subTest(keywords), self.assertRaises(FileNotFoundError) as raised:
+                weir.convert(source, self.folder / "c.nvdb", **keywords)
+            self.assertEqual(raised.exception.errno, errno.ENOENT)
+            self.assertEqual(raised.exception.filename, str(self.folder / "no"))
+
     def test_no_nanovdb(self):
         (self.folder / "a.nvdb").write_bytes(b"nothing" * 1000)
         message = self.refused(weir.InputError, weir.open, self.folder / "a.nvdb")

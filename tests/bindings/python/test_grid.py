@@ -263,6 +263,17 @@ class ChangedFiles(FolderTest):
         self.assertEqual(grid.sample([[0.5, 0.5, 0.5]]), values[0, 0, 0])
         self.assertEqual(grid.render(mode="mip", size=(16, 16), backend="cpu").shape, (16, 16, 3))
 
+    def test_what_is_read_by_the_name_of_a_file_that_was_replaced_is_refused(self):
+        grid = self.lossless(ramp(40, 50, 60))
+        self.assertTrue(all(check.ok for check in grid.verify()))
+        weir.convert(-ramp(40, 50, 60), grid.path, lossless=True, overwrite=True)
+        for use in (grid.verify, lambda: grid.sidecar, lambda: grid.certificate):
+            self.assertEqual(
+                self.refused(weir.InputError, use), "a.nvdb: was replaced or removed since it was opened; open it again"
+            )
+        with weir.open(grid.path) as again:
+            self.assertTrue(all(check.ok for check in again.verify()))
+
 
 class Lifetime(FolderTest):
     def test_a_closed_grid(self):

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "compressor/conversion.h"
+#include "compressor/select/encoding_choice.h"
 #include "format/base/error.h"
 #include "format/leaf/leaf_decode.h"
 #include "ingest/synthetic/synthetic.h"
@@ -168,6 +169,13 @@ TEST(ErrorTargets, UnreachableTargetIsRefusedWithAReason) {
   const std::string at_most = refusal(Budget::Kind::psnr, 90, Encoding::fp8);
   EXPECT_EQ(at_most.substr(0, at_most.find("about")), "out.nvdb: --psnr 90 cannot be met: --encoding fp8 reaches ");
   EXPECT_EQ(refusal(Budget::Kind::psnr, 300, Encoding::automatic), "no error");  // float32 keeps every bit
+  FileRequest tiny;  // of a range whose square is below every double
+  tiny.path = "out.nvdb";
+  tiny.budget.kind = Budget::Kind::psnr;
+  tiny.budget.target = 60;
+  EXPECT_STREQ(unmet_target(tiny, Encoding::fpn, 1e-300).what(),
+               "out.nvdb: --psnr 60 cannot be met: --encoding fpn has leaves whose range 16 bits do not divide that "
+               "finely; use --encoding auto or float");
   EXPECT_EQ(refusal(Budget::Kind::max_error, 0, Encoding::automatic), "no error");
 }
 

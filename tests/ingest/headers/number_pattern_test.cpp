@@ -49,7 +49,7 @@ TEST(NumberedFiles, ByRisingNumber) {
   EXPECT_EQ(message_of_error(ErrorKind::input, [&] { numbered_files(scratch.path("r_%d.raw")); }),
             scratch.path("r_%d.raw") + ": no file's name matches; check the pattern");
   EXPECT_EQ(message_of_error(ErrorKind::input, [&] { numbered_files(scratch.path("none/r_%d.raw")); }),
-            scratch.path("none") + ": cannot list: No such file or directory");
+            scratch.path("none") + ": cannot list: No such file or directory; check the pattern");
   EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { numbered_files("a.raw"); }),
             "a.raw: no pattern: the file's name needs one %d or %05d where its number is");
 }

@@ -12,4 +12,8 @@ std::string printable(const std::string& text);
 /// `text` with those bytes as \\n, \\t or \\x1b: one line, from which the name can be typed again.
 std::string one_line(const std::string& text);
 
+/// The same with the control characters of ASCII alone: other bytes stay what they are, for Python, whose texts hold
+/// any.
+std::string one_line_of_bytes(const std::string& text);
+
 }  // namespace weir

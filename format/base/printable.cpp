@@ -1,4 +1,4 @@
-#include "tools/report/printable.h"
+#include "format/base/printable.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -30,17 +30,26 @@ std::string escaped(std::string_view text, const Escape& escape) {
   return shown;
 }
 
+std::string escape_of(char c) {
+  if (c == '\n' || c == '\t') return c == '\n' ? "\\n" : "\\t";
+  return cat("\\x", hex(static_cast<unsigned char>(c), 2));
+}
+
 }  // namespace
 
 std::string printable(const std::string& text) {
   return escaped(text, [](char) { return std::string("?"); });
 }
 
-std::string one_line(const std::string& text) {
-  return escaped(text, [](char c) {
-    if (c == '\n' || c == '\t') return std::string(c == '\n' ? "\\n" : "\\t");
-    return cat("\\x", hex(static_cast<unsigned char>(c), 2));
-  });
+std::string one_line(const std::string& text) { return escaped(text, escape_of); }
+
+std::string one_line_of_bytes(const std::string& text) {
+  std::string shown;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    shown += byte < 0x20 || byte == 0x7F ? escape_of(c) : std::string(1, c);
+  }
+  return shown;
 }
 
 }  // namespace weir

@@ -1,4 +1,4 @@
-#include "tools/report/printable.h"
+#include "format/base/printable.h"
 
 #include <gtest/gtest.h>
 
@@ -37,6 +37,11 @@ TEST(Printable, BytesThatAreNoUtf8AreReplacedOrEscaped) {
                      "b"),
             "\\xe2"
             "b");
+}
+
+TEST(OneLine, OfBytes_LeavesAllButControlCharacters) {
+  EXPECT_EQ(one_line_of_bytes("a\nb\tc\x1b[1m\x7f"), "a\\nb\\tc\\x1b[1m\\x7f");
+  EXPECT_EQ(one_line_of_bytes("\xff\xc3\xa4"), "\xff\xc3\xa4");
 }
 
 }  // namespace
