@@ -26,9 +26,7 @@ std::string listed(const std::vector<std::string>& names) {
 }
 
 // HDF5 and Zarr take "/run/density" and "run/density" for the same.
-std::string_view without_slash(std::string_view name) {
-  return name.starts_with('/') ? name.substr(1) : name;
-}
+std::string_view without_slash(std::string_view name) { return name.starts_with('/') ? name.substr(1) : name; }
 
 // What is wrong with options.index_choices, which do not fit `dataset`.
 Error unfit(const std::string& path, const DatasetInfo& dataset, const SourceOptions& options) {

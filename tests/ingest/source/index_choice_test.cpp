@@ -98,8 +98,7 @@ TEST(IndexChoice, ADatasetThatCannotBeRead_IsRefusedForThatReason) {
   for (const char* name : {"", "run/d", "/run/d"}) {
     EXPECT_EQ(refused_index({unread}, name, ErrorKind::input), "a.zarr: run/d: has the filter 'quantize'") << name;
   }
-  EXPECT_EQ(refused_index({unread, array("e")}, "run/d", ErrorKind::input),
-            "a.zarr: run/d: has the filter 'quantize'");
+  EXPECT_EQ(refused_index({unread, array("e")}, "run/d", ErrorKind::input), "a.zarr: run/d: has the filter 'quantize'");
 }
 
 TEST(IndexChoice, ASlashBeforeTheName_MakesNoDifference) {
