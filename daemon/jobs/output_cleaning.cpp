@@ -37,7 +37,8 @@ using Clock = std::chrono::steady_clock;
 /// An interrupted conversion that nobody continues; it may hold as much disk as its result.
 constexpr std::chrono::hours kKeptFor{7 * 24};
 
-const std::string kPicturePartialEnding = cat(".png", kPartialEnding);
+constexpr std::string_view kPicturePartialEnding = ".png.partial";
+static_assert(kPicturePartialEnding.ends_with(kPartialEnding));
 
 // The output that `path` was left by, if it is of a conversion: something.nvdb.
 std::optional<fs::path> output_of(const fs::path& path) {
@@ -51,9 +52,8 @@ std::optional<fs::path> output_of(const fs::path& path) {
   if (name.starts_with('.')) {
     if (auto output = without(kWorkEnding, 1)) return output;
   }
-  const std::initializer_list<std::string_view> endings{kSidecarPartialEnding, kSidecarPreviousEnding,
-                                                        kPicturePartialEnding, kPartialEnding};
-  for (const std::string_view ending : endings) {
+  for (const std::string_view ending :
+       {kSidecarPartialEnding, kSidecarPreviousEnding, kPicturePartialEnding, kPartialEnding}) {
     if (auto output = without(ending, 0)) return output;
   }
   return std::nullopt;
@@ -63,9 +63,9 @@ bool is_work(const fs::path& path) { return path.filename().string().ends_with(k
 
 bool is_picture(const fs::path& path) { return path.filename().string().ends_with(kPicturePartialEnding); }
 
-// The file's lock is its writer's.
+// The file's lock is its writer's. Opened for writing, without which NFS gives no exclusive lock.
 bool is_locked_by_writer(const std::string& path) {
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
+  const Descriptor file(::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
   return file && ::flock(file.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
 }
 
