@@ -10,6 +10,7 @@
 
 #include "compressor/conversion_control.h"
 #include "compressor/conversion_memory.h"
+#include "compressor/damaged_input.h"
 #include "compressor/look_ahead.h"
 #include "compressor/plan/memory_plan.h"
 #include "compressor/plan/startable_threads.h"
@@ -182,13 +183,20 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
                           started);
 }
 
-// Of an error that is reported in its place.
-void discard_quietly(Journal& journal) noexcept {
-  try {
-    journal.discard();
-  } catch (const Error&) {
-    // The next conversion of the output removes what is left.
-  }
+// A volume of weir's own is taken for what its certificate says.
+void check_certified(const SourceInfo& info, const ConversionControl& control) {
+  if (info.format != "nanovdb") return;
+  DamageWatch watch;
+  watch.notice = control.notice;
+  watch.started = [&](std::uint64_t bytes) {
+    check_cancel(control);
+    if (control.pass_started) control.pass_started("check", bytes);
+  };
+  watch.advanced = [&](std::uint64_t done) {
+    check_cancel(control);
+    if (control.pass_advanced) control.pass_advanced(done);
+  };
+  refuse_damaged(info.path, watch);
 }
 
 }  // namespace
@@ -214,13 +222,14 @@ Sidecar convert_volume(VolumeSource& source, const ConversionOptions& options, c
   begun.push_back(partial_path(options.output));  // the lock last: who has it may begin
   const Hdf5CrashRemoval at_crash(std::move(begun));
   try {
+    team.lead([&] { check_certified(source.info(), control); });
     Sidecar sidecar = convert_to(source, options, control, output, work, journal.get(), team, resident_bytes());
     if (journal) journal->discard();
     return sidecar;
   } catch (const Error& error) {
     const Error cause = with_its_cause(error, source.info());
     if (output.committed()) {  // there is nothing to continue
-      if (journal) discard_quietly(*journal);
+      if (journal) journal->discard();
       throw cause;
     }
     throw journal ? ended_with(cause, *journal) : cause;

@@ -17,7 +17,8 @@ namespace weir {
 /// What a caller can watch and stop.
 struct ConversionControl {
   const std::atomic<bool>* cancel = nullptr;
-  std::function<void(const std::string& pass, std::uint64_t total_bytes)> pass_started;  ///< float32 bytes
+  std::function<void(const std::string& pass, std::uint64_t total_bytes)>
+      pass_started;  ///< float32 bytes; of "check" the file's
   std::function<void(std::uint64_t done_bytes)> pass_advanced;
   Notice notice;
   std::function<void(std::uint64_t bytes)>

@@ -14,9 +14,9 @@ Message default_notice(const Sidecar& sidecar, const std::string& output) {
   const std::string& kind = sidecar.budget.kind;
   if (kind == "lossless" || kind == "psnr") {
     const std::string kept = error.psnr_db ? cat("with ", short_number(*error.psnr_db), " dB") : lossless_text(sidecar);
-    return compose(output, ": no budget was given, and ", option("rate", 8), " would keep less than ", kDefaultLeastDb,
-                   " dB of so small a volume; written ", kept, ": ", sidecar.budget.file_bytes, " bytes, rate ",
-                   short_number(sidecar.budget.rate), "; give a budget for another size");
+    return compose(output, ": no budget was given, and ", option("rate", Budget{}.rate), " would keep less than ",
+                   kDefaultLeastDb, " dB of so small a volume; written ", kept, ": ", sidecar.budget.file_bytes,
+                   " bytes, rate ", short_number(sidecar.budget.rate), "; give a budget for another size");
   }
   if (!error.psnr_db || !(*error.psnr_db < kDefaultLeastDb)) return {};
   return compose(output, ": no budget was given, and rate ", short_number(sidecar.budget.rate), " keeps ",

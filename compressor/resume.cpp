@@ -102,7 +102,8 @@ Error ended_with(const Error& error, Journal& journal) {
   }
   const bool interrupted = error.kind() == ErrorKind::interrupted;
   try {
-    if (interrupted && !journal.state.survey.done.empty()) journal.save_now();
+    const bool begun = !journal.state.survey.done.empty() || !journal.state.encoded.done.empty();
+    if (interrupted && begun) journal.save_now();
   } catch (const Error&) {
     // What was saved before it counts.
   }

@@ -1,7 +1,5 @@
 #include "compressor/surveyed_conversion.h"
 
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
@@ -18,6 +16,7 @@
 #include "compressor/describe_conversion.h"
 #include "compressor/encode/encode_attempts.h"
 #include "compressor/encode/tree_writer.h"
+#include "compressor/file_digest.h"
 #include "compressor/outlook/budget_outlook.h"
 #include "compressor/packed/exact_block.h"
 #include "compressor/refused_values.h"
@@ -30,7 +29,6 @@
 #include "format/base/error.h"
 #include "format/base/seconds_since.h"
 #include "format/base/text.h"
-#include "format/io/digest.h"
 #include "format/layout/nvdb_type.h"
 #include "format/output/written_volume.h"
 #include "format/packed/block_encode.h"
@@ -47,21 +45,6 @@ Background choose_background(const ConversionOptions& options, const Survey& sur
   if (options.background) return {*options.background, "user", 0};
   if (options.paper_background) return paper_background(survey, source, plan, stream, rows.team());
   return find_background(survey, rows, source, plan, stream);
-}
-
-// Reads the finished bytes back: what is hashed is what the file system holds.
-Digest digest_of_file(File& file, std::uint64_t bytes, Team& team) {
-  std::vector<Digest> pieces(piece_count(bytes));
-  tbb::enumerable_thread_specific<std::vector<std::byte>> scratch{std::vector<std::byte>(kDigestScratchBytes)};
-  const Share own = team.share(static_cast<std::int64_t>(pieces.size()));
-  team.run([&] {
-    tbb::parallel_for(static_cast<std::size_t>(own.begin), static_cast<std::size_t>(own.end), [&](std::size_t i) {
-      const std::uint64_t offset = i * kDigestPieceBytes;
-      pieces[i] = piece_digest(file, offset, std::min(kDigestPieceBytes, bytes - offset), scratch.local());
-    });
-  });
-  team.gather(pieces);
-  return combine(pieces);
 }
 
 FileRequest request_for(const ConversionOptions& options, const Survey& survey, const SourceInfo& info,
@@ -332,8 +315,9 @@ class SurveyedConversion {
   void digest(const EncodedFile& encoded) {
     const std::uint64_t bytes = encoded.file.size.bytes;
     const TraceSpan span(parts_.control.trace, "digest", bytes);
+    // Reads the finished bytes back: what is hashed is what the file system holds.
     sidecar_.file = {bytes, encoded.file.plan.layout.grid, checksum_,
-                     digest_of_file(parts_.output.volume(), bytes, team_).hex()};
+                     digest_of_file(parts_.output.volume(), team_).hex()};
   }
 
   // Of the file as it will be read: blocks that were dropped, and the steps from one block to the next, count too.

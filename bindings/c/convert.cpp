@@ -39,19 +39,17 @@ std::unique_ptr<VolumeSource> open_values(const weir_volume* volume, const void*
   return open_array(array);
 }
 
-void convert(VolumeSource& source, ConversionOptions options, const weir_convert_options& given, FileSystem& files) {
+void convert(VolumeSource& source, ConversionOptions options, ConversionControl control, FileSystem& files) {
   // What the process has already is the caller's; that the rest is too little is said in the caller's figures.
   const Box domain = source.info().domain();
   const std::size_t threads = choose_threads(options.threads, processors_or_all(options.processors), options.memory,
                                              source.working_bytes(), domain, region_bytes(options));
   plan_memory(options.memory, source.working_bytes(), threads, domain, region_bytes(options));
-  options.memory += resident_bytes();
-  options.resume = Resume::off;
-  Callbacks callbacks(given);
-  ConversionControl control = callbacks.control();
   const std::unique_ptr<BlockCoder> coder =
       choose_coder(options.backend, options.encoding == Encoding::packed, options.memory, control.notice);
   control.coder = coder.get();
+  options.memory += resident_bytes();
+  options.resume = Resume::off;
   convert_volume(source, options, control, files);
 }
 
@@ -76,7 +74,8 @@ weir_status weir_convert(const weir_volume* volume, const void* data, const int6
     const auto source = open_values(volume, data, stride, given);
     ConversionOptions conversion = read_options(given);
     conversion.output = checked_output(output);
-    convert(*source, std::move(conversion), given, *make_posix_file_system());
+    Callbacks callbacks(given);
+    convert(*source, std::move(conversion), callbacks.control(), *make_posix_file_system());
   });
 }
 
@@ -92,7 +91,8 @@ weir_status weir_convert_to_memory(const weir_volume* volume, const void* data, 
     }
     conversion.output = "memory.nvdb";
     auto made = std::make_unique<weir_buffer>();
-    convert(*source, conversion, given, made->files);
+    Callbacks callbacks(given);
+    convert(*source, conversion, callbacks.control(), made->files);
     made->volume = made->files.content(conversion.output);
     const auto sidecar = made->files.content(sidecar_path(conversion.output));
     made->sidecar.assign(reinterpret_cast<const char*>(sidecar.data()), sidecar.size());
@@ -121,11 +121,15 @@ weir_status weir_convert_file(const char* input, const weir_input_options* input
     if (std::filesystem::equivalent(path, conversion.output, ignored)) {
       throw usage(cat(conversion.output, ": is the input; choose another output"));
     }
+    Callbacks callbacks(given);
+    const ConversionControl control = callbacks.control();
+    source_options.cancel = control.cancel;
+    source_options.notice = control.notice;
     source_options.memory = conversion.memory + resident_bytes();
     source_options.spool_directory =
         conversion.work_dir.empty() ? directory_of(conversion.output) : conversion.work_dir;
     if (source_options.levels == Levels::composite) {
-      convert(*open_source(path, source_options), std::move(conversion), given, *make_posix_file_system());
+      convert(*open_source(path, source_options), std::move(conversion), control, *make_posix_file_system());
       return;
     }
     const std::vector<SeriesStep> levels = expand_series(std::vector{path}, source_options);
@@ -136,7 +140,7 @@ weir_status weir_convert_file(const char* input, const weir_input_options* input
     for (std::size_t i = 0; i < levels.size(); ++i) {
       check_level_budgets(levels, outputs, i, conversion, open);
       conversion.output = outputs[i];
-      convert(*open(levels[i]), conversion, given, *make_posix_file_system());
+      convert(*open(levels[i]), conversion, control, *make_posix_file_system());
     }
   });
 }

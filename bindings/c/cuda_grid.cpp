@@ -10,13 +10,16 @@
 #include "format/base/text.h"
 #include "gpu/cuda/expand/expanded_grid.h"
 #include "gpu/cuda/runtime/check.h"
+#include "gpu/cuda/runtime/current_device.h"
 
 struct weir_cuda_grid {
   std::optional<weir::DeviceGrid> grid;
   weir::DeviceBuffer spare;  ///< where there is no grid
+  int device = 0;            ///< of the last load
 
   // As it is, or expanded to another type.
   void load(const weir::NvdbFile& file, const std::optional<weir::GridType>& as, cudaStream_t stream) {
+    device = weir::current_device();
     if (grid) spare = std::move(*grid).take_buffer();
     grid.reset();
     grid = as ? weir::load_grid_as(file, *as, std::move(spare), {}, stream)
@@ -82,4 +85,10 @@ uint64_t weir_cuda_bytes(const weir_cuda_grid* loaded) {
 double weir_cuda_seconds(const weir_cuda_grid* loaded) {
   return loaded == nullptr || !loaded->grid ? 0 : loaded->grid->report().seconds;
 }
-void weir_cuda_free(weir_cuda_grid* loaded) { delete loaded; }
+void weir_cuda_free(weir_cuda_grid* loaded) {
+  if (loaded == nullptr) return;
+  free_on(loaded->device, [&] {
+    if (cudaDeviceSynchronize() != cudaSuccess) cudaGetLastError();  // kernels that read it, in whatever stream
+    delete loaded;
+  });
+}

@@ -12,6 +12,7 @@
 #include "bindings/c/open_push.h"
 #include "bindings/c/status.h"
 #include "bindings/c/weir_cuda.h"
+#include "bindings/cuda/resident_choice.h"
 #include "compressor/push/resident_source.h"
 #include "format/base/scalar_type.h"
 #include "gpu/cuda/encode/resident_volume.h"
@@ -153,29 +154,9 @@ class ResidentInFlight : public DeviceInFlight {
   std::atomic<int> adding_{0};
 };
 
-// Whether a device that has the volume can survey and encode it: one was chosen for that, there is memory for what it
-// finds, and float32 is what it takes.
 bool may_be_resident(const weir_push& push) {
-  const SourceInfo& info = push.volume->info();
-  const Index3& extent = info.extent;
-  return push.coder && push.memory >= kLeastMemoryOfDevice && push.volume->has_room_for(kResidentHostBytes) &&
-         !push.filled && info.type == ScalarType::float32 && info.values_as_stored() && !info.mapping.marks_missing() &&
-         std::max({extent.x, extent.y, extent.z}) <= kLongestAxis;
-}
-
-// What `make` makes; null, which is said, where the device has no room for it.
-template <typename Make>
-std::unique_ptr<DeviceInFlight> try_resident(const weir_push& push, const Make& make) {
-  try {
-    return make();
-  } catch (const Error& error) {
-    if (error.kind() != ErrorKind::io) throw;
-    if (push.notice) {
-      push.notice(
-          cat("the volume does not stay on the device (", error.what(), "); it comes to the host, to the same bytes"));
-    }
-    return nullptr;
-  }
+  return !push.filled && may_stay_on_device(push.volume->info(), push.coder.get(), push.memory) &&
+         push.volume->has_room_for(kResidentHostBytes);
 }
 
 // Slabs of several threads may be the first.
@@ -185,7 +166,7 @@ DeviceInFlight& in_flight(weir_push& push) {
     const SourceInfo& info = push.volume->info();
     const auto bytes = static_cast<std::uint64_t>(volume(info.extent)) * sizeof(float);
     const bool resident = may_be_resident(push) && push.device_memory >= bytes;
-    if (resident) push.in_flight = try_resident(push, [&] { return std::make_unique<ResidentInFlight>(push); });
+    if (resident) push.in_flight = try_resident(push.notice, [&] { return std::make_unique<ResidentInFlight>(push); });
     // A device without room for the volume has none for slabs that wait either: that would be the volume again.
     const std::uint64_t granted = resident ? 0 : push.device_memory;
     if (!push.in_flight) push.in_flight = std::make_unique<SlabsInFlight>(*push.volume, granted);
@@ -199,6 +180,7 @@ void push_slab(weir_push& push, std::int64_t z0, std::int64_t nz, const void* da
   const SourceInfo& info = push.volume->info();
   const std::array<std::int64_t, 3> strides = slab_stride(*push.volume, stride);
   if (is_device_memory(data)) {
+    push.callbacks.look_for_cancel();
     in_flight(push).add(z0, nz, {static_cast<const std::byte*>(data), strides, scalar_bytes(info.type)}, stream);
     return;
   }
@@ -216,7 +198,7 @@ bool take_in_place(weir_push& push, const void* data, const std::int64_t* stride
   check_slab(values, device);
   check_cuda(cudaStreamSynchronize(stream), "work before a volume");
   push.in_flight = try_resident(
-      push, [&] { return std::make_unique<ResidentInFlight>(push, device, static_cast<const float*>(data)); });
+      push.notice, [&] { return std::make_unique<ResidentInFlight>(push, device, static_cast<const float*>(data)); });
   return push.in_flight != nullptr;
 }
 

@@ -38,6 +38,7 @@ std::array<std::int64_t, 3> slab_stride(const PushedVolume& volume, const std::i
 
 void push_host_slab(weir_push& push, std::int64_t z0, std::int64_t nz, const void* data,
                     const std::array<std::int64_t, 3>& stride) {
+  push.callbacks.look_for_cancel();
   PushInFlight* in_flight = nullptr;
   {
     const std::lock_guard lock(push.mutex);
@@ -67,7 +68,6 @@ weir_status weir_push_slab(weir_push* push, int64_t z0, int64_t nz, const void* 
                            weir_error* error) {
   return guarded(error, [&] {
     weir_push& taken = *required(push, "push");
-    taken.callbacks.look_for_cancel();
     push_host_slab(taken, z0, nz, data, slab_stride(*taken.volume, stride));
   });
 }

@@ -153,9 +153,10 @@ typedef struct weir_convert_options {
   const char* work_dir; /* for temporary files, on a disk; NULL: a hidden directory beside the output */
   /* Callbacks, each optional, called with `user` by one thread at a time, which may be another than the caller's, while
      the call lasts (for weir_push until its end). They must return, soon, and make no call that has the same handle. */
-  /* Float32 bytes that a pass, "survey", "encode" or "certify", has worked on; it may begin again. */
+  /* Float32 bytes that a pass, "survey", "encode" or "certify", has worked on; it may begin again. Of "check", which
+     comes before these where a .nvdb file is converted that has a sidecar, the file's bytes. */
   void (*progress)(void* user, const char* pass, uint64_t done_bytes, uint64_t total_bytes);
-  int (*cancel)(void* user); /* asked several times a second in most passes, and by each weir_push_slab; not 0 ends the
+  int (*cancel)(void* user); /* asked several times a second in most passes, and by each slab that comes; not 0 ends the
                                 call: WEIR_INTERRUPTED */
   void (*notice)(void* user, const char* line); /* what the user should know and is no error */
   void* user;

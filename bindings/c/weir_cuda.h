@@ -30,7 +30,7 @@ WEIR_API weir_status weir_cuda_load_as(const weir_grid* grid, const char* as, vo
 WEIR_API const void* weir_cuda_data(const weir_cuda_grid* loaded);
 WEIR_API uint64_t weir_cuda_bytes(const weir_cuda_grid* loaded); /* weir_grid_info's data_bytes */
 WEIR_API double weir_cuda_seconds(const weir_cuda_grid* loaded); /* that loading took */
-/* The device of the load must be current. */
+/* Waits for all work of the load's device first, as cudaFree does: a kernel may still read the grid. */
 WEIR_API void weir_cuda_free(weir_cuda_grid* loaded);
 
 /* ---- Push: a volume out of the memory of a device. Since 0.2 --------------------------------------------------- */

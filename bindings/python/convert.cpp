@@ -41,17 +41,15 @@ namespace {
 ConversionRequest make_request(const std::string& output, const GivenOptions& given) {
   ConversionRequest request = read_conversion_request(given);
   request.conversion.output = output;
-  // The program's own data are in the process as well, and none of the conversion's business.
-  request.conversion.memory += resident_bytes();
-  request.source.memory = request.conversion.memory;
+  request.source.memory = request.conversion.memory + resident_bytes();
   request.conversion.provenance = {WEIR_VERSION, build_commit(), recorded_options(given)};
   return request;
 }
 
-/// Given where to say what becomes of it.
-using OpenSource = std::function<std::unique_ptr<VolumeSource>(const Notice&)>;
+/// Given what watches the conversion, and who codes its blocks.
+using OpenSource = std::function<std::unique_ptr<VolumeSource>(const ConversionControl&)>;
 
-Sidecar convert(const ConversionOptions& options, const OpenSource& open, const py::object& progress) {
+Sidecar convert(ConversionOptions options, const OpenSource& open, const py::object& progress) {
   std::optional<Sidecar> sidecar;
   run_watched(progress, [&](Watch& watch) {
     ConversionControl control;
@@ -63,8 +61,10 @@ Sidecar convert(const ConversionOptions& options, const OpenSource& open, const 
     const std::unique_ptr<BlockCoder> coder =
         choose_coder(options.backend, options.encoding == Encoding::packed, options.memory, control.notice);
     control.coder = coder.get();
+    // The program's own data are in the process as well, and none of the conversion's business.
+    options.memory += resident_bytes();
     const std::unique_ptr<FileSystem> files = make_posix_file_system();
-    const std::unique_ptr<VolumeSource> source = open(control.notice);
+    const std::unique_ptr<VolumeSource> source = open(control);
     sidecar = convert_volume(*source, options, control, *files);
   });
   return *std::move(sidecar);
@@ -131,6 +131,7 @@ std::vector<std::string> convert_files(const std::string& source, const std::str
     return open_source(step.path, options_of_step(request.source, step));
   };
   run_watched(py::none(), [&](Watch& watch) {
+    request.source.cancel = &watch.cancelled();
     steps = expand_series(std::vector{source}, request.source, [&](const Message& line) { watch.notice(line); });
     if (!several && steps.size() != 1) {
       throw usage_error(compose(source, ": names ", cat(steps.size()), " volumes; give ", option("dataset"),
@@ -146,8 +147,9 @@ std::vector<std::string> convert_files(const std::string& source, const std::str
     request.conversion.output = outputs[i];
     request.source.spool_directory =
         request.conversion.work_dir.empty() ? directory_of(outputs[i]) : request.conversion.work_dir;
-    const auto open = [&](const Notice& notice) {
-      request.source.notice = notice;
+    const auto open = [&](const ConversionControl& control) {
+      request.source.notice = control.notice;
+      request.source.cancel = control.cancel;
       check_level_budgets(steps, outputs, i, request.conversion, open_step);
       std::unique_ptr<VolumeSource> opened = open_step(steps[i]);
       extents.check(steps[i], opened->info());
@@ -164,7 +166,7 @@ namespace {
 
 using Axes = std::array<std::int64_t, 3>;
 using OpenArray =
-    std::function<std::unique_ptr<VolumeSource>(const DenseArray&, const ConversionRequest&, const Notice&)>;
+    std::function<std::unique_ptr<VolumeSource>(const DenseArray&, const ConversionRequest&, const ConversionControl&)>;
 
 std::string convert_dense(const void* data, const Axes& shape, const Axes& strides, const std::string& type,
                           const std::string& output, const GivenOptions& options, const py::dict& meaning,
@@ -181,8 +183,8 @@ std::string convert_dense(const void* data, const Axes& shape, const Axes& strid
   add_meaning(meaning, array);
   return to_json_text(convert(
       request.conversion,
-      [&](const Notice& notice) {
-        std::unique_ptr<VolumeSource> all = open(array, request, notice);
+      [&](const ConversionControl& control) {
+        std::unique_ptr<VolumeSource> all = open(array, request, control);
         if (!request.source.roi) return all;
         return crop_to(std::move(all), *request.source.roi);
       },
@@ -197,17 +199,19 @@ std::string convert_array(const py::array& source, const std::string& type, cons
   return convert_dense(
       source.data(), {source.shape(0), source.shape(1), source.shape(2)},
       {source.strides(0), source.strides(1), source.strides(2)}, type, output, options, meaning, progress,
-      [](const DenseArray& array, const ConversionRequest&, const Notice&) { return open_array(array); });
+      [](const DenseArray& array, const ConversionRequest&, const ConversionControl&) { return open_array(array); });
 }
 
 std::string convert_device_array(std::uint64_t address, const std::array<std::int64_t, 3>& shape,
                                  const std::array<std::int64_t, 3>& strides, const std::string& type,
                                  const std::optional<std::uint64_t>& stream, const std::string& output,
                                  const GivenOptions& options, const py::dict& meaning, const py::object& progress) {
-  return convert_dense(reinterpret_cast<const void*>(address), shape, strides, type, output, options, meaning, progress,
-                       [&](const DenseArray& array, const ConversionRequest& request, const Notice& notice) {
-                         return open_device_source(array, stream, request, notice);
-                       });
+  const auto* const data = reinterpret_cast<const void*>(address);
+  if (stream) {
+    const py::gil_scoped_release released;
+    wait_for_stream(data, *stream);
+  }
+  return convert_dense(data, shape, strides, type, output, options, meaning, progress, open_device_source);
 }
 
 }  // namespace weir::python

@@ -17,10 +17,10 @@
 #include "format/nanovdb/nvdb_header.h"
 #include "format/sidecar/find_sidecar.h"
 #include "format/sidecar/is_of.h"
+#include "format/sidecar/read_sidecar.h"
 #include "format/sidecar/sidecar.h"
 #include "gpu/volume/macrocell_grid.h"
 #include "ingest/source_registry.h"
-#include "tools/report/read_sidecar.h"
 #include "tools/verify/volume_verification.h"
 
 namespace weir::python {

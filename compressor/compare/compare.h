@@ -1,6 +1,5 @@
-// The exact error of a NanoVDB file against its source, streaming both. It shares
-// nothing with the encoder but the decoder of leaves, so that it can judge the
-// certificate that a conversion wrote.
+// The exact error of a NanoVDB file against its source, streaming both. With the encoder, whose certificate it judges,
+// it shares the decoder of leaves and the sums over one leaf (leaf_difference.h).
 #pragma once
 
 #include <atomic>
@@ -30,9 +29,9 @@ struct CompareOptions {
 struct Comparison {
   std::uint64_t voxels = 0;
   std::uint64_t finite = 0;               ///< source voxels that are finite
+  std::uint64_t nonfinite_decoded = 0;    ///< of those, such that read NaN or infinite: the error is over the others
   std::uint64_t nonfinite = 0;            ///< source voxels that are NaN or infinite, or hold no data
   std::uint64_t missing = 0;              ///< those that hold no data
-  std::uint64_t nonfinite_decoded = 0;    ///< of those, such that read NaN or infinite: the error is over the others
   std::uint64_t different = 0;            ///< finite source voxels that do not read bit for bit
   std::uint64_t nonfinite_different = 0;  ///< the same of those that are not finite: replaced, or dropped
   std::uint64_t missing_different = 0;    ///< and of those that hold no data

@@ -52,8 +52,7 @@ bool CodedBatch::asks_for(const EncodeTarget& target, const Index3& leaf) const 
 }
 
 void CodedBatch::add(const EncodeTarget& target, const Box& leaf_box, std::int64_t region) {
-  RegionPlaces places;
-  places.streams.emplace(target.packed->streams.read_allocated(region));
+  RegionPlaces places = places_of(target, region);
   const Box box = intersect(target.tree.leaf_box(region), leaf_box);
   CodedRegion coded(box, asks_, made_);
   const StreamPlaces& streams = *places.streams;

@@ -57,16 +57,6 @@ Box trim_to_kept(const TreeRegions& tree, const ChoiceStore& store, const Box& b
   return kept;
 }
 
-RegionPlaces places_of(const EncodeTarget& target, std::int64_t region) {
-  RegionPlaces places;
-  if (target.packed != nullptr) {
-    places.streams.emplace(target.packed->streams.read_allocated(region));
-  } else {
-    places.leaves.emplace(target.choices.read(region));
-  }
-  return places;
-}
-
 std::unique_ptr<LayerEncoder> make_encoder(const EncodeTarget& target) {
   return target.packed != nullptr ? make_packed_encoder(target) : make_leaf_encoder(target);
 }

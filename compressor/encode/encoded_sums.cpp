@@ -56,12 +56,7 @@ class WrittenSums {
 
   // Of the leaves of a region in `box`.
   void add(std::int64_t region, const Box& box) {
-    RegionPlaces places;
-    if (target_.packed != nullptr) {
-      places.streams.emplace(target_.packed->streams.read_allocated(region));
-    } else {
-      places.leaves.emplace(target_.choices.read(region));
-    }
+    const RegionPlaces places = places_of(target_, region);
     for (std::int64_t x = box.lo.x; x < box.hi.x; ++x) {
       places.streams ? add_streams(region, box, x, *places.streams) : add_leaves(region, box, x, *places.leaves);
       volume_.finish();
@@ -79,7 +74,7 @@ class WrittenSums {
           volume_.add(place.offset, places.bytes(place.position));
           ordinals_.push_back(place.ordinal);
           if (!target_.packed->rule.preview || !is_corner(target_.tree.leaves, leaf)) return;
-          volume_.add(corner_offset(target_, leaf), nvdb::kFloatLeafBytes);
+          volume_.add(corner_offset(target_.layout, leaf), nvdb::kFloatLeafBytes);
         });
   }
 

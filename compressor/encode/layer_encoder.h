@@ -49,16 +49,21 @@ struct EncodeTarget {
   bool sums = true;                      ///< whether LayerEncoder::sums() is asked for, as a journal does
 };
 
-/// Whether a leaf is the first or the last of a volume: a preview keeps these two as they are.
-inline bool is_corner(const NodeLattice& leaves, const Index3& leaf) {
-  return leaf == Index3{0, 0, 0} || leaf == leaves.count - Index3{1, 1, 1};
-}
-
 /// Where the kept blocks of a region lie.
 struct RegionPlaces {
   std::optional<LeafPlaces> leaves;
   std::optional<StreamPlaces> streams;  ///< of packed blocks
 };
+
+inline RegionPlaces places_of(const EncodeTarget& target, std::int64_t region) {
+  RegionPlaces places;
+  if (target.packed != nullptr) {
+    places.streams.emplace(target.packed->streams.read_allocated(region));
+  } else {
+    places.leaves.emplace(target.choices.read(region));
+  }
+  return places;
+}
 
 class CodedRegion;
 

@@ -112,21 +112,21 @@ class PackedEncoder final : public PackedLayerEncoder {
     }
     extend_outside(node_, inside_, values_);
     const std::span<std::byte> stream = std::span(stream_).first(places.bytes(place.position));
-    write_stream(places.plan(), place.position, stream);
+    write_stream(leaf, places.plan(), place.position, stream);
     decode_stream(leaf, place, stream);
     append(place.offset, stream);
     if (packed_.rule.preview) write_corner(leaf);
   }
 
-  void write_stream(const PlannedStreams& plan, std::size_t position, std::span<std::byte> stream) {
+  void write_stream(const Index3& leaf, const PlannedStreams& plan, std::size_t position, std::span<std::byte> stream) {
     const std::int16_t step = plan.steps[position];
     if (PlannedStreams::is_near(step)) {
       rounded_.set(values_);
-      if (!rounded_.encode(step - PlannedStreams::kNearStep, stream)) fail({}, "cannot be rounded");
+      if (!rounded_.encode(step - PlannedStreams::kNearStep, stream)) fail(leaf, "cannot be rounded");
       return;
     }
     if (PlannedStreams::transforms(step)) {
-      if (!transform_.set(values_)) fail({}, "cannot be transformed");
+      if (!transform_.set(values_)) fail(leaf, "cannot be transformed");
       transform_.encode(packed_.constants, plan.region.means, step, stream);
       return;
     }
@@ -140,7 +140,7 @@ class PackedEncoder final : public PackedLayerEncoder {
     } else {
       bytes = exact_block_.write(values_, packed_.lattice, scratch);
     }
-    if (bytes != stream.size()) fail({}, "has another length than was planned");
+    if (bytes != stream.size()) fail(leaf, "has another length than was planned");
     std::copy_n(scratch.begin(), bytes, stream.begin());
   }
 
@@ -176,7 +176,7 @@ class PackedEncoder final : public PackedLayerEncoder {
     if (!is_corner(target_.tree.leaves, leaf)) return;
     std::array<std::byte, nvdb::kFloatLeafBytes> image{};
     encode_float_leaf(decoded_, node_, inside_, leaf_statistics(decoded_, node_, inside_), image);
-    const std::uint64_t offset = corner_offset(target_, leaf);
+    const std::uint64_t offset = corner_offset(target_.layout, leaf);
     target_.out.write_at(offset, image);
     if (target_.sums) volume_sum_ += placed_checksum(offset, image);
   }

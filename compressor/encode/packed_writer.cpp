@@ -12,8 +12,6 @@ namespace {
 
 using namespace packed;
 
-std::uint64_t chunks_offset(std::size_t regions) { return kRegionsOffset + regions * region::kEntryBytes; }
-
 void write_entry(const TreeLayout& layout, std::int64_t index, std::uint64_t chunk, float value, std::uint32_t bytes,
                  File& out) {
   std::array<std::byte, region::kEntryBytes> entry{};

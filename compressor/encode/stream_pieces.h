@@ -26,7 +26,7 @@ struct KeptPlace {
 /// Where the chunk of a region lies in the file.
 inline std::uint64_t chunk_offset(const EncodeTarget& target, std::int64_t region_index) {
   const std::vector<Region>& regions = target.tree.regions;
-  return target.layout.packed_data + packed::kRegionsOffset + regions.size() * packed::region::kEntryBytes +
+  return target.layout.packed_data + packed::chunks_offset(regions.size()) +
          regions[static_cast<std::size_t>(region_index)].first_byte;
 }
 
@@ -63,8 +63,8 @@ void for_each_kept_stream(const EncodeTarget& target, std::int64_t region_index,
 }
 
 /// Where the image of a corner leaf of a preview goes.
-inline std::uint64_t corner_offset(const EncodeTarget& target, const Index3& leaf) {
-  return target.layout.leaves + (leaf == Index3{0, 0, 0} ? 0 : nvdb::kFloatLeafBytes);
+inline std::uint64_t corner_offset(const TreeLayout& layout, const Index3& leaf) {
+  return layout.leaves + (leaf == Index3{0, 0, 0} ? 0 : nvdb::kFloatLeafBytes);
 }
 
 }  // namespace weir

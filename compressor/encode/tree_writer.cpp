@@ -10,6 +10,7 @@
 
 #include "compressor/encode/macrocell_builder.h"
 #include "compressor/encode/packed_writer.h"
+#include "compressor/encode/stream_pieces.h"
 #include "compressor/select/region_rows.h"
 #include "format/base/little_endian.h"
 #include "format/nanovdb/node_image.h"
@@ -109,7 +110,7 @@ class LowerWriter {
       }
       const Box leaf_node = tree.leaves.node_box(leaf);
       const LeafRecord& record = records[next++];
-      image.set_child(entry_of(position), offset - node);
+      image.set_child(table_entry(position), offset - node);
       offset += leaf_bytes(width);
       table.add_child(active_statistics(record, leaf_node, voxels));
       cells.add_leaf(leaf_node, record);
@@ -155,18 +156,16 @@ class LowerWriter {
                      std::span<const LeafRecord> records) {
     const TreeRegions& tree = parts_.tree;
     const std::uint64_t node = parts_.layout.lower_offset(region.node);
-    const Index3 last = tree.leaves.count - Index3{1, 1, 1};
     NodeImage& image = images_.local();
     image.reset();
     TableStatistics table;
     for_each_in_file_order(rows.leaf_box(), [&](const Index3& leaf) {
       const std::size_t position = tree.mask_position(leaf);
-      if (leaf != Index3{0, 0, 0} && leaf != last) {
+      if (!is_corner(tree.leaves, leaf)) {
         set_tile(position, leaf, rows, image, table);
         return;
       }
-      const std::uint64_t ordinal = leaf == Index3{0, 0, 0} ? 0 : 1;
-      image.set_child(entry_of(position), parts_.layout.leaves + ordinal * nvdb::kFloatLeafBytes - node);
+      image.set_child(table_entry(position), corner_offset(parts_.layout, leaf) - node);
       table.add_child(
           active_statistics(records[places.ordinal(position)], tree.leaves.node_box(leaf), tree.leaves.voxels(leaf)));
     });
@@ -178,7 +177,7 @@ class LowerWriter {
   }
 
   // Of a leaf in the table of its lower node.
-  static Index3 entry_of(std::size_t position) {
+  static Index3 table_entry(std::size_t position) {
     const auto bits = static_cast<std::int64_t>(position);
     return {bits >> 8, bits >> 4 & 15, bits & 15};
   }
@@ -191,7 +190,7 @@ class LowerWriter {
     const LeafRow& row = rows.at(leaf);
     const float value = parts_.fill.leaf_value(row);
     const bool active = parts_.fill.active(row.valued()) && leaves.voxels(leaf) == node;
-    image.set_tile(entry_of(position), value, active);
+    image.set_tile(table_entry(position), value, active);
     if (active) table.add_tile(value, kLeafDim, node.lo);
     return value;
   }

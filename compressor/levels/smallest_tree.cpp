@@ -11,7 +11,7 @@
 namespace weir {
 namespace {
 
-constexpr std::uint64_t kOneValueBytes = 8;  // of a packed block's stream, and where it ends; 7
+constexpr std::uint64_t kOneValueBlockBytes = 8;  // of a packed block's stream of one value, and where it ends; 7
 
 std::uint64_t bytes_of_required_leaf(const ConversionOptions& options) {
   switch (options.encoding) {
@@ -50,12 +50,10 @@ RegionNeed need_of(const VolumeSource& source, const TreeRegions& tree, std::int
     });
   }
   RegionNeed need;
-  const Index3 last = tree.leaves.count - Index3{1, 1, 1};
   for_each_index(leaves, [&](const Index3& leaf) {
     const std::uint64_t of_leaf = valued[static_cast<std::size_t>(linear_index(leaf - leaves.lo, leaves.extent()))];
-    const bool corner = leaf == Index3{0, 0, 0} || leaf == last;
     need.valued += of_leaf;
-    need.leaves += corner || fill.splits(of_leaf, kLeafVoxels) ? 1 : 0;
+    need.leaves += is_corner(tree.leaves, leaf) || fill.splits(of_leaf, kLeafVoxels) ? 1 : 0;
   });
   return need;
 }
@@ -97,7 +95,7 @@ std::uint64_t smallest_tree(const VolumeSource& source, const ConversionOptions&
 
 std::uint64_t room_for_packed(const Box& domain) {
   const auto blocks = static_cast<std::uint64_t>(make_lattice(domain, kLeafDim).size());
-  return fixed_bytes(domain, Encoding::packed, Preview::off, 0, region_count(domain)) + kOneValueBytes * blocks;
+  return fixed_bytes(domain, Encoding::packed, Preview::off, 0, region_count(domain)) + kOneValueBlockBytes * blocks;
 }
 
 }  // namespace weir

@@ -58,7 +58,7 @@ std::optional<Lattice> own_lattice(const LeafValues& block) {
   return Lattice{range.low, lattice->step, static_cast<std::uint32_t>(std::bit_width(lattice->largest))};
 }
 
-constexpr double kMostCodes = 16777216;  // of a lattice: 24 bits
+constexpr double kMostCodes = 1U << kMostLatticeBits;  // of a lattice
 
 }  // namespace
 

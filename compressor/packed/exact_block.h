@@ -16,7 +16,7 @@ namespace weir {
 
 /// The file's lattice where the source's type says of none: whole numbers that are neither -0 nor 2^23 or more away
 /// from 0. Floats often are such numbers.
-inline constexpr Lattice kWholeNumbers{-0x1p23F, 1.0F, 24};
+inline constexpr Lattice kWholeNumbers{-0x1p23F, 1.0F, kMostLatticeBits};
 
 /// One per thread.
 class ExactBlock {

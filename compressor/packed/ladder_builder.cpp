@@ -11,7 +11,6 @@ namespace weir {
 namespace {
 
 constexpr double kMeanError = 0.5 + 1.0 / 16;  // quanta that a decoded mean of kMostBoundedMeanBits is off by
-constexpr std::uint32_t kUniformBytes = 5;     // kind and value
 
 bool have_same_bits(const LeafValues& block) {
   const auto first = std::bit_cast<std::uint32_t>(block[0]);
@@ -64,7 +63,7 @@ std::optional<Lattice> lattice_of(const SourceInfo& source) {
 
 PackedLadder LadderBuilder::uniform() {
   PackedLadder ladder;
-  ladder.exact_bytes = kUniformBytes;
+  ladder.exact_bytes = static_cast<std::uint16_t>(kOneValueStreamBytes);
   return ladder;
 }
 
@@ -190,7 +189,7 @@ std::optional<std::int32_t> LadderBuilder::bounded_step(const LeafValues& block,
   if (deviation < allowed) {
     const std::int32_t step = coarsest_step_within(std::sqrt(512.0) / kMeanError * (allowed - deviation));
     // Where coefficients would count at that step, the trials below find as much.
-    if (transform_.cost(step).bits <= 8) return step;
+    if (transform_.cost(step).bits <= kMeanAloneBits) return step;
   }
   LeafValues decoded;
   constexpr int kTrials = 16;
@@ -225,7 +224,7 @@ void LadderBuilder::build_bounded(const LeafValues& block, double max_error, Pac
   if (!step) return;
   // A byte more than is expected, so that no coefficient has to go.
   const std::uint32_t bits = transform_.cost(*step).bits;
-  const std::uint32_t enough = bits <= 8 ? bits : bits + 8;
+  const std::uint32_t enough = bits <= kMeanAloneBits ? bits : bits + 8;
   constexpr std::uint32_t kUsualMeanBits = 12;
   if (stream_bytes(enough, kUsualMeanBits) >= ladder.exact_bytes) return;
   ladder.first_step = static_cast<std::int16_t>(*step);

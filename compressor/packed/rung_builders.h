@@ -41,9 +41,8 @@ class TransformRungs {
   std::size_t end() const { return end_; }
   /// Sets a rung of the ladder unless exact is shorter; returns its bits.
   std::uint32_t build(std::size_t rung) {
-    constexpr std::uint32_t kMeanBits = 8;  // of a mean alone but for its code
     const bool mean = rung < PackedLadder::kMeanRungs;
-    const TransformBlock::Cost cost = mean ? TransformBlock::Cost{kMeanBits, energy_} : cost_of_(rung);
+    const TransformBlock::Cost cost = mean ? TransformBlock::Cost{kMeanAloneBits, energy_} : cost_of_(rung);
     if (cost.bits + 8 >= 8U * ladder_.exact_bytes) return cost.bits;
     ladder_.rungs[rung] = {static_cast<std::uint16_t>(cost.bits),
                            ErrorShare(std::min(1.0, cost.squared_error / energy_))};

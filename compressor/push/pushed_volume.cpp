@@ -101,10 +101,8 @@ class PushedVolume::State {
         files_(std::in_place, info_, options_, control_, seen_.has_value(), memory_, files),
         slices_(plan_slices(info_.domain(), scalar_bytes(info_.type), room_bytes())),
         floats_([this] { return PageBuffer(slice_voxels() * sizeof(float)); }) {
-    // Its workers use all of the above: they start when that is there, and end before it goes.
     intake_.emplace(slices_, scalar_bytes(info_.type), room(workers), sink());
   }
-  ~State() { intake_.reset(); }
   State(const State&) = delete;
   State& operator=(const State&) = delete;
 
@@ -325,8 +323,8 @@ class PushedVolume::State {
   std::int64_t slabs_in_progress_ = 0;
   std::int64_t expected_planes_ = 0;  // whose values have not come
   bool ended_ = false;
-  std::optional<Error> failure_;  // of the end
-  std::optional<SliceIntake> intake_;
+  std::optional<Error> failure_;       // of the end
+  std::optional<SliceIntake> intake_;  // last: its workers use all of the above
 };
 
 PushedVolume::PushedVolume(SourceInfo info, const ConversionOptions& options, const ConversionControl& control,

@@ -194,8 +194,7 @@ FilePlan plan_by_budget(const FileRequest& request, Encoding encoding, Candidate
 // The packed file with a preview, where it is long enough for one.
 std::optional<FilePlan> plan_previewed(const FileRequest& request, const RowStore& rows, WorkDirectory& work) {
   Candidate candidate(request, Encoding::packed, rows, work, true);
-  const bool asks_size = request.budget.kind == Budget::Kind::size || request.budget.kind == Budget::Kind::rate ||
-                         request.budget.kind == Budget::Kind::automatic;
+  const bool asks_size = request.budget.by_size() || request.budget.kind == Budget::Kind::automatic;
   if (asks_size && !candidate.fits(request.budget)) return std::nullopt;
   check_lossless(request, Encoding::packed, candidate);
   candidate.choose();

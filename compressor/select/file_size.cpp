@@ -59,8 +59,9 @@ FileSize file_size_for(const Budget& budget, std::uint64_t dense_bytes, const Se
       size = {bytes_at_rate(dense_bytes, budget.rate), "rate", ""};
       if (size.bytes < minimum) {
         return {minimum, "minimum",
-                compose(path, ": ", option("rate", 8), " would be ", size.bytes, size.bytes == 1 ? " byte" : " bytes",
-                        ", less than the smallest possible file, ", minimum, " bytes; writing that")};
+                compose(path, ": ", option("rate", budget.rate), " would be ", size.bytes,
+                        size.bytes == 1 ? " byte" : " bytes", ", less than the smallest possible file, ", minimum,
+                        " bytes; writing that")};
       }
       break;
     case Budget::Kind::rate:

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "compressor/leaf/leaf_quantiser.h"
 #include "format/leaf/bounds.h"
@@ -34,6 +35,28 @@ double distance(Metric metric, const BrickRange& range, float background) {
       break;
   }
   return 0;
+}
+
+// The widths that an encoding may use for a leaf, narrowest first.
+std::span<const LeafWidth> widths_of(Encoding encoding) {
+  static constexpr std::array kWidths{LeafWidth::bits1, LeafWidth::bits2,  LeafWidth::bits4,
+                                      LeafWidth::bits8, LeafWidth::bits16, LeafWidth::float32};
+  const std::span<const LeafWidth> all = kWidths;
+  switch (encoding) {
+    case Encoding::fpn:
+      return all.first(5);
+    case Encoding::fp4:
+      return all.subspan(2, 1);
+    case Encoding::fp8:
+      return all.subspan(3, 1);
+    case Encoding::fp16:
+      return all.subspan(4, 1);
+    case Encoding::automatic:
+    case Encoding::float32:
+    case Encoding::packed:
+      break;
+  }
+  return all.last(1);
 }
 
 LeafStep step_to(LeafWidth width, LeafWidth from, double gain) {
@@ -135,25 +158,6 @@ double bounded_error(const LeafRow& row, std::int64_t voxels, float background, 
   return quantum * half + magnitude * std::ldexp(1.0, -21);
 }
 
-// The widths a rule's encoding may use for a leaf, narrowest first.
-std::vector<LeafWidth> widths_of(Encoding encoding) {
-  switch (encoding) {
-    case Encoding::fpn:
-      return {LeafWidth::bits1, LeafWidth::bits2, LeafWidth::bits4, LeafWidth::bits8, LeafWidth::bits16};
-    case Encoding::fp4:
-      return {LeafWidth::bits4};
-    case Encoding::fp8:
-      return {LeafWidth::bits8};
-    case Encoding::fp16:
-      return {LeafWidth::bits16};
-    case Encoding::automatic:
-    case Encoding::float32:
-    case Encoding::packed:
-      break;
-  }
-  return {LeafWidth::float32};
-}
-
 double GainRule::tile_weight(const MinMax& reach, float tile) const {
   MinMax with_tile = reach;
   if (reach.min <= reach.max) widen(with_tile, {tile, tile});
@@ -241,7 +245,6 @@ void GainRule::add_steps(const LeafRow& row, std::int64_t voxels, float tile, co
 
 void GainRule::gains(const TreeRegions& tree, const RegionRows& rows, RegionGains& out, double least_key) const {
   const NodeLattice& leaves = tree.leaves;
-  const Index3 last_leaf = leaves.count - Index3{1, 1, 1};
   const std::int64_t side = metric == Metric::sse ? 1 : brick_leaves;
   const std::int64_t bricks = kLowerLeaves / side;
   out.clear();
@@ -257,10 +260,10 @@ void GainRule::gains(const TreeRegions& tree, const RegionRows& rows, RegionGain
     const Index3 entry{node.x & (kLowerLeaves - 1), node.y & (kLowerLeaves - 1), node.z & (kLowerLeaves - 1)};
     const std::int64_t voxels = whole ? kLeafVoxels : leaves.voxels(leaf).voxels();
     LeafGain gain;
-    gain.position = static_cast<std::uint16_t>(entry.x << 8 | entry.y << 4 | entry.z);
+    gain.position = static_cast<std::uint16_t>(tree.mask_position(leaf));
     gain.brick = static_cast<std::uint32_t>(
         linear_index({entry.x / side, entry.y / side, entry.z / side}, {bricks, bricks, bricks}));
-    const bool corner = leaf == Index3{0, 0, 0} || leaf == last_leaf;
+    const bool corner = is_corner(leaves, leaf);
     const float tile = packed ? region.value : fill.leaf_value(row);
     gain.exact = fill.exact(row, voxels, tile);
     gain.required = (corner && (!packed || packed->preview)) ||

@@ -86,14 +86,12 @@ StreamLengths::StreamLengths(const MeanRange& means, const PackedRule& rule) : c
 }
 
 PackedKind packed_kind(const PackedLadder& ladder, KeptLevel level) {
-  constexpr std::uint16_t kOneValueBytes = 5;
-  constexpr std::uint16_t kMeanBits = 8;
   if (level == kExactLevel) {
-    const bool raw = ladder.exact_bytes == kOneValueBytes || ladder.exact_bytes == kRawStreamBytes;
+    const bool raw = ladder.exact_bytes == kOneValueStreamBytes || ladder.exact_bytes == kRawStreamBytes;
     return raw ? PackedKind::raw : PackedKind::lattice;
   }
   if (level >= kFirstNearLevel) return PackedKind::lattice;
-  return ladder.rungs[level - 1U].bits == kMeanBits ? PackedKind::mean : PackedKind::transform;
+  return ladder.rungs[level - 1U].bits == kMeanAloneBits ? PackedKind::mean : PackedKind::transform;
 }
 
 const std::array<double, kMostStep - kLeastStep + 1> kMeanErrors = [] {
@@ -130,7 +128,7 @@ PlannedStreams plan_streams(const RegionRows& rows, const TreeRegions& tree, con
 }
 
 void set_packed_counts(const PackedRule& rule, const TreeRegions& tree, std::uint64_t regions, NodeCounts& counts) {
-  counts.packed_bytes = packed::kRegionsOffset + tree.regions.size() * packed::region::kEntryBytes;
+  counts.packed_bytes = packed::chunks_offset(tree.regions.size());
   if (!rule.preview) return;
   // The lowest and the highest block stay leaves, so that the box others find is the domain.
   counts.uppers = tree.uppers.size();

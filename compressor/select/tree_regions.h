@@ -56,6 +56,11 @@ inline bool are_whole(const NodeLattice& leaves, const Box& leaf_box) {
   return leaves.voxels(leaf_box.lo) == leaves.node_box(leaf_box.lo) && leaves.voxels(last) == leaves.node_box(last);
 }
 
+/// Whether a leaf is the first or the last of a volume: the box that others find is the domain by these two.
+inline bool is_corner(const NodeLattice& leaves, const Index3& leaf) {
+  return leaf == Index3{0, 0, 0} || leaf == leaves.count - Index3{1, 1, 1};
+}
+
 struct Region {
   TileSums sums;
   double key = 0;                ///< error saved per byte by opening the region; +inf where it must be

@@ -25,7 +25,8 @@ struct SurveyTask {
   /// What each width of a quantised leaf would cost, too (LeafRow::quantised and exact_bits); takes as long again.
   bool widths = false;
   LeafStore<LeafFaces>* faces = nullptr;  ///< where given, gets the outer layers of each leaf (leaf_reach.h)
-  /// Where given, what is done already, by any plan. Updated when `pauses` ask for it; of the whole volume in the end.
+  /// Where given, what is done already, by any plan. Updated when `pauses` ask for it; of the whole volume in the end,
+  /// but unchanged where a device surveys, of which a journal keeps nothing.
   SurveyState* state = nullptr;
   Pauses pauses{};
   std::optional<LadderAim> ladders{};  ///< where given, the rows' ladders are filled

@@ -82,20 +82,4 @@ std::span<const std::byte> file_piece(std::span<const std::byte> file, std::uint
   return file.subspan(begin, std::min<std::uint64_t>(kDigestPieceBytes, file.size() - begin));
 }
 
-Digest file_digest(std::span<const std::byte> file) {
-  DigestStream stream;
-  for (std::uint64_t i = 0; i < piece_count(file.size()); ++i) stream.update(piece_digest(file_piece(file, i)));
-  return stream.digest();
-}
-
-Digest file_digest(File& file) {
-  const std::uint64_t bytes = file.size();
-  std::vector<std::byte> scratch(kDigestScratchBytes);
-  DigestStream stream;
-  for (std::uint64_t at = 0; at < bytes; at += kDigestPieceBytes) {
-    stream.update(piece_digest(file, at, std::min(kDigestPieceBytes, bytes - at), scratch));
-  }
-  return stream.digest();
-}
-
 }  // namespace weir

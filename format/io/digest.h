@@ -76,8 +76,4 @@ constexpr std::uint64_t piece_count(std::uint64_t bytes) {
 /// Piece `i` of a file in memory; i < piece_count(file.size()).
 std::span<const std::byte> file_piece(std::span<const std::byte> file, std::uint64_t i);
 
-/// Digest of a whole file, one thread.
-Digest file_digest(std::span<const std::byte> file);
-Digest file_digest(File& file);
-
 }  // namespace weir

@@ -38,7 +38,9 @@ class TreeReader {
     read_head();
     upper_seen_.resize(upper_.count);
     lower_seen_.resize(lower_.count);
-    read_root_table();
+    read_root_table([this](std::uint64_t entry, std::int64_t child) {
+      visit_once(upper_, upper_seen_, entry, child_offset(entry, nvdb::kRootOffset, child));
+    });
     check_reached(upper_, upper_seen_);
     for (std::uint64_t i = 0; i < upper_.count; ++i) {
       for_each_child(nvdb::kUpper, upper_.begin + i * upper_.stride, [this](std::uint64_t entry, std::uint64_t child) {
@@ -53,7 +55,7 @@ class TreeReader {
 
   NvdbTree read_head_alone() {
     read_head();
-    read_root_table();
+    read_root_table([](std::uint64_t, std::int64_t) {});
     read_bbox();
     return tree_;
   }
@@ -98,7 +100,9 @@ class TreeReader {
     return level;
   }
 
-  void read_root_table() {
+  // Calls visit(offset of the table entry, the child's offset in it) for every child.
+  template <typename Visit>
+  void read_root_table(const Visit& visit) {
     std::vector<std::uint64_t> keys(tree_.root_tiles);
     for (std::uint32_t i = 0; i < tree_.root_tiles; ++i) {
       const std::uint64_t tile = nvdb::kRootTilesOffset + i * nvdb::kRootTileBytes;
@@ -109,10 +113,7 @@ class TreeReader {
       const Box box{origin, origin + Index3{kUpperDim, kUpperDim, kUpperDim}};
       root_box_ = i == 0 ? box : Box{min(root_box_.lo, box.lo), max(root_box_.hi, box.hi)};
       const auto child = grid_.get<std::int64_t>(tile + nvdb::root::kTileChild);
-      if (child != 0 && !upper_seen_.empty()) {
-        const std::uint64_t entry = tile + nvdb::root::kTileChild;
-        visit_once(upper_, upper_seen_, entry, child_offset(entry, nvdb::kRootOffset, child));
-      }
+      if (child != 0) visit(tile + nvdb::root::kTileChild, child);
     }
     std::sort(keys.begin(), keys.end());
     if (const auto twice = std::adjacent_find(keys.begin(), keys.end()); twice != keys.end()) {

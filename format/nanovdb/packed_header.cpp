@@ -2,14 +2,11 @@
 
 #include <cmath>
 
+#include "format/packed/block_steps.h"
 #include "format/packed/packed_layout.h"
 
 namespace weir {
 namespace {
-
-constexpr std::int32_t kMostStep = 250;
-constexpr std::uint32_t kMaxLatticeBits = 24;
-constexpr std::uint32_t kFrequencyTotal = 4096;  ///< of a table's frequencies
 
 class PackedHeaderReader {
  public:
@@ -67,16 +64,16 @@ class PackedHeaderReader {
     if (c.minimum > c.maximum)
       data_.fail(packed::header::kMaximum, "maximum ", c.maximum, " is below minimum ", c.minimum);
     c.coarsest = data_.get<std::int32_t>(packed::header::kCoarsest);
-    if (c.coarsest < -kMostStep || c.coarsest > kMostStep) {
-      data_.fail(packed::header::kCoarsest, "the coarsest step is ", c.coarsest, ", it must be from ", -kMostStep,
+    if (c.coarsest < kLeastStep || c.coarsest > kMostStep) {
+      data_.fail(packed::header::kCoarsest, "the coarsest step is ", c.coarsest, ", it must be from ", kLeastStep,
                  " to ", kMostStep);
     }
     c.lattice_minimum = finite(packed::header::kLatticeMinimum, "lattice minimum");
     c.lattice_quantum = finite(packed::header::kLatticeQuantum, "lattice quantum");
     c.lattice_bits = data_.get<std::uint32_t>(packed::header::kLatticeBits);
-    if (c.lattice_bits > kMaxLatticeBits) {
+    if (c.lattice_bits > kMostLatticeBits) {
       data_.fail(packed::header::kLatticeBits, "codes of ", c.lattice_bits, " bits on the lattice, at most ",
-                 kMaxLatticeBits);
+                 kMostLatticeBits);
     }
     c.below_one = finite(packed::header::kBelowOne, "recovery point");
     c.below_more = finite(packed::header::kBelowMore, "recovery point");

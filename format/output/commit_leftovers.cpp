@@ -13,12 +13,10 @@
 namespace weir {
 namespace {
 
-constexpr std::uint64_t kMostText = 64ULL << 20U;  // bytes of a sidecar; more is somebody else's file
-
 // Throws Error(input) where it is too long for a text of weir.
 std::string text_of(File& file) {
   const std::uint64_t bytes = file.size();
-  if (bytes > kMostText) throw Error(ErrorKind::input, file.path() + ": is no sidecar");
+  if (bytes > kMostSidecarBytes) throw Error(ErrorKind::input, file.path() + ": is no sidecar");
   std::string text(bytes, '\0');
   file.read_at(0, std::as_writable_bytes(std::span(text)));
   return text;

@@ -11,6 +11,12 @@ inline constexpr unsigned kPackedLevels = 24;
 inline constexpr unsigned kPackedBands = 4;
 inline constexpr unsigned kPackedTables = kPackedLevels * (kPackedBands + 1);
 inline constexpr unsigned kPackedSymbols = 16;
+/// Of a table's frequencies.
+inline constexpr unsigned kFrequencyBits = 12;
+inline constexpr std::uint32_t kFrequencyTotal = 1U << kFrequencyBits;
+
+/// Of a code on a lattice.
+inline constexpr std::uint32_t kMostLatticeBits = 24;
 
 /// How a stream codes its block, as the lowest two bits of its first byte say it.
 enum class PackedKind : std::uint8_t { mean = 0, transform = 1, lattice = 2, raw = 3 };
@@ -26,7 +32,7 @@ struct BlockConstants {
   std::uint32_t lattice_bits = 0;  ///< of a code on the file's lattice
   float below_one = 0;             ///< a coefficient of magnitude 1 decodes to (1 - below_one) steps
   float below_more = 0;            ///< one of magnitude m >= 2 to (m - below_more) steps
-  /// kPackedTables x kPackedSymbols cumulative frequencies of a total of 4096.
+  /// kPackedTables x kPackedSymbols cumulative frequencies of a total of kFrequencyTotal.
   const std::uint16_t* tables = nullptr;
 };
 

@@ -13,7 +13,6 @@
 namespace weir {
 
 inline constexpr std::uint32_t kLeastState = 65536;
-inline constexpr unsigned kFrequencyBits = 12;
 /// Coefficients that `end` counts by.
 inline constexpr unsigned kEndUnit = 16;
 /// Streams of at most this `end` have one state, others two.

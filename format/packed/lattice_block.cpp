@@ -36,7 +36,7 @@ std::uint32_t write_codes(const ValueEncoder& coder, LatticeKind kind, const Lat
   StreamFront front;
   front.end_bits = kLatticeEndBits;
   front.number = codes[0];
-  front.number_bits = kind == LatticeKind::own ? 24 : ordered ? kOrderedNumberBits : lattice.bits;
+  front.number_bits = kind == LatticeKind::own ? kMostLatticeBits : ordered ? kOrderedNumberBits : lattice.bits;
   BlockCodes residuals;
   const unsigned predictor = best_predictor(codes, ordered, residuals);
   MagnitudeRows magnitudes;
@@ -78,7 +78,7 @@ std::uint32_t encode_exact(const ValueEncoder& coder, const BlockConstants& cons
   if (std::all_of(values.begin(), values.end(), [&](float v) { return bits(v) == bits(values[0]); })) {
     out[0] = static_cast<std::byte>(static_cast<unsigned>(PackedKind::raw) | 4U);
     std::memcpy(out.data() + 1, values.data(), sizeof(float));
-    return 5;
+    return kOneValueStreamBytes;
   }
   const Lattice file{constants.lattice_minimum, constants.lattice_quantum, constants.lattice_bits};
   std::uint32_t bytes = 0;

@@ -16,7 +16,7 @@ namespace weir {
 struct Lattice {
   float minimum = 0;
   float quantum = 0;
-  std::uint32_t bits = 0;  ///< of a code, at most 24
+  std::uint32_t bits = 0;  ///< of a code, at most kMostLatticeBits
 };
 
 /// Whether values on no lattice are predicted as whole numbers in the floats' order; else they are raw.

@@ -31,6 +31,9 @@ inline constexpr std::uint64_t kChunk = 0, kValue = 8, kChunkBytes = 12;
 inline constexpr std::uint64_t kEntryBytes = 16;
 }  // namespace region
 
+/// Of the first chunk, behind the table of so many regions.
+constexpr std::uint64_t chunks_offset(std::uint64_t regions) { return kRegionsOffset + regions * region::kEntryBytes; }
+
 /// A region's chunk, offsets from the chunk.
 namespace chunk {
 inline constexpr std::uint64_t kMeanLow = 0, kMeanHigh = 4, kBases = 8, kMasks = 1036, kGroups = 1548;

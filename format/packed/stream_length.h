@@ -10,6 +10,10 @@ namespace weir {
 
 /// Most bytes of a stream: raw values.
 inline constexpr std::uint32_t kRawStreamBytes = 1 + 4 * 512;
+/// Of one of a block whose voxels all have one value: its kind, and that.
+inline constexpr std::uint32_t kOneValueStreamBytes = 1 + 4;
+/// Of a mean alone, but for its code: the kind and the step.
+inline constexpr std::uint32_t kMeanAloneBits = 8;
 
 /// Bits of the end of a stream of kind lattice, and of the first code of floats in order.
 inline constexpr unsigned kLatticeEndBits = 6;

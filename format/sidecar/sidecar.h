@@ -18,6 +18,10 @@ namespace weir {
 /// Value of the key `weir_sidecar`. A reader refuses any other.
 inline constexpr int kSidecarVersion = 1;
 
+/// A longer text is no sidecar: a histogram of 1,024 bins and two paths take some 50 KB, and JSON takes up to 40 times
+/// its bytes in memory.
+inline constexpr std::uint64_t kMostSidecarBytes = std::uint64_t{4} << 20U;
+
 /// Non-finite doubles are written as null and read back as NaN.
 struct Sidecar {
   struct Time {

@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 
+#include "compressor/damaged_input.h"
 #include "compressor/options/conversion_request.h"
 #include "format/base/error.h"
 #include "format/base/json_text.h"
@@ -24,6 +25,7 @@
 #include "format/process/process_memory.h"
 #include "format/sidecar/find_sidecar.h"
 #include "format/sidecar/is_of.h"
+#include "format/sidecar/read_sidecar.h"
 #include "format/sidecar/valid_voxels.h"
 #include "ingest/vdb/openvdb_library.h"
 #include "ingest/vdb/vdb_header.h"
@@ -31,7 +33,6 @@
 #include "tools/export/vdb_writer.h"
 #include "tools/options/run_options.h"
 #include "tools/report/foreign_file.h"
-#include "tools/report/read_sidecar.h"
 
 namespace weir {
 namespace {
@@ -148,11 +149,13 @@ void export_volume(const ExportArguments& arguments) {
   options.creator = cat("weir ", WEIR_VERSION);
   if (const auto sidecar = sidecar_of(file)) options.metadata = certificate(*sidecar);
   Progress progress(arguments.progress);
-  const std::uint64_t total = file.grid().data_bytes();
-  options.progress = [&](double share) {
-    progress.update(static_cast<std::uint64_t>(share * static_cast<double>(total)));
+  const auto advance = [&](std::uint64_t done) {
+    progress.update(done);
     if (interrupt_flag()) throw Error(ErrorKind::interrupted, "interrupted");
   };
+  refuse_damaged(arguments.volume, {{}, [&](std::uint64_t bytes) { progress.start("check", bytes); }, advance});
+  const std::uint64_t total = file.grid().data_bytes();
+  options.progress = [&](double share) { advance(static_cast<std::uint64_t>(share * static_cast<double>(total))); };
   options.release_pages = [&] { file.mapping().release_pages(); };
 
   const OpenVdbLibrary& library = openvdb_library(arguments.output + ": is to be an OpenVDB file");

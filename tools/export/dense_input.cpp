@@ -90,7 +90,7 @@ float find_background(const SourceInfo& info, const float* values) {
   MemorySource source(info, values);
   const BlockPlan plan = plan_blocks(info.domain(), source.access(), kBlockBytes);
   const auto files = make_posix_file_system();
-  RowStore rows(files->create_unnamed(std::filesystem::temp_directory_path().string()), plan.lattice, {});
+  RowStore rows(files->create_unnamed(temporary_directory()), plan.lattice, {});
   const Survey survey = survey_volume(source, plan, rows, {}, {.reading = Reading::in_place});
   return weir::find_background(survey, rows, source, plan, {}).value;
 }

@@ -10,6 +10,15 @@
 #endif
 
 namespace weir {
+namespace {
+
+#ifdef WEIR_HAVE_CUDA
+constexpr const char* kNoDevice = "no CUDA device answers";
+#else
+constexpr const char* kNoDevice = "this build has no CUDA renderer";
+#endif
+
+}  // namespace
 
 std::unique_ptr<Backend> make_backend(const BackendChoice& choice, const std::function<void(const Message&)>& notice) {
 #ifdef WEIR_HAVE_CUDA
@@ -27,8 +36,9 @@ std::unique_ptr<Backend> make_backend(const BackendChoice& choice, const std::fu
   }
 #endif
   if (choice.device_memory || choice.devices != std::vector{0}) {
-    notice(compose("no CUDA device answers: the CPU draws, and ", option("devices"), " and ", option("device-memory"),
-                   " have no effect"));
+    const Message why =
+        choice.name == "cpu" ? compose(option("backend", "cpu"), " was chosen") : compose(kNoDevice, ": the CPU draws");
+    notice(compose(why, ", and ", option("devices"), " and ", option("device-memory"), " have no effect"));
   }
   return make_cpu_backend(choice.threads, choice.memory);
 }

@@ -1,7 +1,7 @@
 #include "tools/options/finite_range.h"
 
 #include "format/base/error.h"
-#include "tools/report/read_sidecar.h"
+#include "format/sidecar/read_sidecar.h"
 
 namespace weir {
 std::optional<MinMax> known_range(const NvdbFile& file) {

@@ -14,8 +14,8 @@
 #include "format/nanovdb/nvdb_checksum.h"
 #include "format/nanovdb/nvdb_file.h"
 #include "format/output/output_files.h"
+#include "format/sidecar/read_sidecar.h"
 #include "ingest/raw/raw_name.h"
-#include "tools/report/read_sidecar.h"
 
 namespace weir {
 namespace {

@@ -4,8 +4,8 @@
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "format/sidecar/read_sidecar.h"
 #include "format/sidecar/sidecar.h"
-#include "tools/report/read_sidecar.h"
 
 namespace weir {
 namespace {

@@ -11,11 +11,11 @@
 #include "format/base/text.h"
 #include "format/io/real_path.h"
 #include "format/sidecar/find_sidecar.h"
+#include "format/sidecar/read_sidecar.h"
 #include "ingest/raw/raw_name.h"
 #include "ingest/source/extent.h"
 #include "ingest/source_registry.h"
 #include "ingest/values/axis_placement.h"
-#include "tools/report/read_sidecar.h"
 
 namespace weir {
 namespace {

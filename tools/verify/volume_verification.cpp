@@ -13,9 +13,9 @@
 #include "format/io/digest.h"
 #include "format/nanovdb/nvdb_file.h"
 #include "format/sidecar/find_sidecar.h"
+#include "format/sidecar/read_sidecar.h"
 #include "format/sidecar/sidecar.h"
 #include "tools/report/foreign_file.h"
-#include "tools/report/read_sidecar.h"
 #include "tools/verify/certificate_check.h"
 #include "tools/verify/lossless_check.h"
 

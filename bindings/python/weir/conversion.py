@@ -18,7 +18,8 @@ from .options import box_text, given_options, input_bytes, is_url, path_bytes, s
 if TYPE_CHECKING:
     import xarray
 
-#: Called with the pass ("survey", "encode", "certify"), and its float32 bytes done and in all.
+#: Called with the pass ("survey", "encode", "certify"), and its float32 bytes done and in all; of a .nvdb file that is
+#: converted with "check" before, and the file's bytes.
 Progress = Callable[[str, int, int], Any]
 Path = Union[str, "os.PathLike[str]"]
 Size = Union[int, str]  #: bytes, or "64MiB", "1.5GB"

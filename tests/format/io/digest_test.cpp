@@ -54,28 +54,11 @@ TEST(Digest, StreamedDigestEqualsTheCombinedDigest) {
   EXPECT_EQ(DigestStream().digest(), piece_digest({}));
 }
 
-TEST(Digest, FileDigestCombinesPiecesOf16MiB) {
+TEST(Digest, FilesHavePiecesOf16MiB) {
   EXPECT_EQ(piece_count(0), 0U);
   EXPECT_EQ(piece_count(1), 1U);
   EXPECT_EQ(piece_count(kDigestPieceBytes), 1U);
   EXPECT_EQ(piece_count(kDigestPieceBytes + 1), 2U);
-  const auto data = pattern(2 * kDigestPieceBytes + 17);
-  const std::span<const std::byte> all(data);
-  const std::vector<Digest> pieces{piece_digest(all.first(kDigestPieceBytes)),
-                                   piece_digest(all.subspan(kDigestPieceBytes, kDigestPieceBytes)),
-                                   piece_digest(all.last(17))};
-  EXPECT_EQ(file_digest(all), combine(pieces));
-  EXPECT_EQ(file_digest(all.first(kDigestPieceBytes)), combine(std::span(pieces).first(1)));
-  EXPECT_EQ(file_digest(std::span<const std::byte>{}), combine({}));
-}
-
-TEST(Digest, OfFileThroughTheFileSystemIsTheSame) {
-  const auto data = pattern(kDigestPieceBytes + 4097);
-  const auto system = make_posix_file_system();
-  const TemporaryDirectory directory;
-  const auto file = system->create(directory / "volume");
-  file->write_at(0, data);
-  EXPECT_EQ(file_digest(*file), file_digest(std::span<const std::byte>(data)));
 }
 
 }  // namespace

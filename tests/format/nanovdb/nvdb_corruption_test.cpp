@@ -193,6 +193,11 @@ TEST(NvdbCorruption, RootTable) {
                 " has two parents");
   EXPECT_EQ(message([&](Bytes& f) { put<std::int64_t>(f, kTiles + 8, 0); }),
             "a.nvdb: at byte " + std::to_string(kGrid + upper) + ": upper node 0 of 14 has no parent");
+  const auto without_nodes = [](Bytes& f) {
+    for (unsigned level = 0; level < 3; ++level) put<std::uint32_t>(f, kTree + nvdb::tree::kNodeCount + 4 * level, 0);
+  };
+  EXPECT_NE(message(without_nodes).find(" is none of the 0 upper nodes from grid offset "), std::string::npos)
+      << message(without_nodes);
   Bytes twice = stock(GridType::float32);
   put(twice, kTiles + 32, get<std::uint64_t>(twice, kTiles));
   EXPECT_NE(message_of(twice).find(" stands in the table twice"), std::string::npos) << message_of(twice);

@@ -12,6 +12,7 @@
 
 #include "format/base/error.h"
 #include "format/output/commit_leftovers.h"
+#include "format/sidecar/sidecar.h"
 #include "tests/support/child_answer.h"
 #include "tests/support/faulty_file_system.h"
 #include "tests/support/message_of_error.h"
@@ -181,6 +182,16 @@ TEST_F(OutputFilesTest, ForeignSidecarIsKeptAndTheOutputRefused) {
     EXPECT_EQ(std::string(error.what()), output() + ".json: exists; choose another output or pass --overwrite");
   }
   EXPECT_EQ(listing(), (Listing{{"out.nvdb.json", "kept"}}));
+}
+
+// Even where the lock's file says that a killed commit placed this very text.
+TEST_F(OutputFilesTest, TextLongerThanAnySidecarIsForeign) {
+  const std::string text(kMostSidecarBytes + 1, ' ');
+  put("out.nvdb.json", text);
+  put("out.nvdb.partial", commit_record(text));
+  EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { OutputFiles(*real_, output(), false); }),
+            output() + ".json: exists; choose another output or pass --overwrite");
+  EXPECT_EQ(listing().at("out.nvdb.json"), text);
 }
 
 TEST_F(OutputFilesTest, SecondWriterKeepsTheSidecarOfARunningCommit) {

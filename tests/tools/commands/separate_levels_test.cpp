@@ -11,10 +11,10 @@
 
 #include "format/leaf/leaf_decode.h"
 #include "format/nanovdb/nvdb_file.h"
+#include "format/sidecar/read_sidecar.h"
 #include "format/sidecar/sidecar.h"
 #include "tests/support/plotfile_writer.h"
 #include "tests/support/run_command.h"
-#include "tools/report/read_sidecar.h"
 
 namespace weir::separate_levels_command_test {
 namespace {

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "format/nanovdb/nvdb_file.h"
+#include "format/sidecar/read_sidecar.h"
 #include "format/sidecar/sidecar.h"
 #include "tests/support/run_command.h"
-#include "tools/report/read_sidecar.h"
 
 namespace weir {
 

@@ -4,12 +4,11 @@
 #include <stdlib.h>
 
 #include <cerrno>
-#include <cstdlib>
 #include <filesystem>
 #include <string>
 
 #include "format/base/error.h"
-#include "format/base/text.h"
+#include "format/io/temporary_directory.h"
 
 namespace weir {
 
@@ -18,7 +17,7 @@ class TemporaryFolder {
   /// Made in `parent`, or where temporary files are where that is empty. Throws Error(io).
   explicit TemporaryFolder(const std::string& parent = "") {
     std::string name =
-        ((parent.empty() ? standard_parent() : std::filesystem::path(parent)) / "weir-view-XXXXXX").string();
+        (std::filesystem::path(parent.empty() ? temporary_directory() : parent) / "weir-view-XXXXXX").string();
     if (::mkdtemp(name.data()) == nullptr) throw io_error(name, "make a directory", errno);
     path_ = name;
   }
@@ -33,15 +32,6 @@ class TemporaryFolder {
   const std::filesystem::path& path() const { return path_; }
 
  private:
-  static std::filesystem::path standard_parent() {
-    std::error_code failure;
-    std::filesystem::path found = std::filesystem::temp_directory_path(failure);
-    if (!failure) return found;
-    const char* named = std::getenv("TMPDIR");
-    throw Error(ErrorKind::io, cat(named != nullptr ? named : "/tmp",
-                                   ": is no directory for temporary files; make it, or set TMPDIR to another one"));
-  }
-
   std::filesystem::path path_;
 };
 

@@ -6,7 +6,7 @@
 
 #include "compressor/select/file_size.h"
 #include "format/base/error.h"
-#include "tools/report/read_sidecar.h"
+#include "format/sidecar/read_sidecar.h"
 
 namespace weir {
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/report/read_sidecar.h"
+#include "format/sidecar/read_sidecar.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -14,13 +14,6 @@
 #include "format/sidecar/is_of.h"
 
 namespace weir {
-namespace {
-
-// A histogram of 1,024 bins and two paths take some 50 KB; JSON takes up to 40 times its bytes in memory.
-constexpr std::uintmax_t kMaxBytes = 4U << 20U;
-
-}  // namespace
-
 Sidecar read_sidecar(const std::string& path) {
   std::error_code error;
   const std::uintmax_t bytes = std::filesystem::file_size(path, error);
@@ -31,7 +24,7 @@ Sidecar read_sidecar(const std::string& path) {
                     missing ? "; write it with weir convert, or look at the volume alone with weir inspect"
                             : "; check its disk or file server and the permissions, and try again"));
   }
-  if (bytes > kMaxBytes) {
+  if (bytes > kMostSidecarBytes) {
     throw Error(ErrorKind::input, cat(path, ": ", bytes, " bytes are no sidecar; write it again with weir convert"));
   }
   std::string text(bytes, '\0');
