@@ -263,7 +263,7 @@ function(weir_loader_tests)
                                       ${root}/tests/fake_cuda/*.cpp)
   add_executable(weir_tests_loader ${sources} ${root}/gpu/cuda/runtime/check.cpp ${root}/gpu/cuda/grid_loader.cpp
                                    ${root}/gpu/cuda/runtime/driver_context.cpp
-                                   ${root}/gpu/cuda/push/device_slabs.cpp
+                                   ${root}/gpu/cuda/push/device_slabs.cpp ${root}/gpu/cuda/push/device_values.cpp
                                    ${root}/tests/cuda/grid_loader_test.cpp)
   target_include_directories(weir_tests_loader SYSTEM PRIVATE ${CUDAToolkit_INCLUDE_DIRS})
   target_link_libraries(weir_tests_loader PRIVATE weir_test_stock GTest::gtest_main Threads::Threads ${CMAKE_DL_LIBS})
@@ -297,7 +297,8 @@ function(weir_coder_tests)
                                   ${root}/tests/fake_cuda/fake_gather.cpp
                                   ${root}/gpu/cuda/runtime/check.cpp ${root}/gpu/cuda/runtime/driver_context.cpp
                                   ${root}/gpu/cuda/load/pinned_memory.cpp
-                                  ${root}/gpu/cuda/push/device_slabs.cpp
+                                  ${root}/gpu/cuda/push/device_slabs.cpp ${root}/gpu/cuda/push/device_values.cpp
+                                  ${root}/gpu/cuda/push/resident_planes.cpp
                                   ${root}/tests/compressor/support/memory_volume.cpp
                                   ${root}/tests/compressor/support/crash_file_system.cpp
                                   ${root}/tests/compressor/support/hard_cases.cpp)

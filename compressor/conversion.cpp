@@ -25,8 +25,8 @@
 #include "format/process/fork_guard.h"
 #include "format/process/process_memory.h"
 #include "ingest/drivers/hdf5_crash.h"
-#include "ingest/files/file_state.h"
 #include "ingest/source/cell_places.h"
+#include "ingest/source/source_files.h"
 
 namespace weir {
 
@@ -203,12 +203,7 @@ void check_certified(const SourceInfo& info, const ConversionControl& control) {
 
 Sidecar convert_volume(VolumeSource& source, const ConversionOptions& options, const ConversionControl& control,
                        FileSystem& files, Team& team) {
-  std::vector<FileId> inputs;
-  for (const FileState& file : source.info().files) {
-    if (file.exists) inputs.push_back({file.device, file.inode});
-  }
-  if (const auto id = file_id(source.info().path)) inputs.push_back(*id);
-  require_not_input(inputs, options.output);
+  require_not_input(source_file_ids(source.info()), options.output);
   if (team.alone() && !options.overwrite) clear_after_commit(files, options.output);
   OutputFiles output(files, options.output, options.overwrite);
   WorkDirectory work(files, options.output, options.work_dir);

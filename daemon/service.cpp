@@ -176,35 +176,45 @@ void Service::await_signal() {
 
 void Service::reload() {
   notifier_.send(cat("RELOADING=1\nMONOTONIC_USEC=", monotonic_usec()));
+  if (std::optional<DaemonConfig> config = load_again()) apply(*std::move(config));
+  notifier_.send("READY=1");
+}
+
+// None where it is refused.
+std::optional<DaemonConfig> Service::load_again() {
   try {
     DaemonConfig config = load_();
     check_access(config);
     log_.reopen(config.service);
-    if (needs_restart(config_.service, config.service)) {
-      log_.warn("reload",
-                {{"notice", "state, listen, control_socket, port_file and token stay as they were until a restart"}});
-      const ServiceConfig& old = config_.service;
-      config.service.state = old.state;
-      config.service.listen = old.listen;
-      config.service.control_socket = old.control_socket;
-      config.service.port_file = old.port_file;
-      config.service.token = old.token;
-    }
-    const DaemonConfig before = std::exchange(config_, std::move(config));
-    state_.jobs = config_.service.jobs;
-    ++state_.reloads;
-    clean(watches_to_clean(before), milliseconds(0));
-    runner_.configure(config_);
-    viewer_.configure(config_.service);
-    watch_trees();
-    history_.keep(config_.service.history_days);
-    runner_.wake();
-    log_.info("reload", {{"config", config_.path}, {"watches", trees_.size()}});
+    return config;
   } catch (const Error& error) {
     ++state_.rejected_reloads;
     log_.error("reload-rejected", {{"reason", error.what()}, {"notice", "the configuration before stays"}});
+    return std::nullopt;
   }
-  notifier_.send("READY=1");
+}
+
+void Service::apply(DaemonConfig config) {
+  if (needs_restart(config_.service, config.service)) {
+    log_.warn("reload",
+              {{"notice", "state, listen, control_socket, port_file and token stay as they were until a restart"}});
+    const ServiceConfig& old = config_.service;
+    config.service.state = old.state;
+    config.service.listen = old.listen;
+    config.service.control_socket = old.control_socket;
+    config.service.port_file = old.port_file;
+    config.service.token = old.token;
+  }
+  const DaemonConfig before = std::exchange(config_, std::move(config));
+  state_.jobs = config_.service.jobs;
+  ++state_.reloads;
+  clean(watches_to_clean(before), milliseconds(0));
+  runner_.configure(config_);
+  viewer_.configure(config_.service);
+  watch_trees();
+  history_.keep(config_.service.history_days);
+  runner_.wake();
+  log_.info("reload", {{"config", config_.path}, {"watches", trees_.size()}});
 }
 
 void Service::shut_down() {

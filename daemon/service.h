@@ -9,6 +9,7 @@
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,8 @@ class Service {
   void write_port_file() const;
   void await_signal();
   void reload();
+  std::optional<DaemonConfig> load_again();
+  void apply(DaemonConfig config);
   void shut_down();
   void feed_watchdog();
   void checkpoint_when_due();

@@ -157,6 +157,7 @@ void WatchedTree::work() {
   events_.erase(events_.begin(), events_.begin() + count);
   first_events_ -= first;
   fit_batch(looking);
+  log_look(events.size());
   for (const auto& say : std::exchange(written_, {})) say();
   for (const std::int64_t job : std::exchange(superseded_, {})) reports_.superseded(job);
   if (std::exchange(ready_, false)) reports_.ready();
@@ -165,6 +166,17 @@ void WatchedTree::work() {
   } else if (!agenda_.empty()) {
     schedule(std::max(milliseconds(0), std::chrono::ceil<milliseconds>(agenda_.begin()->first - Clock::now())));
   }
+}
+
+void WatchedTree::log_look(std::size_t events) const {
+  if (events == 0 && looked_at_.empty()) return;
+  const WatchFigures figures = watch_->figures();
+  log_.debug("look", {{"watch", config_.label},
+                      {"events", events},
+                      {"looked_at", looked_at_.size()},
+                      {"waiting", tracked_.size()},
+                      {"directories", figures.directories},
+                      {"files", figures.files}});
 }
 
 void WatchedTree::fit_batch(Clock::duration looking) {

@@ -44,7 +44,7 @@ class WatchedTree {
 
   const WatchConfig& config() const { return config_; }
   struct Status {
-    std::string method;  ///< "inotify", "poll", or "auto" where the directory was never there
+    std::string method;  ///< "inotify" or "poll"
     bool up = false;
     std::string reason;  ///< why not: the directory is not there, or the state file cannot be written
     std::uint64_t overflows = 0;
@@ -89,6 +89,7 @@ class WatchedTree {
   void look_at_known_jobs();
   void look(const std::string& path, Time now);
   bool keeps_growing(const std::string& path, const FileSample& sample, Time now);
+  void log_look(std::size_t events) const;
   void fit_batch(std::chrono::steady_clock::duration looking);
   bool tries_again(const std::string& path, const Job& job);
   void apply(const std::string& path, const CompletionAnswer& answer, const Job& job);

@@ -1,23 +1,17 @@
 // The `weir` command: options to subcommands, errors to one line and an exit code.
-#include <spdlog/pattern_formatter.h>
-#include <spdlog/sinks/stdout_sinks.h>
-#include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <csignal>
 #include <exception>
-#include <memory>
 #include <new>
 #include <string>
 #include <string_view>
 #include <system_error>
-#include <utility>
 #include <vector>
 
 #include "compressor/plan/startable_threads.h"
 #include "format/base/error.h"
-#include "format/base/printable.h"
 #include "ingest/drivers/hdf5_crash.h"
 #include "tools/command.h"
 #include "tools/interrupt.h"
@@ -39,28 +33,12 @@ int fail_internally(const std::exception& error) {
   return fail(std::string("internal fault: ") + error.what() + "; please report it", 1);
 }
 
-// What is logged, as one line: it names the same paths.
-class OneLine : public spdlog::custom_flag_formatter {
- public:
-  void format(const spdlog::details::log_msg& message, const std::tm&, spdlog::memory_buf_t& out) override {
-    const std::string line = weir::one_line(std::string(message.payload.data(), message.payload.size()));
-    out.append(line.data(), line.data() + line.size());
-  }
-  std::unique_ptr<custom_flag_formatter> clone() const override { return std::make_unique<OneLine>(); }
-};
-
-void log_in_lines() {
-  auto formatter = std::make_unique<spdlog::pattern_formatter>();
-  formatter->add_flag<OneLine>('*').set_pattern("%H:%M:%S %l %*");
-  spdlog::set_formatter(std::move(formatter));
-}
-
 int run(int argc, char** argv) {
-  spdlog::set_default_logger(spdlog::stderr_logger_mt("weir"));
-  log_in_lines();
+  weir::log_in_lines("weir");
   weir::catch_interrupts();
   weir::report_hdf5_crashes();
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGCHLD, SIG_DFL);  // were it ignored, as who starts weir may have it, no worker would tell how it ended
 
   CLI::App app("Streams volumes of any size into NanoVDB files of exactly the size you ask for.", "weir");
   app.require_subcommand(0, 1);  // none is refused below, after an unknown one was named

@@ -12,6 +12,7 @@
 #include "format/base/text.h"
 #include "gpu/cuda/load/pinned_memory.h"
 #include "gpu/cuda/push/device_slabs.h"
+#include "gpu/cuda/push/device_values.h"
 #include "gpu/cuda/push/gather_planes.h"
 #include "gpu/cuda/runtime/check.h"
 #include "gpu/cuda/runtime/current_device.h"
@@ -23,33 +24,33 @@ constexpr const char* kCopyingBox = "copying a box from the device";
 
 class DeviceArraySource final : public VolumeSource {
  public:
+  /// `device` is current.
   DeviceArraySource(const DenseArray& array, int device)
       : array_(array),
-        device_(device),
+        context_(device),
         info_(array_info(array)),
         value_bytes_(static_cast<std::int64_t>(scalar_bytes(array.type))),
-        piece_bytes_(std::max(kDeviceArrayPiece, static_cast<std::uint64_t>(array.extent.x * value_bytes_))) {
-    const KeptDevice kept(device_);
-    check_slab(values_at({0, 0, 0}), device_);
+        piece_bytes_(std::max(DeviceSlabs::kPieceBytes, static_cast<std::uint64_t>(array.extent.x * value_bytes_))) {
+    check_slab(values_at({0, 0, 0}), device);
     std::string refusal;
     pinned_ = PinnedMemory::make(working_bytes(), refusal);
     if (!pinned_) throw Error(ErrorKind::io, refusal);
-    for (std::size_t i = 0; i < kDeviceArrayPieces; ++i) free_.push_back(i);
+    for (std::size_t i = 0; i < DeviceSlabs::kPinnedSlots; ++i) free_.push_back(i);
   }
 
   ~DeviceArraySource() override {
-    free_on(device_, [&] { pinned_.reset(); });
+    free_on(context_, [&] { pinned_.reset(); });
   }
   DeviceArraySource(const DeviceArraySource&) = delete;
   DeviceArraySource& operator=(const DeviceArraySource&) = delete;
 
   const SourceInfo& info() const override { return info_; }
   AccessShape access() const override { return {static_cast<std::size_t>(value_bytes_), {}, {}}; }
-  std::uint64_t working_bytes() const override { return kDeviceArrayPieces * piece_bytes_; }
+  std::uint64_t working_bytes() const override { return DeviceSlabs::kPinnedSlots * piece_bytes_; }
   std::uint64_t bytes_read() const override { return bytes_read_; }
 
   ConversionLoss read(const Box& box, std::span<float> values) override {
-    const KeptDevice kept(device_);
+    const KeptDevice kept(context_);
     const Index3 extent = box.extent();
     const std::int64_t most = static_cast<std::int64_t>(piece_bytes_) / value_bytes_;
     const std::int64_t rows = std::clamp<std::int64_t>(most / extent.x, 1, extent.y);
@@ -117,7 +118,7 @@ class DeviceArraySource final : public VolumeSource {
   }
 
   const DenseArray array_;
-  const int device_;
+  const SharedContext context_;
   const SourceInfo info_;
   const std::int64_t value_bytes_;
   const std::uint64_t piece_bytes_;
@@ -134,17 +135,17 @@ int device_of(const void* address) {
   if (device_count() == 0)
     throw Error(ErrorKind::usage,
                 "source lies on a CUDA device, and none answers here; copy it to a numpy array first");
-  cudaPointerAttributes attributes{};
-  check_cuda(cudaPointerGetAttributes(&attributes, address), "asking where an array's values are");
-  if (attributes.type != cudaMemoryTypeDevice && attributes.type != cudaMemoryTypeManaged) {
+  const std::optional<DevicePlace> place = device_place(address);
+  if (!place) {
     throw Error(
         ErrorKind::usage,
         "source says that it lies on a CUDA device, and its address is no memory of one; give the array itself");
   }
-  return attributes.device;
+  return place->device;
 }
 
 std::unique_ptr<VolumeSource> open_device_array(const DenseArray& array, int device) {
+  const KeptDevice kept(device);
   return std::make_unique<DeviceArraySource>(array, device);
 }
 

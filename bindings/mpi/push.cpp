@@ -115,6 +115,7 @@ weir_status weir_mpi_push_box(weir_mpi_push* push, const int64_t lo[3], const in
                               const int64_t stride[3], weir_error* error) {
   return guarded(error, [&] {
     weir_mpi_push& p = running(push);
+    p.callbacks->look_for_cancel();
     const Index3 first = index_of(lo, "lo", 0);
     const Index3 size = index_of(extent, "extent", 1);
     required(data, "data");

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "bindings/mpi/mpi_file_system.h"
+#include "compressor/conversion_control.h"
 #include "compressor/push/spool_source.h"
 #include "compressor/resume/journal.h"
 #include "format/base/box_set.h"
@@ -16,7 +17,7 @@
 namespace weir {
 namespace {
 
-constexpr std::uint64_t kPieceBytes = std::uint64_t{4} << 20U;  // gathered before they are written
+constexpr std::uint64_t kGatheredBytes = std::uint64_t{4} << 20U;  // gathered before they are written
 
 std::string box_text(const Box& box, const Index3& origin) {
   const Index3 lo = box.lo - origin;
@@ -25,12 +26,12 @@ std::string box_text(const Box& box, const Index3& origin) {
 }
 
 // Calls visit(part) for parts of `box` that end at borders of leaves, where they do not end with it, of about
-// kPieceBytes or one row of leaves each.
+// kGatheredBytes or one row of leaves each.
 template <typename Visit>
 void for_each_piece(const Box& box, std::size_t value_bytes, const Visit& visit) {
   const auto leaf_end = [](std::int64_t at) { return (floor_div(at, kLeafDim) + 1) * kLeafDim; };
   const auto row_bytes = static_cast<std::uint64_t>(box.extent().x * kLeafDim * kLeafDim) * value_bytes;
-  const auto rows = static_cast<std::int64_t>(std::max<std::uint64_t>(1, kPieceBytes / row_bytes));
+  const auto rows = static_cast<std::int64_t>(std::max<std::uint64_t>(1, kGatheredBytes / row_bytes));
   for (std::int64_t z = box.lo.z; z < box.hi.z;) {
     const std::int64_t z_end = std::min(box.hi.z, leaf_end(z));
     for (std::int64_t y = box.lo.y; y < box.hi.y;) {
@@ -101,6 +102,7 @@ void PushedBoxes::box(const Box& box, const void* data, const std::array<std::in
       {box.lo + origin, box.hi + origin}, static_cast<const std::byte*>(data), stride, scalar_bytes(info_.type)};
   std::vector<std::byte> piece;
   try {
+    check_cancel(control_);
     for_each_piece(from.box, from.value_bytes, [&](const Box& part) {
       piece.resize(static_cast<std::size_t>(part.voxels()) * from.value_bytes);
       copy_voxels(from, part, piece.data());

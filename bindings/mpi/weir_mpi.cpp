@@ -1,9 +1,9 @@
 // `weir-mpi convert`: one conversion by all processes of an MPI job.
 #include <mpi.h>
-#include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <string>
@@ -23,9 +23,13 @@
 #include "tools/options/given_options.h"
 #include "tools/options/run_options.h"
 #include "tools/options/table_options.h"
+#include "tools/report/error_line.h"
 #include "tools/report/progress.h"
+#include "tools/report/standard_output.h"
 
 namespace {
+
+constexpr const char* kProgram = "weir-mpi";
 
 /// The command line as given; empty: not given.
 struct Arguments {
@@ -89,14 +93,14 @@ void convert(const CLI::App& command, const Arguments& a, weir::MpiTeam& team) {
 }
 
 int fail(const std::string& message, int code, bool says) {
-  if (says) std::fprintf(stderr, "weir-mpi: %s\n", message.c_str());
+  if (says) weir::print_error_line(message, kProgram);
   return code;
 }
 
 // What ends in an Error ends so on all ranks; one of them says it.
 int run(int argc, char** argv, int rank) {
   const bool says = rank == 0;
-  CLI::App app("Converts one volume with all processes of an MPI job.", "weir-mpi");
+  CLI::App app("Converts one volume with all processes of an MPI job.", kProgram);
   app.require_subcommand(1);
   app.set_version_flag("--version", WEIR_VERSION);
   Arguments arguments;
@@ -126,15 +130,20 @@ int main(int argc, char** argv) {
   }
   int rank = 0;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-  spdlog::set_default_logger(spdlog::stderr_logger_mt("weir-mpi"));
-  spdlog::set_pattern("%H:%M:%S %l %v");
+  weir::log_in_lines(kProgram);
   weir::catch_interrupts();
+  std::signal(SIGPIPE, SIG_IGN);
   int code = static_cast<int>(weir::ErrorKind::internal);
   try {
     code = run(argc, argv, rank);
   } catch (const std::exception& error) {  // of this process alone: the others would wait
-    std::fprintf(stderr, "weir-mpi: process %d: internal fault: %s; please report it\n", rank, error.what());
+    fail(weir::cat("process ", rank, ": internal fault: ", error.what(), "; please report it"), code, true);
     MPI_Abort(MPI_COMM_WORLD, code);
+  }
+  try {
+    weir::finish_stdout();
+  } catch (const weir::Error& error) {
+    if (code == 0) code = fail(error.what(), error.exit_code(), true);  // else its own error was said
   }
   MPI_Finalize();
   return code;

@@ -32,8 +32,9 @@ WEIR_API weir_status weir_mpi_push_begin_fortran(MPI_Fint comm, const weir_volum
 
 /* Hands over the voxels [lo, lo + extent) of the volume: voxel (x, y, z) of the box is at data + x stride[0] +
  * y stride[1] + z stride[2] bytes; stride NULL: packed, x fastest. Of this process alone, any number of times, one call
- * at a time; the data is free when it returns. In the end each voxel of the volume was given once, by whomever. After
- * WEIR_ERROR_USAGE nothing was taken and the push goes on; any other failure is also that of weir_mpi_push_end. */
+ * at a time; the data is free when it returns. Asks options->cancel. In the end each voxel of the volume was given
+ * once, by whomever. After WEIR_ERROR_USAGE nothing was taken and the push goes on; any other failure is also that of
+ * weir_mpi_push_end. */
 WEIR_API weir_status weir_mpi_push_box(weir_mpi_push* push, const int64_t lo[3], const int64_t extent[3],
                                        const void* data, const int64_t stride[3], weir_error* error);
 

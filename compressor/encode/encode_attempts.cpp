@@ -214,11 +214,14 @@ struct Attempts {
     }
     // Within 3 % of the error asked, 0.13 dB, is small enough.
     const double error = seen_error(encoded);
-    if (kept && (number >= 2 || error >= 0.97 * request.squared_error || !(error > 0))) return false;
+    const bool loses_less = expects_loss_of_nothing(encoded);
+    if (kept && !loses_less && (number >= 2 || error >= 0.97 * request.squared_error || !(error > 0))) return false;
     const bool exhausted = !kept && keeps_everything(encoded);
     if (kept) met = request.planned_error;
     request.adjusted = true;
-    if (number + 1 < kMostEstimated && !exhausted) {
+    if (number + 1 < kMostEstimated && loses_less) {
+      request.planned_error *= 8;
+    } else if (number + 1 < kMostEstimated && !exhausted) {
       // A volume of few leaves has few errors to choose from: the same choice again calls for a longer step.
       request.planned_error *= request.squared_error / error * (kept ? 0.995 : 1 - std::ldexp(0.002, 2 * number));
     } else if (met) {
@@ -272,6 +275,12 @@ struct Attempts {
       if (plan_file(request, rows, work).size.bytes < dense) return;
     }
     request.budget.kind = Budget::Kind::psnr;
+  }
+
+  // It loses nothing where much was expected, as with voxels without a value, of which an estimate knows too little: a
+  // smaller file may do as well.
+  bool expects_loss_of_nothing(const EncodedFile& encoded) const {
+    return !(seen_error(encoded) > 0) && encoded.file.plan.expected_error > 0 && request.planned_error > 0;
   }
 
   // Every leaf is kept as well as this encoding can.

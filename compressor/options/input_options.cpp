@@ -180,16 +180,14 @@ constexpr ConversionOption kInputOptions[] = {
     {{.key = "dataset",
       .argument = "NAME",
       .standard = "the only one",
-      .help =
-          "dataset or grid of a file that holds several; weir inspect lists them. For several volumes it may be given "
-          "several times, or be a pattern, '*' or '/step_%d/rho'",
+      .help = "dataset or grid of a file that holds several; weir inspect lists them",
+      .of_several = ". For several volumes it may be given several times, or be a pattern, '*' or '/step_%d/rho'",
       .several = true},
      [](const OptionRow&, const std::string& text, Request& r) { r.source.dataset = text; }},
     {{.key = "index",
       .argument = "i,j,...",
-      .help =
-          "position on each leading axis of an array of more than three, or AXIS=i; below 0 from the end; FROM:TO or "
-          "* for a volume of each"},
+      .help = "position on each leading axis of an array of more than three, or AXIS=i; below 0 from the end",
+      .of_several = "; FROM:TO or * for a volume of each"},
      read_index},
     {{.key = "component",
       .argument = "N|x|y|z|magnitude",

@@ -74,7 +74,7 @@ MemoryPlan plan_memory(std::uint64_t ceiling, std::uint64_t resident, std::size_
     // Rounded up, and one MiB for the next process, which has other addresses.
     throw Error(ErrorKind::usage,
                 compose(option("memory", format_bytes(ceiling)), " is too small for this volume with ", threads,
-                        " threads; give at least ", least / kMiB + 2, "MiB"));
+                        threads == 1 ? " thread" : " threads", "; give at least ", least / kMiB + 2, "MiB"));
   }
   MemoryPlan plan;
   if (records <= (ceiling - least) / 4) plan.record_bytes = records;

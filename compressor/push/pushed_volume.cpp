@@ -256,12 +256,12 @@ class PushedVolume::State {
 
   void take_planes(std::int64_t z0, std::int64_t nz) {
     if (z0 < 0 || nz < 1 || z0 >= info_.extent.z || nz > info_.extent.z - z0) {
-      throw Error(ErrorKind::usage, cat(info_.path, ": a slab of ", nz, " planes from ", z0,
+      throw Error(ErrorKind::usage, cat(info_.path, ": a slab of ", nz, nz == 1 ? " plane" : " planes", " from ", z0,
                                         " on is not in the volume, whose planes are 0 to ", info_.extent.z - 1));
     }
     if (const auto twice = given_.add({z0, z0 + nz})) {
-      throw Error(ErrorKind::usage, cat(info_.path, ": a slab of ", nz, " planes from ", z0, " on holds ",
-                                        planes_text({*twice}), ", given before; give each plane once"));
+      throw Error(ErrorKind::usage, cat(info_.path, ": a slab of ", nz, nz == 1 ? " plane" : " planes", " from ", z0,
+                                        " on holds ", planes_text({*twice}), ", given before; give each plane once"));
     }
   }
 

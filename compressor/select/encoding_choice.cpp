@@ -176,9 +176,10 @@ void check_lossless(const FileRequest& request, Encoding encoding, const Candida
                                          option("encoding", "auto"), " or float"));
 }
 
-// Throws Error(budget) where the file of a target that was not adjusted is not expected to meet it.
+// Throws Error(budget) where the largest error that is asked for cannot be had. What a PSNR comes to is expected only:
+// there decoded values decide.
 void check_target(const FileRequest& request, Encoding encoding, const Candidate& candidate, const FilePlan& file) {
-  if (!request.budget.by_error() || request.adjusted || meets(request, candidate, file)) return;
+  if (request.budget.kind != Budget::Kind::max_error || request.adjusted || meets(request, candidate, file)) return;
   throw unmet_target(request, encoding, file.plan.expected_error);
 }
 

@@ -20,6 +20,7 @@ using std::chrono::seconds;
 constexpr seconds kWindow{600};
 constexpr seconds kInterval{3};
 constexpr seconds kPatience{10};  ///< longer than a look takes
+constexpr seconds kAsked{60};     ///< after which a directory that nobody asks for is looked at no more
 constexpr double kYear_s = 365.0 * 24 * 3600;
 
 // The highest directory above `directory` that is on the same file system.
@@ -48,10 +49,21 @@ struct OutputDisks::Looker {
     std::optional<Time> begun;  ///< of the look that goes on
   };
 
+  struct Asked {
+    std::optional<DiskRoom> room;  ///< none: not looked at yet
+    Time first;                    ///< asked for
+    Time last;
+  };
+
+  explicit Looker(RoomIn room) : room_in(std::move(room)) {}
+
+  const RoomIn room_in;
   std::mutex mutex;
   std::condition_variable changed;
   std::vector<Place> places;
+  std::map<std::string, Asked> asked;  ///< by directory
   bool again = true;
+  bool asked_anew = false;
   bool over = false;
 
   void run() {
@@ -70,12 +82,30 @@ struct OutputDisks::Looker {
         places[i].mount = std::move(mount);
         places[i].begun.reset();
       }
-      changed.wait_for(lock, kInterval, [&] { return over || again; });
+      look_at_asked(lock);
+      changed.wait_for(lock, kInterval, [&] { return over || again || asked_anew; });
+    }
+  }
+
+  void look_at_asked(std::unique_lock<std::mutex>& lock) {
+    asked_anew = false;
+    std::erase_if(asked, [now = std::chrono::steady_clock::now()](const auto& entry) {
+      return now - entry.second.last > kAsked;
+    });
+    std::vector<std::string> directories;
+    for (const auto& [directory, entry] : asked) directories.push_back(directory);
+    for (const std::string& directory : directories) {
+      if (over || again) return;
+      const Time begun = std::chrono::steady_clock::now();
+      lock.unlock();
+      const DiskRoom room = room_in(directory);
+      lock.lock();
+      if (const auto at = asked.find(directory); at != asked.end() && at->second.first <= begun) at->second.room = room;
     }
   }
 };
 
-OutputDisks::OutputDisks() : looker_(std::make_shared<Looker>()) {
+OutputDisks::OutputDisks(RoomIn room_in) : looker_(std::make_shared<Looker>(std::move(room_in))) {
   std::thread([looker = looker_] { looker->run(); }).detach();
 }
 
@@ -106,6 +136,23 @@ void OutputDisks::written(const std::string& directory, std::uint64_t bytes, Tim
   rates_.try_emplace(at->room.device, kWindow, start_).first->second.add(bytes, now);
 }
 
+std::optional<DiskRoom> OutputDisks::room(const std::string& directory) const {
+  const std::lock_guard lock(looker_->mutex);
+  const Time now = std::chrono::steady_clock::now();
+  const auto [at, is_new] = looker_->asked.try_emplace(directory, Looker::Asked{{}, now, now});
+  at->second.last = now;
+  if (is_new) {
+    looker_->asked_anew = true;
+    looker_->changed.notify_all();
+  }
+  return at->second.room;
+}
+
+void OutputDisks::look_anew(const std::string& directory) {
+  const std::lock_guard lock(looker_->mutex);
+  looker_->asked.erase(directory);
+}
+
 std::vector<OutputDisk> OutputDisks::disks(Time now) const {
   std::vector<OutputDisk> disks;
   const std::lock_guard lock(looker_->mutex);
@@ -113,22 +160,22 @@ std::vector<OutputDisk> OutputDisks::disks(Time now) const {
     if (place.mount.empty()) continue;
     const auto known = std::find_if(disks.begin(), disks.end(),
                                     [&](const OutputDisk& disk) { return disk.room.device == place.room.device; });
+    const auto waited = place.begun ? std::chrono::duration_cast<seconds>(now - *place.begun) : seconds(0);
+    const seconds silent = waited > kPatience ? waited : seconds(0);
     if (known != disks.end()) {
+      known->silent = std::max(known->silent, silent);
       if (std::find(known->directories.begin(), known->directories.end(), place.directory) ==
           known->directories.end()) {
         known->directories.push_back(place.directory);
       }
       continue;
     }
-    OutputDisk& disk = disks.emplace_back(OutputDisk{place.mount, {place.directory}, place.room, 0, {}, {}});
+    OutputDisk& disk = disks.emplace_back(OutputDisk{place.mount, {place.directory}, place.room, 0, {}, silent});
     if (const auto rate = rates_.find(place.room.device); rate != rates_.end()) {
       disk.written_bytes_per_s = rate->second.at(now).bytes_per_s;
     }
     const double fills_in_s = static_cast<double>(place.room.free) / disk.written_bytes_per_s;
     if (fills_in_s < kYear_s) disk.fills_in_s = fills_in_s;
-    if (!place.begun) continue;
-    const auto silent = std::chrono::duration_cast<seconds>(now - *place.begun);
-    if (silent > kPatience) disk.silent = silent;
   }
   return disks;
 }

@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -29,7 +30,10 @@ class OutputDisks {
  public:
   using Time = RecentRate::Time;
 
-  OutputDisks();
+  using RoomIn = std::function<DiskRoom(const std::string& directory)>;
+
+  /// `room_in`: for tests; it is called on the thread, and may not return.
+  explicit OutputDisks(RoomIn room_in = weir::room_in);
   /// Does not wait for a look that hangs.
   ~OutputDisks();
   OutputDisks(const OutputDisks&) = delete;
@@ -39,6 +43,11 @@ class OutputDisks {
   void watch(const std::vector<std::string>& directories);
   /// An output of `bytes` was written into `directory`, which is one of those or lies below one.
   void written(const std::string& directory, std::uint64_t bytes, Time now);
+  /// Of the file system that `directory` lies on, as of the last look at it, one that was begun after the first call or
+  /// the last look_anew(); none before. It is looked at as long as this is called now and then. Never waits.
+  std::optional<DiskRoom> room(const std::string& directory) const;
+  /// What room() knows of `directory` is of the past, as where a job found it full.
+  void look_anew(const std::string& directory);
   /// Each once, in the order of the first directory of each; those that were never looked at are left out. Never waits.
   std::vector<OutputDisk> disks(Time now) const;
 

@@ -149,7 +149,7 @@ struct ViewerView {
 struct StatusView {
   std::string version;
   std::string config;      ///< path
-  std::string state;       ///< "starting", "running", "paused", "stopping"
+  std::string state;       ///< "running", "paused", "stopping"
   std::string reason;      ///< why it is paused; else empty
   double started_at = 0;   ///< of this process
   double queue_age_s = 0;  ///< since the oldest waiting job was complete; 0 where none waits

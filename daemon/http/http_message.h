@@ -19,7 +19,6 @@ struct HttpRequest {
   std::string origin{};       ///< header Origin: the web page that asks; empty where none says so
   std::string protocols{};    ///< header Sec-WebSocket-Protocol
   bool upgrade = false;       ///< it asks for a WebSocket
-  std::string body;
 };
 
 struct HttpResponse {
@@ -32,7 +31,8 @@ struct HttpResponse {
 /// {"error": message} with that status; `message` in UTF-8 or not.
 HttpResponse error_response(unsigned status, const std::string& message);
 
-/// Answers a request; called on the io_context's thread, must not block. What it throws becomes a 500.
+/// Answers a request; called on the io_context's thread, must not block. What it throws becomes a 500, but a
+/// CorruptDatabase goes through.
 using HttpHandler = std::function<HttpResponse(const HttpRequest&)>;
 
 }  // namespace weir

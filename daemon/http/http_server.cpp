@@ -47,7 +47,6 @@ class HttpServer::Listener : public std::enable_shared_from_this<Listener> {
   }
 
   std::uint16_t port() const { return listening_.port(); }
-  std::size_t connections() const { return sessions_.size(); }
 
  private:
   void add(StreamSocket socket) {
@@ -105,7 +104,5 @@ HttpServer::HttpServer(boost::asio::io_context& io, const ListenAddress& address
 HttpServer::~HttpServer() { listener_->close(); }
 
 std::uint16_t HttpServer::port() const { return listener_->port(); }
-
-std::size_t HttpServer::connections() const { return listener_->connections(); }
 
 }  // namespace weir

@@ -27,7 +27,6 @@ class HttpServer {
 
   /// The port it listens on; 0 for a Unix socket.
   std::uint16_t port() const;
-  std::size_t connections() const;
 
  private:
   class Listener;

@@ -9,6 +9,9 @@
 #include <exception>
 #include <utility>
 
+#include "daemon/http/timer.h"
+#include "daemon/store/sqlite.h"
+
 namespace weir {
 namespace {
 
@@ -55,8 +58,7 @@ void HttpSession::enter(Phase phase, std::chrono::milliseconds limit) {
   phase_ = phase;
   timer_.expires_after(limit);
   timer_.async_wait([self = shared_from_this()](const error_code& error) {
-    // A wait that had expired when the next phase began comes here without an error, too.
-    if (!error && !self->closed_ && self->timer_.expiry() <= Clock::now()) self->on_timeout();
+    if (!error && !self->closed_ && is_over(self->timer_)) self->on_timeout();
   });
 }
 
@@ -148,7 +150,6 @@ void HttpSession::answer() {
   request.marked = message.count("X-Weir") > 0;
   request.origin = text_of(message[http::field::origin]);
   request.protocols = text_of(message[http::field::sec_websocket_protocol]);
-  request.body = message.body();
   const bool keep_alive = message.keep_alive();
   request.upgrade = boost::beast::websocket::is_upgrade(message);
   if (sockets_.take && (sockets_.wants ? sockets_.wants(request) : request.upgrade)) {
@@ -166,6 +167,8 @@ void HttpSession::answer() {
 HttpResponse HttpSession::answer_to(const HttpRequest& request) const {
   try {
     return handler_(request);
+  } catch (const CorruptDatabase&) {  // ends the service
+    throw;
   } catch (const std::exception& error) {
     spdlog::error("http: {} {}: {}", request.method, request.target, error.what());
     return error_response(500, error.what());

@@ -1,5 +1,7 @@
 #include "daemon/http/relay.h"
 
+#include <fcntl.h>
+
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/error.hpp>
 #include <boost/asio/write.hpp>
@@ -7,6 +9,7 @@
 #include <utility>
 
 #include "daemon/http/http_message.h"
+#include "daemon/http/timer.h"
 #include "format/base/text.h"
 
 namespace weir {
@@ -35,6 +38,9 @@ Relay::Relay(Client client, std::string request, Ended ended, std::chrono::milli
 
 void Relay::start(const asio::ip::tcp::endpoint& server, std::optional<std::chrono::milliseconds> limit) {
   if (limit) end_within(limit_, *limit);
+  error_code unopened;  // which async_connect tells
+  server_.open(server.protocol(), unopened);
+  if (!unopened) ::fcntl(server_.native_handle(), F_SETFD, FD_CLOEXEC);  // conversions are child processes
   server_.async_connect(server, [self = shared_from_this()](const error_code& error) {
     if (self->closed_) return;
     if (error) return self->refuse();
@@ -64,7 +70,8 @@ void Relay::pump(From& from, To& to, Piece& piece) {
                                            [self, &from, &to, &piece](const error_code& failure, std::size_t) {
                                              if (self->closed_) return;
                                              if (failure) return self->end();
-                                             if constexpr (kToClient) self->taken_.cancel();
+                                             if constexpr (kToClient)
+                                               self->taken_.expires_at(asio::steady_timer::time_point::max());
                                              self->pump(from, to, piece);
                                            });
                        });
@@ -81,8 +88,8 @@ void Relay::finish(To& to) {
 
 void Relay::end_within(asio::steady_timer& timer, std::chrono::milliseconds limit) {
   timer.expires_after(limit);
-  timer.async_wait([self = shared_from_this()](const error_code& error) {
-    if (!error && !self->closed_) self->end();
+  timer.async_wait([self = shared_from_this(), &timer](const error_code& error) {
+    if (!error && !self->closed_ && is_over(timer)) self->end();
   });
 }
 

@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <utility>
 
-#include "daemon/disks/disk_room.h"
 #include "daemon/jobs/output_cleaning.h"
 #include "daemon/store/file_identity.h"
 #include "daemon/watch/source_identity.h"
@@ -131,11 +130,14 @@ std::optional<Job> JobRunner::next_job(const WatchConfig& watch) const {
   for (const Job& job : store_.candidates(watch.label, watch.priority, looked)) {
     if (running_.contains(job.id)) continue;
     if (full_disks_.empty()) return job;
+    // Where that is not known yet, in the next round.
     const auto has_room = [&](const std::string& directory) {
-      return full_disks_.admits(room_in(directory).device, job.id, job.identity.bytes);
+      const std::optional<DiskRoom> room = disks_.room(directory);
+      return room && full_disks_.admits(room->device, job.id, job.identity.bytes);
     };
     const std::string& work_dir = config_.service.work_dir;
-    if (has_room(output_directory(watch, job.source)) && (work_dir.empty() || has_room(work_dir))) return job;
+    const bool fits_work = work_dir.empty() || has_room(work_dir);
+    if (has_room(output_directory(watch, job.source)) && fits_work) return job;
   }
   return std::nullopt;
 }

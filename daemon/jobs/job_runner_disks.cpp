@@ -9,7 +9,7 @@ namespace weir {
 
 void JobRunner::disk_full(const RunningJob& run, const TaskReport& report) {
   const std::string& directory = report.full_directory;
-  const DiskRoom room = room_in(directory);
+  const DiskRoom room = room_in(directory);  // as it is now: it has just answered the job
   const bool of_output =
       room.device == room_in(std::filesystem::path(run.work->task().output).parent_path().string()).device;
   if (of_output && report.planned_bytes > room.total) {  // waiting makes no disk larger
@@ -23,6 +23,7 @@ void JobRunner::disk_full(const RunningJob& run, const TaskReport& report) {
   figures_.attempt_failed("disk-full");
   full_disks_.add(room.device, directory, room.free, run.job.id, run.job.identity.bytes,
                   of_output ? report.planned_bytes : 0, std::chrono::steady_clock::now());
+  for (const std::string& full : full_disks_.directories()) disks_.look_anew(full);
   log_.error("disk-full", {{"job", run.job.id}, {"directory", directory}, {"reason", report.result.reason}});
   writes_.add([this, id = run.job.id, reason = report.result.reason] { store_.postpone(id, reason); });
 }
@@ -36,7 +37,9 @@ void JobRunner::output_busy(const RunningJob& run, const TaskReport& report) {
 }
 
 void JobRunner::look_at_disks() {
-  const auto free_of = [](const std::string& directory) { return room_in(directory).free; };
+  const auto free_of = [this](const std::string& directory) {
+    return disks_.room(directory).value_or(DiskRoom{}).free;
+  };
   for (const std::string& directory : full_disks_.look(free_of, std::chrono::steady_clock::now())) {
     log_.info("disk-has-room", {{"directory", directory}, {"free", format_bytes(free_of(directory))}});
   }

@@ -72,10 +72,11 @@ bool is_locked_by_writer(const std::string& path) {
 // Spill files have no names where the file system can do that; elsewhere a kill may come between their making and
 // the removal of the name.
 void remove_spills(const fs::path& work) {
-  std::error_code ignored;
-  for (const fs::directory_entry& entry : fs::directory_iterator(work, ignored)) {
-    const std::string name = entry.path().filename().string();
-    if (name.starts_with("spill") && name.size() == 11) fs::remove(entry.path(), ignored);
+  std::error_code error;
+  for (fs::directory_iterator at(work, error), end; !error && at != end; at.increment(error)) {
+    const std::string name = at->path().filename().string();
+    std::error_code ignored;
+    if (name.starts_with("spill") && name.size() == 11) fs::remove(at->path(), ignored);
   }
 }
 

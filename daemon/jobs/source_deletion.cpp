@@ -35,6 +35,9 @@ constexpr milliseconds kAgain{10'000};
 constexpr milliseconds kSoon{200};  // where delete_after is shorter than that
 
 constexpr const char* kInUse = "a program has it open for writing";
+constexpr const char* kNotKnown =
+    "whether a program writes to it cannot be known here; use complete = \"rename\" or \"marker\", or run the service "
+    "as its owner";
 
 milliseconds delay_of(const WatchConfig& watch) {
   return milliseconds(static_cast<std::int64_t>(watch.delete_after_s * 1000));
@@ -199,9 +202,7 @@ SourceDeletion::Outcome SourceDeletion::look_at(const Job& job, const WatchConfi
   const FileWriters writers(job.source);
   if (writers.some()) return wait_for(job, kInUse);
   if (!writers.known() && !says_when_done(watch.complete)) {
-    keep(job,
-         "whether a program writes to it cannot be known here; use complete = \"rename\" or \"marker\", or run the "
-         "service as its owner");
+    keep(job, kNotKnown);
     return Outcome::over;
   }
   return remove(job, watch, writers);
@@ -273,12 +274,14 @@ void SourceDeletion::removed(const Job& job, const WatchConfig& watch, bool writ
 SourceDeletion::Outcome SourceDeletion::finish_interrupted(const Job& job, const WatchConfig& watch) {
   const std::string doomed = hidden_name(job);
   const bool is_source = identify(doomed) == job.identity;
-  if (is_source && FileWriters(doomed).some()) return wait_for(job, kInUse);  // who opened it before it was hidden
-  const std::string fault = is_source ? outputs_fault(job, std::nullopt) : "";
+  const FileWriters writers(doomed);
+  if (is_source && writers.some()) return wait_for(job, kInUse);  // who opened it before it was hidden
+  std::string fault = is_source ? outputs_fault(job, std::nullopt) : "";
+  if (is_source && fault.empty() && !writers.known() && !says_when_done(watch.complete)) fault = kNotKnown;
   if (is_source && fault.empty()) {
     flush_outputs(job, watch);
     files_->remove(doomed);
-    removed(job, watch, true);
+    removed(job, watch, writers.known());
   } else if (files_->exists(job.source)) {
     keep(job, left_fault(doomed, is_source));
   } else {

@@ -16,6 +16,7 @@
 #include <csignal>
 #include <fstream>
 #include <sstream>
+#include <system_error>
 #include <utility>
 
 #include "format/base/error.h"
@@ -29,7 +30,7 @@ namespace {
 namespace asio = boost::asio;
 using boost::system::error_code;
 
-// Longer lines than any that is announced are cut into pieces rather than kept without bound.
+// Of a line that has not ended: the beginning of a longer one, which no program of ours announces, is thrown away.
 constexpr std::size_t kMostLineBytes = 64 << 10;
 
 struct Pipe {
@@ -66,7 +67,7 @@ struct Launch {
   if (::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0) give_up();
   if (::getppid() != launch.daemon) ::_exit(127);  // it died before the line above
   // What is ignored would stay so in the program, and all that it starts.
-  for (const int signal : {SIGPIPE, SIGXFSZ, SIGIO, SIGINT, SIGTERM}) ::signal(signal, SIG_DFL);
+  for (const int signal : {SIGPIPE, SIGXFSZ, SIGIO, SIGINT, SIGTERM, SIGCHLD}) ::signal(signal, SIG_DFL);
   sigset_t none;
   sigemptyset(&none);
   ::sigprocmask(SIG_SETMASK, &none, nullptr);
@@ -90,7 +91,8 @@ struct Launch {
       ::dup2(announce, kAnnounceDescriptor) < 0) {
     give_up();
   }
-  // All of the daemon's are close-on-exec; this is for what a library opened without.
+  // Most of the daemon's are close-on-exec; this is for the log's file and what else a library opened without, from
+  // Linux 5.11 on.
   ::syscall(SYS_close_range, kAnnounceDescriptor + 1, ~0U, 1U << 2U);  // CLOSE_RANGE_CLOEXEC
   ::execv(launch.program, launch.arguments.data());
   const int reason = errno;
@@ -234,13 +236,19 @@ class WorkerProcess::Running : public std::enable_shared_from_this<Running> {
     do {
       reaped = ::waitpid(pid_, &status, WNOHANG);
     } while (reaped < 0 && errno == EINTR);
+    const int reason = errno;
     if (reaped == 0) return await_end();
     pid_ = -1;
     read(log_pipe_, &Running::take_log);
     read(announce_pipe_, &Running::take_announcement);
     close();
     WorkerEnd end;
-    end.exit_code = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+    if (reaped < 0) {  // someone else has waited for it, or the system does
+      end.exit_code = static_cast<int>(ErrorKind::internal);
+      log_ += cat("weir: how its process ended is not known (", std::generic_category().message(reason), ")\n");
+    } else {
+      end.exit_code = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+    }
     end.log = log_.size() > kLogBytes ? log_.substr(log_.size() - kLogBytes) : std::move(log_);
     line_ = nullptr;
     if (const Ended ended = std::exchange(ended_, nullptr)) ended(end);

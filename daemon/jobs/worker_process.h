@@ -32,8 +32,10 @@ struct WorkerCommand {
 };
 
 struct WorkerEnd {
-  int exit_code = 0;  ///< the program's own, or 128 + the signal that ended it
-  std::string log;    ///< end of what it wrote to stdout and stderr, WorkerProcess::kLogBytes at most
+  /// The program's own, or 128 + the signal that ended it; that of ErrorKind::internal where the system does not tell,
+  /// as the last line of `log` says then.
+  int exit_code = 0;
+  std::string log;  ///< end of what it wrote to stdout and stderr, WorkerProcess::kLogBytes at most
 };
 
 /// Descriptor at which the child finds the pipe for its announcements.

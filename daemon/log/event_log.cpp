@@ -48,7 +48,7 @@ std::shared_ptr<spdlog::logger> open_log(const ServiceConfig& service, std::shar
   try {
     if (service.log_file.empty()) {
       sink = std::make_shared<spdlog::sinks::stderr_sink_mt>();
-    } else if (service.log_size == 0 || service.log_files == 0) {
+    } else if (service.log_size == 0) {
       sink = std::make_shared<spdlog::sinks::basic_file_sink_mt>(service.log_file);
     } else {
       sink = std::make_shared<spdlog::sinks::rotating_file_sink_mt>(service.log_file, service.log_size,

@@ -42,7 +42,7 @@ inline constexpr std::initializer_list<JobState> kProblemStates{JobState::failed
 /// Those that are forgotten with their source, or their watch.
 inline constexpr std::initializer_list<JobState> kForgottenStates{JobState::discovered, JobState::waiting,
                                                                   JobState::failed, JobState::quarantined};
-/// In SQL: "state = 'waiting'"; of several "state IN (...)".
+/// In SQL: "state IN ('waiting')".
 std::string in_state(std::initializer_list<JobState> states);
 
 /// All throw Error(io) where the file cannot be read.

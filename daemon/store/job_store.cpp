@@ -103,7 +103,7 @@ bool JobStore::checkpoint_due() const { return database_.journal_pages() >= kJou
 JobStore::Observation JobStore::observe(const std::string& watch, const std::string& source,
                                         const FileIdentity& identity, const std::string& options) {
   const std::optional<Job> known = find(watch, source);
-  if (known && known->identity == identity && known->options == options) return {Change::none, known->state, *known};
+  if (known && known->identity == identity && known->options == options) return {Change::none, *known};
   const std::int64_t now = this->now();
   Transaction transaction(database_);
   if (known) {
@@ -122,8 +122,7 @@ JobStore::Observation JobStore::observe(const std::string& watch, const std::str
     insert.bind(now).bind(now).step();
   }
   transaction.commit();
-  return {known ? Change::changed : Change::created, known ? std::optional(known->state) : std::nullopt,
-          find(watch, source).value()};
+  return {known ? Change::changed : Change::created, find(watch, source).value()};
 }
 
 bool JobStore::enqueue(std::int64_t id) {
@@ -231,10 +230,12 @@ bool JobStore::move(std::int64_t id, std::initializer_list<JobState> from, JobSt
 }
 
 bool JobStore::postpone(std::int64_t id, const std::string& reason, std::int64_t delay_ms) {
+  Transaction transaction(database_);
   if (!move(id, {JobState::running}, JobState::waiting, reason)) return false;
   if (delay_ms > 0) {
     database_.prepare("UPDATE jobs SET due_ms = ? WHERE id = ?").bind(now() + delay_ms).bind(id).step();
   }
+  transaction.commit();
   return true;
 }
 

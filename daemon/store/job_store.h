@@ -61,8 +61,7 @@ class JobStore : public JobListing {
   enum class Change { none, created, changed };
   struct Observation {
     Change change;
-    std::optional<JobState> before;  ///< absent where it was created
-    Job job;                         ///< as it is now
+    Job job;  ///< as it is now
   };
   /// The source was seen with that identity. A job whose identity or `options` changed (any text that says how
   /// it is converted) is discovered again, from any state, with its attempts and result forgotten. Each change is

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "daemon/config/listen_address.h"
+#include "daemon/http/timer.h"
 #include "daemon/http/view_requests.h"
 #include "daemon/jobs/worker_reason.h"
 #include "format/base/error.h"
@@ -41,9 +42,6 @@ ViewerShares shares_of(std::uint64_t memory) {
   const std::uint64_t half = (drawing - std::min(drawing, kProgramBytes)) / 2;
   return {forecast, half, std::min(kMostPixels, half / (kDrawnPixelBytes + (kViewers - 1) * kWaitingPixelBytes))};
 }
-
-// Whether a timer that has fired was not set anew since: its handler may have been waiting.
-bool is_over(const boost::asio::steady_timer& timer) { return timer.expiry() <= std::chrono::steady_clock::now(); }
 
 }  // namespace
 

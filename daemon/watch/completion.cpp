@@ -161,8 +161,8 @@ CompletionAnswer FileCompletion::look(const FileSample& sample, Time now) {
 }
 
 FileCompletion::Time FileCompletion::asked_again(Time now) const {
-  constexpr std::chrono::nanoseconds kLeast = std::chrono::milliseconds(100);  // settle may be 0
-  return now + std::chrono::duration_cast<Time::duration>(std::max(rules_.settle, kLeast));
+  return now +
+         std::chrono::duration_cast<Time::duration>(std::max<std::chrono::nanoseconds>(rules_.settle, kLeastPause));
 }
 
 CompletionAnswer FileCompletion::by_policy(const FileSample& sample, Time now) {

@@ -50,11 +50,15 @@ FileSystemKind file_system_kind(std::uint64_t statfs_type) {
   return {std::string(known->name), known->local};
 }
 
+FileSystemKind file_system_kind(const struct statfs& status) {
+  // f_type is signed, and the numbers of some are above 2^31.
+  return file_system_kind(std::uint64_t{static_cast<std::uint32_t>(status.f_type)});
+}
+
 FileSystemKind file_system_kind(const std::string& path) {
   struct statfs status {};
   if (::statfs(path.c_str(), &status) != 0) throw io_error(path, "ask for its file system", errno);
-  // f_type is signed, and the numbers of some are above 2^31.
-  return file_system_kind(std::uint64_t{static_cast<std::uint32_t>(status.f_type)});
+  return file_system_kind(status);
 }
 
 }  // namespace weir

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <string>
 
+struct statfs;
+
 namespace weir {
 
 struct FileSystemKind {
@@ -13,6 +15,7 @@ struct FileSystemKind {
 
 /// By the number statfs gives as its type. What is not known to be local is not: polling is slower and never wrong.
 FileSystemKind file_system_kind(std::uint64_t statfs_type);
+FileSystemKind file_system_kind(const struct statfs& status);
 /// Of the file system that `path` lies on. Throws Error(io) where it cannot be asked.
 FileSystemKind file_system_kind(const std::string& path);
 

@@ -24,8 +24,7 @@ namespace fs = std::filesystem;
 bool sees_all_changes(int file) {
   const int kept = errno;
   struct statfs status {};
-  const bool local =
-      ::fstatfs(file, &status) == 0 && file_system_kind(static_cast<std::uint64_t>(status.f_type)).sees_all_changes;
+  const bool local = ::fstatfs(file, &status) == 0 && file_system_kind(status).sees_all_changes;
   errno = kept;
   return local;
 }

@@ -9,7 +9,6 @@
 namespace weir {
 namespace {
 
-constexpr std::chrono::nanoseconds kLeastSettle = std::chrono::milliseconds(100);  // settle may be 0
 constexpr std::chrono::seconds kQueued{10};  // it is told when its turn comes; this is for where that is lost
 
 bool names_store(std::string_view component) { return component.size() > 5 && component.ends_with(".zarr"); }
@@ -38,7 +37,8 @@ bool is_store_head(std::string_view path) {
 }
 
 StoreQuiet::Answer StoreQuiet::look(Time now) {
-  const auto pause = std::chrono::duration_cast<Time::duration>(std::max(settle_, kLeastSettle));
+  const auto pause =
+      std::chrono::duration_cast<Time::duration>(std::max<std::chrono::nanoseconds>(settle_, kLeastPause));
   if (!look_) {
     if (!turn_.take())
       return {false, now + std::max<Time::duration>(pause, kQueued), "others are looked through before"};

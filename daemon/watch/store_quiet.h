@@ -13,6 +13,9 @@
 
 namespace weir {
 
+/// Between two looks at what no event tells of, where `settle` is shorter.
+inline constexpr std::chrono::milliseconds kLeastPause{100};
+
 /// Whether `path` is the file in a directory NAME.zarr that says that this is a Zarr hierarchy, one that lies in no
 /// other. Looks at the name alone.
 bool is_store_head(std::string_view path);

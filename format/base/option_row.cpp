@@ -16,8 +16,15 @@ Message list_of(const std::vector<Message>& items, std::string_view last) {
 
 }  // namespace
 
-std::string OptionRow::text() const {
-  return standard.empty() ? std::string(help) : cat(help, "; default: ", standard);
+std::string OptionRow::meaning() const { return cat(help, of_several); }
+
+std::string OptionRow::text() const { return standard.empty() ? meaning() : cat(meaning(), "; default: ", standard); }
+
+OptionRow OptionRow::of_one_volume() const {
+  OptionRow row = *this;
+  row.of_several = {};
+  row.several = false;
+  return row;
 }
 
 Error wrong_option(std::string_view key, std::string_view text, const Message& form) {

@@ -19,14 +19,19 @@ struct OptionRow {
   std::string_view argument =
       {};                      ///< what stands for its value, "X,Y,Z", or all there are, "auto|on|off"; empty: a flag
   std::string_view unit = {};  ///< of the value; empty: none
-  std::string_view standard = {};  ///< the value where none is given, or what takes its place; empty: nothing to say
-  std::string_view help;           ///< half a sentence
-  std::string_view group = {};     ///< of the options of one group at most one may be given; empty: no group
-  std::string_view excludes = {};  ///< keys that must not be given with it, commas between
-  bool several = false;            ///< may be given more than once; its text has a line for each
+  std::string_view standard = {};    ///< the value where none is given, or what takes its place; empty: nothing to say
+  std::string_view help;             ///< half a sentence
+  std::string_view of_several = {};  ///< what follows it where a command reads several volumes; empty: nothing
+  std::string_view group = {};       ///< of the options of one group at most one may be given; empty: no group
+  std::string_view excludes = {};    ///< keys that must not be given with it, commas between
+  bool several = false;              ///< may be given more than once; its text has a line for each
   bool flag() const { return argument.empty(); }
-  /// help and standard.
+  /// help, and what follows it.
+  std::string meaning() const;
+  /// meaning and standard.
   std::string text() const;
+  /// Of a command that reads one volume.
+  OptionRow of_one_volume() const;
 };
 
 /// An option and how its text becomes a member of `Request`.

@@ -12,6 +12,7 @@
 #include "gpu/cuda/load/pageable_copy.h"
 #include "gpu/cuda/load/registered_copy.h"
 #include "gpu/cuda/runtime/check.h"
+#include "gpu/cuda/runtime/current_device.h"
 
 namespace weir {
 namespace {
@@ -89,7 +90,7 @@ std::vector<LoadPath> load_paths(std::uint64_t bytes, unsigned hardware_threads)
 DeviceGrid load_grid(const NvdbFile& file, DeviceBuffer&& buffer, const LoadOptions& options, cudaStream_t stream) {
   if (!options.packed) require_stored_voxels(file);
   CopyTask task{file.mapping(), file.grid().grid_offset(), file.grid().data_bytes()};
-  check_cuda(cudaGetDevice(&task.device), "asking for the current device");
+  task.device = existing_current_device();
   const LoadStream own(stream);
   task.stream = own.get();
   task.chunk_bytes = std::max(options.chunk_bytes, kLeastChunkBytes);

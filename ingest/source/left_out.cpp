@@ -19,7 +19,7 @@ bool is_unread_volume(const DatasetInfo& dataset) {
 }
 
 Message left_out_notice(const std::string& path, const std::string& taken, std::span<const LeftOut> left_out) {
-  std::string text = cat(path, ": ", taken, " is converted; left out: ");
+  std::string text = cat(path, ": ", taken, " is read; left out: ");
   const std::size_t named = std::min(left_out.size(), kMostNamed);
   for (std::size_t i = 0; i < named; ++i) {
     text += cat(i == 0 ? "" : "; ", left_out[i].name, ": ", left_out[i].obstacle);

@@ -19,7 +19,7 @@ struct LeftOut {
 /// and is not one that is read by its name alone.
 bool is_unread_volume(const DatasetInfo& dataset);
 
-/// "PATH: TAKEN is converted; left out: NAME: OBSTACLE; NAME: OBSTACLE; and 3 more (weir inspect lists them)".
+/// "PATH: TAKEN is read; left out: NAME: OBSTACLE; NAME: OBSTACLE; and 3 more (weir inspect lists them)".
 /// `left_out` is not empty.
 Message left_out_notice(const std::string& path, const std::string& taken, std::span<const LeftOut> left_out);
 

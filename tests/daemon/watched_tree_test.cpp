@@ -114,6 +114,23 @@ TEST_F(WatchedTreeTest, JobsOfADirectoryThatIsNotMountedYet_AreKept) {
   EXPECT_TRUE(store_.job(id));
 }
 
+TEST_F(WatchedTreeTest, LogLevelDebug_TellsOfEachLook) {
+  std::filesystem::create_directory(watch().directory);
+  std::ofstream(watch().directory + "/a_2x2x2_uint8.raw") << "12345678";
+  ServiceConfig service;
+  service.log_file = directory_ / "log";
+  service.log_level = "debug";
+  log_.reopen(service);
+  const WatchedTree tree = this->tree();
+  EXPECT_TRUE(
+      run_until([&] { return store_.find(watch().label, watch().directory + "/a_2x2x2_uint8.raw").has_value(); }));
+  std::ifstream in(service.log_file);
+  const std::string log(std::istreambuf_iterator<char>(in), {});
+  EXPECT_NE(log.find(cat(" debug look watch=", watch().label, " events=1 looked_at=1 waiting=1 directories=")),
+            std::string::npos)
+      << log;
+}
+
 // Each record is flushed to the disk that the simulation writes to.
 TEST_F(WatchedTreeTest, FileThatIsWrittenTo_IsRecordedNowAndThen) {
   std::filesystem::create_directory(watch().directory);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bindings/cuda/device_array_source.h"
+#include "gpu/cuda/push/device_slabs.h"
 #include "gpu/cuda/runtime/device_array.h"
 #include "tests/fake_coder/support.h"
 #include "tests/fake_cuda/fake_runtime.h"
@@ -117,7 +118,7 @@ TEST_F(DeviceArraySource, BoxesLargerThanAPieceCrossInPieces) {
   array.extent = extent;
   array.stride = packed_stride(extent, array.type);
   const auto source = open_device_array(array, 0);
-  EXPECT_EQ(source->working_bytes(), kDeviceArrayPieces * kDeviceArrayPiece);
+  EXPECT_EQ(source->working_bytes(), DeviceSlabs::kPinnedSlots * DeviceSlabs::kPieceBytes);
   std::vector<float> found(values.size());
   source->read({{0, 0, 0}, extent}, found);
   EXPECT_EQ(found == values, true);

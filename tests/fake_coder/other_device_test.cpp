@@ -5,6 +5,7 @@
 #include <memory>
 #include <set>
 #include <thread>
+#include <vector>
 
 #include "bindings/cuda/device_array_source.h"
 #include "compressor/push/resident_source.h"
@@ -12,6 +13,7 @@
 #include "gpu/cuda/encode/pinned_pool.h"
 #include "gpu/cuda/encode/resident_volume.h"
 #include "gpu/cuda/push/device_slabs.h"
+#include "gpu/cuda/push/resident_planes.h"
 #include "gpu/cuda/runtime/current_device.h"
 #include "tests/fake_coder/support.h"
 #include "tests/fake_cuda/fake_runtime.h"
@@ -41,6 +43,16 @@ class OtherDevice : public testing::Test {
     std::thread([&] {
       call();
       EXPECT_EQ(runtime().context(), 0U) << "the thread has none still";
+    }).join();
+  }
+
+  // On a thread in a context that it made itself.
+  template <class Call>
+  static void in_own_context(const Call& call) {
+    std::thread([&] {
+      runtime().make_current(FakeRuntime::own_context(1));
+      call();
+      EXPECT_EQ(runtime().current_context(), FakeRuntime::own_context(1));
     }).join();
   }
 
@@ -75,6 +87,46 @@ TEST_F(OtherDevice, TheContextOfTheCallerIsCurrentAgain) {
   EXPECT_EQ(runtime().context(), before);
   free_on(1, [&] { EXPECT_EQ(current_device(), 1); });
   EXPECT_EQ(runtime().context(), before);
+}
+
+TEST_F(OtherDevice, ContextThatTheCallerMade_AllThreadsCodeInIt) {
+  const std::vector<float> values(512, 1.0F);
+  const Box block{{0, 0, 0}, {8, 8, 8}};
+  std::unique_ptr<BlockCoder> coder;
+  in_own_context([&] {
+    coder = make_device_coder(1, fail_test);
+    EXPECT_NE(coder->load(values, block, block), nullptr);
+  });
+  elsewhere([&] { EXPECT_NE(coder->load(values, block, block), nullptr); });
+  elsewhere([&] { coder.reset(); });
+  EXPECT_EQ(runtime().devices_in_use(), Devices{}) << "the runtime's context is another one";
+}
+
+TEST_F(OtherDevice, ContextThatTheCallerMade_AllThreadsReadInIt) {
+  MemoryVolume volume = turbulence();
+  DenseArray array;
+  array.data = volume.values().data();
+  array.extent = volume.info().extent;
+  array.stride = packed_stride(array.extent, array.type);
+  std::unique_ptr<VolumeSource> source;
+  std::unique_ptr<ResidentPlanes> planes;
+  in_own_context([&] {
+    source = open_device_array(array, 1);
+    planes = std::make_unique<ResidentPlanes>(Index3{8, 8, 8});
+  });
+  elsewhere([&] {
+    float value = 0;
+    source->read({{4, 2, 0}, {5, 3, 1}}, {&value, 1});
+    EXPECT_EQ(value, volume.values()[static_cast<std::size_t>(linear_index({4, 2, 0}, array.extent))]);
+    planes->add({0, 0, 0}, &value, 1);
+    EXPECT_EQ(*planes->values(), value);
+    planes->finish();
+  });
+  elsewhere([&] {
+    source.reset();
+    planes.reset();
+  });
+  EXPECT_EQ(runtime().devices_in_use(), Devices{});
 }
 
 TEST_F(OtherDevice, HoldsItsContextOnceAndWhoeverElseLetsGo) {

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cstring>
 #include <numeric>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -81,6 +82,17 @@ TEST_F(DeviceSlabsTest, WaitInTheDeviceMemoryThatWasGranted) {
   slabs.finish();
   EXPECT_EQ(arrived_, values_);
   EXPECT_EQ(most_planes_, 2);
+}
+
+TEST_F(DeviceSlabsTest, ContextThatTheCallerMade_CrossTheBusInIt) {
+  runtime().make_current(FakeRuntime::own_context(0));
+  {
+    DeviceSlabs slabs(kExtent, 4, 5 * kPlaneBytes, keep());
+    slabs.add(0, 90, from(0), nullptr);
+    slabs.finish();
+  }
+  EXPECT_EQ(arrived_, values_);
+  EXPECT_EQ(runtime().devices_in_use(), std::set<int>{}) << "the runtime's context is another one";
 }
 
 TEST_F(DeviceSlabsTest, AnyStridesAndSlabsInAnyOrder) {
@@ -166,14 +178,6 @@ TEST_F(DeviceSlabsTest, AnExceptionOfWhoTakesThemEndsThem) {
   EXPECT_EQ(refusal(push, ErrorKind::io), "the disk is full");
   EXPECT_EQ(refusal(push, ErrorKind::io), "the disk is full");
   EXPECT_EQ(calls, 1);
-}
-
-TEST_F(DeviceSlabsTest, KnowsDeviceMemoryFromTheHosts) {
-  void* device = nullptr;
-  ASSERT_EQ(cudaMallocAsync(&device, 100, nullptr), cudaSuccess);
-  EXPECT_TRUE(is_device_memory(static_cast<const std::byte*>(device) + 99));
-  EXPECT_FALSE(is_device_memory(values_.data()));
-  ASSERT_EQ(cudaFreeAsync(device, nullptr), cudaSuccess);
 }
 
 }  // namespace

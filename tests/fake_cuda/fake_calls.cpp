@@ -33,15 +33,16 @@ cudaError_t release(void* memory) {
   return cudaSuccess;
 }
 
-void* context_of(int device) { return reinterpret_cast<void*>(std::uintptr_t{1} + static_cast<unsigned>(device)); }
+void* address_of(int context) { return reinterpret_cast<void*>(std::uintptr_t{1} + static_cast<unsigned>(context)); }
 
-// The driver's. A context is the address that is one more than its device's number.
+// The driver's. A context's address is one more than its number.
 int cuCtxGetId(void* context, unsigned long long* id) {
   *id = context == nullptr ? runtime().context() : runtime().context_of(static_cast<int>(number(context)) - 1);
   return *id != 0 ? 0 : 1;
 }
 int cuCtxGetCurrent(void** context) {
-  *context = runtime().context() == 0 ? nullptr : context_of(runtime().current_device());
+  const std::optional<int> current = runtime().current_context();
+  *context = current ? address_of(*current) : nullptr;
   return 0;
 }
 int cuCtxSetCurrent(void* context) {
@@ -57,7 +58,7 @@ int cuDevicePrimaryCtxGetState(int device, unsigned* flags, int* active) {
 int cuDevicePrimaryCtxRetain(void** context, int device) {
   if (device < 0 || device >= runtime().devices()) return 1;
   runtime().retain(device);
-  *context = context_of(device);
+  *context = address_of(device);
   return 0;
 }
 int cuDevicePrimaryCtxRelease(int device) {
@@ -168,8 +169,9 @@ cudaError_t cudaMemcpy(void* to, const void* from, std::size_t bytes, cudaMemcpy
   std::memcpy(to, from, bytes);
   return cudaSuccess;
 }
-cudaError_t cudaMemcpyAsync(void* to, const void* from, std::size_t bytes, cudaMemcpyKind, cudaStream_t) {
+cudaError_t cudaMemcpyAsync(void* to, const void* from, std::size_t bytes, cudaMemcpyKind, cudaStream_t stream) {
   WEIR_ENTER("cudaMemcpyAsync");
+  if (const cudaError_t code = runtime().enter_stream(stream); code != cudaSuccess) return code;
   runtime().copy_begins(number(from));
   std::memcpy(to, from, bytes);
   return cudaSuccess;
@@ -224,9 +226,13 @@ cudaError_t cudaEventSynchronize(cudaEvent_t event) {
   runtime().event_awaited(number(event));
   return cudaSuccess;
 }
+cudaError_t cudaEventQuery(cudaEvent_t event) {
+  WEIR_ENTER("cudaEventQuery");
+  runtime().event_awaited(number(event));
+  return cudaSuccess;
+}
 cudaError_t cudaStreamCreate(cudaStream_t* stream) {
-  runtime().make_some_current();
-  *stream = nullptr;
+  *stream = runtime().make_stream();
   return cudaSuccess;
 }
 cudaError_t cudaStreamCreateWithPriority(cudaStream_t* stream, unsigned, int priority) {

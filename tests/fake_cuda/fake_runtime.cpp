@@ -66,7 +66,7 @@ int FakeRuntime::devices() {
 
 int FakeRuntime::current_device() {
   const std::lock_guard lock(mutex_);
-  return thread().context.value_or(thread().chosen);
+  return thread().context ? *thread().context % kMostDevices : thread().chosen;
 }
 
 void FakeRuntime::choose(int device) {
@@ -76,9 +76,26 @@ void FakeRuntime::choose(int device) {
   in_use_.insert(device);
 }
 
-void FakeRuntime::make_current(std::optional<int> device) {
+void FakeRuntime::make_current(std::optional<int> context) {
   const std::lock_guard lock(mutex_);
-  thread().context = device;
+  thread().context = context;
+}
+
+std::optional<int> FakeRuntime::current_context() {
+  const std::lock_guard lock(mutex_);
+  return thread().context;
+}
+
+cudaStream_t FakeRuntime::make_stream() {
+  make_some_current();
+  return reinterpret_cast<cudaStream_t>(kFirstStream + static_cast<std::uintptr_t>(*current_context()));
+}
+
+cudaError_t FakeRuntime::enter_stream(cudaStream_t stream) {
+  const auto number = reinterpret_cast<std::uintptr_t>(stream);
+  if (number < kFirstStream || static_cast<int>(number - kFirstStream) == current_context()) return cudaSuccess;
+  const std::lock_guard lock(mutex_);
+  return last_ = cudaErrorInvalidResourceHandle;
 }
 
 void FakeRuntime::make_some_current() {
@@ -109,9 +126,9 @@ std::uint64_t FakeRuntime::context() {
   return context ? number_of(*context) : 0;
 }
 
-std::uint64_t FakeRuntime::context_of(int device) {
+std::uint64_t FakeRuntime::context_of(int context) {
   const std::lock_guard lock(mutex_);
-  return number_of(device);
+  return number_of(context);
 }
 
 std::set<int> FakeRuntime::devices_in_use() {

@@ -27,8 +27,14 @@ class FakeRuntime {
   int current_device();
   /// Chooses `device`, and makes its context current.
   void choose(int device);
-  /// Makes the context of `device` current; of none: the calling thread has no context.
-  void make_current(std::optional<int> device);
+  /// A context of `device` that its user made; the number of the one that the runtime uses is the device's.
+  static constexpr int own_context(int device) { return kMostDevices + device; }
+  /// Makes a context current; none: the calling thread has no context.
+  void make_current(std::optional<int> context);
+  std::optional<int> current_context();
+  /// A stream of the current context, and what a call returns that gives work to `stream`, which is of one context.
+  cudaStream_t make_stream();
+  cudaError_t enter_stream(cudaStream_t stream);
   /// As a call on a thread that has no context does, for current_device().
   void make_some_current();
   /// Makes the context of `device`, or counts one more who holds it.
@@ -38,7 +44,7 @@ class FakeRuntime {
   int references(int device);
   /// The number of the calling thread's context; 0: it has none.
   std::uint64_t context();
-  std::uint64_t context_of(int device);
+  std::uint64_t context_of(int context);
   /// Those that have a context.
   std::set<int> devices_in_use();
 
@@ -91,14 +97,17 @@ class FakeRuntime {
     bool later = false;  ///< calls, too
   };
 
+  static constexpr int kMostDevices = 8;
+  static constexpr std::uintptr_t kFirstStream = 256;  // lower ones are the runtime's own
+
   // What a thread works on.
   struct Thread {
     std::uint64_t generation = 0;  // a reset makes it forget the rest
     int chosen = 0;
-    std::optional<int> context = {};  // its device
+    std::optional<int> context = {};
   };
   Thread& thread();  // the calling one's
-  std::uint64_t number_of(int device) const { return 16 * generation_ + static_cast<std::uint64_t>(device); }
+  std::uint64_t number_of(int context) const { return 16 * generation_ + static_cast<std::uint64_t>(context); }
 
   std::mutex mutex_;
   int devices_ = 1;

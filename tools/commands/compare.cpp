@@ -35,6 +35,7 @@
 #include "ingest/source_registry.h"
 #include "ingest/values/axis_placement.h"
 #include "tools/command.h"
+#include "tools/command_request.h"
 #include "tools/options/run_options.h"
 #include "tools/options/table_options.h"
 #include "tools/options/trace_option.h"
@@ -113,7 +114,7 @@ ComparedPair open_pair(const std::string& input, const std::string& volume, cons
   }
   NvdbFile file(volume);
   file.mapping().release_pages();  // what its validation looked at
-  SourceOptions options = read_conversion_request(arguments.options).source;
+  SourceOptions options = command_request(arguments.options).source;
   const InputRecord record = read_input_record(file);
   if (!record.unusable.empty()) spdlog::warn("{}", record.unusable);
   if (const std::string taken = take_recorded_input(input, record, arguments.options, options); !taken.empty()) {
@@ -326,7 +327,11 @@ void add_compare(CLI::App& app) {
   CLI::App* command = app.add_subcommand("compare", "Computes the exact error of a volume against its source");
   command->add_option("input", arguments->input, "the source")->type_name("INPUT")->required();
   command->add_option("volume", arguments->volume, "the .nvdb file made from it")->type_name("OUT.nvdb")->required();
-  add_input_options(*command, arguments->options);
+  add_input_options_of_one(*command, arguments->options);
+  OptionRow levels = conversion_option("levels");
+  levels.help = "of an AMReX plotfile: separate where the file is of one level, which its sidecar names";
+  levels.standard = "as the sidecar says";
+  add_option(*command, levels, arguments->options, "Input");
   add_run_options(*command, arguments->options, arguments->progress);
   add_trace_option(*command, arguments->trace);
   command->add_flag("--derived", arguments->derived,

@@ -29,6 +29,7 @@
 #include "ingest/series_names.h"
 #include "ingest/source_registry.h"
 #include "tools/command.h"
+#include "tools/command_request.h"
 #include "tools/options/given_options.h"
 #include "tools/options/result_directory.h"
 #include "tools/options/run_options.h"
@@ -59,10 +60,6 @@ struct ConvertArguments {
   bool json = false;
   bool dry_run = false;
 };
-
-void say(const Message& line) {
-  spdlog::log(line.is_remark() ? spdlog::level::info : spdlog::level::warn, "{}", line.text());
-}
 
 // Bytes per second; none: no limit.
 std::optional<std::uint64_t> parse_bandwidth(const std::string& text) {
@@ -119,7 +116,7 @@ std::optional<Sidecar> skip_or_replace(const SourceInfo& info, const ConvertArgu
       if (!a.dry_run) tidy_up(options.output);
       return std::move(found.sidecar);
     case FinishedOutput::State::stale:
-      spdlog::info("{}: converted again: {}", options.output, found.reason);
+      spdlog::info("{}: {}converted again: {}", options.output, a.dry_run ? "would be " : "", found.reason);
       options.overwrite = true;
       return std::nullopt;
     case FinishedOutput::State::foreign:
@@ -168,7 +165,7 @@ std::unique_ptr<VolumeSource> open_checked(const SeriesStep& step, const SourceO
 // Calls action(source, files), which keep to the bandwidth.
 template <typename Action>
 void with_bandwidth(std::unique_ptr<VolumeSource> source, const SeriesWork& work, const Action& action) {
-  const std::unique_ptr<FileSystem> unlimited = make_posix_file_system({say});
+  const std::unique_ptr<FileSystem> unlimited = make_posix_file_system({log_notice});
   if (work.bandwidth == nullptr) return action(*source, *unlimited);
   source = limit_source(std::move(source), *work.bandwidth);
   const std::unique_ptr<FileSystem> limited = limit_file_system(*unlimited, *work.bandwidth);
@@ -182,7 +179,7 @@ ConversionControl control_of(const SeriesWork& work, Progress& progress) {
   control.coder = work.coder;
   control.pass_started = [&progress](const std::string& pass, std::uint64_t bytes) { progress.start(pass, bytes); };
   control.pass_advanced = [&progress](std::uint64_t done) { progress.update(done); };
-  control.notice = say;
+  control.notice = log_notice;
   return control;
 }
 
@@ -250,12 +247,9 @@ void print_json(std::span<const Sidecar> sidecars) {
 }
 
 void convert(const CLI::App& command, const ConvertArguments& a) {
-  auto [source_options, options] = read_conversion_request(a.options);
+  auto [source_options, options] = command_request(a.options);
   options.provenance = {WEIR_VERSION, build_commit(), given_options(command, a.options)};
-  source_options.cancel = &interrupt_flag();
-  source_options.notice = say;
-
-  const std::vector<SeriesStep> steps = expand_series(a.inputs, source_options, say);
+  const std::vector<SeriesStep> steps = expand_series(a.inputs, source_options, log_notice);
   const std::vector<std::string> outputs =
       series_outputs(steps, a.output, source_options, a.brief_names ? DefaultNames::of_call : DefaultNames::of_file);
   check_outputs(steps, outputs, options.overwrite || a.skip_done);
@@ -278,7 +272,7 @@ void convert(const CLI::App& command, const ConvertArguments& a) {
   std::vector<Sidecar> sidecars;
   std::vector<nlohmann::ordered_json> forecasts;
   const std::unique_ptr<BlockCoder> coder =
-      choose_coder(options.backend, options.encoding == Encoding::packed, options.memory, say);
+      choose_coder(options.backend, options.encoding == Encoding::packed, options.memory, log_notice);
   const SeriesWork work{a, extents, bandwidth ? &*bandwidth : nullptr, coder.get(), trace.get()};
   for (std::size_t i = 0; i < steps.size(); ++i) {
     options.output = outputs[i];

@@ -3,6 +3,7 @@
 // sidecar); of a packed file it looks at all directories.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -11,10 +12,10 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
-#include "compressor/options/conversion_request.h"
 #include "format/base/error.h"
 #include "format/base/json_text.h"
 #include "format/base/printable.h"
@@ -34,6 +35,7 @@
 #include "gpu/volume/macrocell_grid.h"
 #include "ingest/drivers/driver.h"
 #include "tools/command.h"
+#include "tools/command_request.h"
 #include "tools/options/finite_range.h"
 #include "tools/options/run_options.h"
 #include "tools/options/table_options.h"
@@ -54,6 +56,9 @@ namespace weir {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+/// They choose a part or a component of a volume; all are listed.
+constexpr std::array<std::string_view, 5> kNotListed{"index", "component", "magnitude", "roi", "ghost"};
 
 constexpr std::size_t kBins = 256;  // of a histogram counted here
 
@@ -271,23 +276,23 @@ struct Inspected {
   std::string problem{};  ///< what is wrong beside a volume that could be read; empty: nothing
 };
 
-/// Prints what is found, `apart` after an empty line, or returns it as JSON.
-Inspected inspect(const std::string& path, const InspectArguments& arguments, bool apart) {
-  // A damaged .nvdb without its magic is still no raw file.
-  if (!path.ends_with(".nvdb") && !is_nanovdb(path)) {
+// A damaged .nvdb without its magic is still no raw file.
+bool is_grid(const std::string& path, const SourceOptions& options) {
+  return !options.stack && (path.ends_with(".nvdb") || is_nanovdb(path));
+}
+
+/// Prints what is found, `apart` after an empty line, or returns it as JSON. `options` are those of arguments.source.
+Inspected inspect(const std::string& path, const InspectArguments& arguments, const SourceOptions& options,
+                  bool apart) {
+  if (!is_grid(path, options)) {
     if (!arguments.plot.empty()) {
       throw Error(ErrorKind::usage, cat("--plot is for .nvdb files, and ", path, " is none; convert it first"));
     }
-    for (const char* key : {"index", "roi"}) {
-      if (arguments.source.contains(key)) {
-        throw Error(ErrorKind::usage,
-                    compose(option(key), " chooses a part for a conversion; leave it out: inspect lists all that ",
-                            path, " holds"));
-      }
-    }
-    const SourceOptions options = read_conversion_request(arguments.source).source;
     InputListing listing = list_input(path, options);
-    if (!options.dataset.empty()) keep_named(listing, options.dataset);
+    if (!options.dataset.empty() && !options.stack) keep_named(listing, options.dataset);
+    GivenOptions besides = arguments.source;
+    if (!options.stack) besides.erase("dataset");  // each command has that of its volume
+    listing.words = input_words(besides);
     if (arguments.json) return {to_json(listing)};
     if (apart) std::cout << '\n';
     print_text(listing);
@@ -321,7 +326,8 @@ Inspected inspect(const std::string& path, const InspectArguments& arguments, bo
 }
 
 void run(const InspectArguments& arguments) {
-  const std::vector<std::string> paths = expand_volumes(arguments.paths);
+  const SourceOptions options = command_request(arguments.source).source;
+  const std::vector<std::string> paths = options.stack ? arguments.paths : expand_volumes(arguments.paths);
   if (paths.size() > 1 && !arguments.plot.empty()) {
     throw usage_error(cat("--plot draws one histogram, and ", paths.size(), " files are given; give one of them"));
   }
@@ -336,7 +342,7 @@ void run(const InspectArguments& arguments) {
   };
   for (const std::string& path : paths) {
     try {
-      Inspected found = inspect(path, arguments, printed);
+      Inspected found = inspect(path, arguments, options, printed);
       printed = true;
       reports.push_back(std::move(found.report));
       if (!found.problem.empty()) say(found.problem, ErrorKind::input);
@@ -372,7 +378,7 @@ void add_inspect(CLI::App& app) {
                    "also draws the histogram, as FILE.png or FILE.svg, which replaces one that is there")
       ->type_name("FILE");
   command->add_flag("--json", arguments->json, "one JSON object on stdout");
-  add_input_options(*command, arguments->source);
+  add_input_options_of_one(*command, arguments->source, kNotListed);
   add_progress_options(*command, arguments->progress);
   add_log_level(*command);
   command->callback([arguments] { run(*arguments); });

@@ -5,8 +5,10 @@
 #include <fstream>
 #include <memory>
 #include <string>
+#include <system_error>
 
 #include "format/base/error.h"
+#include "ingest/source/convert_command.h"
 #include "tools/command.h"
 #include "tools/describe/config_page.h"
 #include "tools/describe/man_page.h"
@@ -28,6 +30,11 @@ void write_page(const std::filesystem::path& path, const std::string& page) {
 }
 
 void write_pages(CLI::App& app, const std::filesystem::path& directory) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(directory, ignored)) {
+    throw Error(ErrorKind::io, cat(directory.string(), ": this directory does not exist; make it: mkdir -p ",
+                                   shell_word(directory.string())));
+  }
   const std::vector<CommandDescription> commands = describe_commands(app);
   for (const CommandDescription& c : commands) {
     write_page(directory / (man_page_name(c) + ".1"), man_page(c, commands, WEIR_VERSION));

@@ -2,7 +2,6 @@
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
-#include <array>
 #include <chrono>
 #include <cstdint>
 #include <iostream>
@@ -12,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "compressor/options/conversion_request.h"
 #include "format/base/error.h"
 #include "format/base/seconds_since.h"
 #include "format/base/text.h"
@@ -21,8 +19,10 @@
 #include "format/nanovdb/nvdb_file.h"
 #include "gpu/image/image_output.h"
 #include "ingest/source/convert_command.h"
+#include "ingest/source/source_files.h"
 #include "ingest/source_registry.h"
 #include "tools/command.h"
+#include "tools/command_request.h"
 #include "tools/export/dense_input.h"
 #include "tools/options/backend_choice.h"
 #include "tools/options/finite_range.h"
@@ -76,10 +76,8 @@ LoadedInput load_file(Backend& backend, const RenderArguments& arguments) {
 
 LoadedInput load_dense(Backend& backend, const RenderArguments& arguments, std::optional<std::uint64_t> ceiling,
                        Progress& progress) {
-  const auto source = open_source(arguments.input, read_conversion_request(arguments.source).source);
-  for (const FileState& file : source->info().files) {
-    if (file.exists) require_not_input(std::array{FileId{file.device, file.inode}}, arguments.output);
-  }
+  const auto source = open_source(arguments.input, command_request(arguments.source).source);
+  require_not_input(source_file_ids(source->info()), arguments.output);
   progress.start("read", static_cast<std::uint64_t>(source->info().domain().voxels()) * sizeof(float));
   StreamOptions options;
   options.cancel = &interrupt_flag();
@@ -185,7 +183,7 @@ void add_render(CLI::App& app) {
       ->check(CLI::IsMember({"file", "dense"}))
       ->capture_default_str();
   add_picture_options(*command, arguments->picture);
-  add_input_options(*command, arguments->source);
+  add_input_options_of_one(*command, arguments->source);
   add_progress_options(*command, arguments->progress);
   command->add_flag("--overwrite", arguments->overwrite, "replace an existing picture");
   command->add_flag("--json", arguments->json, "report as one JSON object on stdout");

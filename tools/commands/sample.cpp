@@ -231,6 +231,7 @@ void add_sample(CLI::App& app) {
   dims.help = "voxels";
   dims.standard = "the name's";
   OptionRow type = conversion_option("type");
+  type.help = "uint8, int8, uint16, int16, uint32, int32, float32 or float64";
   type.standard = "the name's, else float32; integers are scaled to their range";
   for (const OptionRow& row : {dims, type, conversion_option("endian")}) {
     add_option(*command, row, arguments->options);

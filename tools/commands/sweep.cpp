@@ -26,6 +26,7 @@
 #include "ingest/drivers/driver.h"
 #include "ingest/source_registry.h"
 #include "tools/command.h"
+#include "tools/command_request.h"
 #include "tools/options/given_options.h"
 #include "tools/options/result_directory.h"
 #include "tools/options/run_options.h"
@@ -251,7 +252,7 @@ void sweep(const CLI::App& command, const SweepArguments& a) {
   const std::vector<double> rates = parse_rates(a.rates);
   const std::vector<SweepMethod> methods = parse_sweep_methods(a.methods);
   for (const SweepMethod& method : methods) conversion_of(method, a.options);
-  auto [source_options, run] = read_conversion_request(a.options);
+  auto [source_options, run] = command_request(a.options);
   source_options.spool_directory = a.output;
   const auto threads = limit_threads(run.threads);
   const auto files = make_posix_file_system();
@@ -308,7 +309,7 @@ void add_sweep(CLI::App& app) {
   add_option(*command, conversion_option("nonfinite"), a->options);
   command->add_flag("--keep", a->keep, "keep the converted volumes, METHOD_rateRATE.nvdb, in the directory");
   command->add_flag("--overwrite", a->overwrite, "replace existing results");
-  add_input_options(*command, a->options);
+  add_input_options_of_one(*command, a->options);
   add_run_options(*command, a->options, a->progress);
   command->add_flag("--json", a->json, "print what is in sweep.json on stdout");
   add_log_level(*command);

@@ -3,10 +3,12 @@
 #include <CLI/CLI.hpp>
 #include <array>
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "format/base/error.h"
@@ -16,6 +18,7 @@
 #include "format/sidecar/find_sidecar.h"
 #include "format/sidecar/sidecar.h"
 #include "tools/command.h"
+#include "tools/options/command_message.h"
 #include "tools/options/run_options.h"
 #include "tools/options/trace_option.h"
 #include "tools/options/volume_series.h"
@@ -66,8 +69,15 @@ Json to_json(const std::string& path, bool ok, const std::vector<VolumeCheck>& c
 
 // What holds of one volume; what does not goes to stderr, and raises `status` from 0 to its exit code. A file that
 // cannot be read may be sound.
-Json verify_one(const std::string& path, const VerifyArguments& arguments, int& status) {
+Json verify_one(const CLI::App& app, const std::string& path, const VerifyArguments& arguments, int& status) {
   const auto raise = [&](ErrorKind kind) { status = status == 0 ? static_cast<int>(kind) : status; };
+  std::error_code why;
+  if (std::filesystem::status(path, why).type() == std::filesystem::file_type::not_found) {
+    const Error missing = io_error(path, "open", why.value());
+    print_error_line(command_message(app, missing));
+    raise(ErrorKind::input);
+    return to_json(path, false, {{"structure", missing.what(), "", false}});
+  }
   std::vector<VolumeCheck> checks;
   try {
     checks = verify(path, arguments);
@@ -88,14 +98,14 @@ Json verify_one(const std::string& path, const VerifyArguments& arguments, int& 
   return to_json(path, ok, checks);
 }
 
-void run(const VerifyArguments& arguments) {
+void run(const CLI::App& app, const VerifyArguments& arguments) {
   const std::vector<std::string> paths = expand_volumes(arguments.paths);
   if (paths.size() > 1 && !arguments.trace.empty()) {
     throw usage_error(cat("--trace is of one volume, and ", paths.size(), " are given"));
   }
   Json volumes = Json::array();
   int status = 0;
-  for (const std::string& path : paths) volumes.push_back(verify_one(path, arguments, status));
+  for (const std::string& path : paths) volumes.push_back(verify_one(app, path, arguments, status));
   if (arguments.json) {
     const Json report = volumes.size() == 1 ? volumes.front() : Json{{"ok", status == 0}, {"volumes", volumes}};
     std::cout << json_text(report) << '\n';
@@ -118,7 +128,7 @@ void add_verify(CLI::App& app) {
   add_trace_option(*command, arguments->trace);
   add_progress_options(*command, arguments->progress);
   add_log_level(*command);
-  command->callback([arguments] { run(*arguments); });
+  command->callback([&app, arguments] { run(app, *arguments); });
 }
 
 }  // namespace weir

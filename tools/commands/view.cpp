@@ -205,8 +205,8 @@ void add_view(CLI::App& app) {
       ->required();
   command
       ->add_option("--against", arguments->against,
-                   "another file, or as many, to compare with; an input of convert is compared with as it is, "
-                   "converted without loss")
+                   "another file, or a pattern or directory of as many, to compare with; an input of convert is "
+                   "compared with as it is, converted without loss")
       ->type_name("FILE");
   command->add_option("--listen", arguments->listen, "address of the page; port 0 takes a free one")
       ->type_name("HOST:PORT")
@@ -245,7 +245,7 @@ void add_view(CLI::App& app) {
                    "directory for the preview of an input and for forecasts; default: TMPDIR")
       ->type_name("DIR");
   add_backend_options(*command, arguments->backend);
-  add_input_options(*command, arguments->source);
+  add_input_options_of_one(*command, arguments->source);
   add_progress_options(*command, arguments->progress);
   add_log_level(*command);
   command->callback([arguments] { view(*arguments); });

@@ -77,7 +77,7 @@ std::string entries_of(std::string_view table) {
 std::string conversion_entries() {
   std::string page;
   for (const OptionRow& row : watch_options()) {
-    page += config_entry(key_wording({std::string(row.key), {}}), row.standard, std::string(row.help));
+    page += config_entry(key_wording({std::string(row.key), {}}), row.standard, row.meaning());
   }
   return page;
 }

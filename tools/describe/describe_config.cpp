@@ -27,6 +27,8 @@ void describe(std::ostream& out, const ServiceConfig& service) {
   out << "service\n";
   say(out, "state", service.state);
   say(out, "listen", cat(service.listen.text(), service.token.empty() ? "" : ", with a token"));
+  if (!service.control_socket.empty()) say(out, "control", service.control_socket);
+  if (!service.port_file.empty()) say(out, "port_file", service.port_file);
   say(out, "memory",
       cat(format_bytes(service.memory), ", ", format_bytes(job_memory(service)), " for each of ", service.jobs,
           service.jobs == 1 ? " job" : " jobs"));

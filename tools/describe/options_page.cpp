@@ -18,7 +18,7 @@ std::string line_of(const OptionRow& row) {
   const std::string value = row.flag() ? "" : cat(" `", cell(row.argument), "`");
   const std::string keyword = key_wording({std::string(row.key), {}});
   return cat("| `--", row.key, "`", value, " | `", keyword, "` | ", row.unit, " | ", cell(row.standard), " | ",
-             cell(row.help), " |\n");
+             cell(row.meaning()), " |\n");
 }
 
 std::string table(std::string_view title, std::string_view names, std::span<const ConversionOption> options) {

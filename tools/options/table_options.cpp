@@ -5,6 +5,7 @@
 
 #include "compressor/options/conversion_request.h"
 #include "format/base/text.h"
+#include "ingest/source/convert_command.h"
 
 namespace weir {
 
@@ -36,6 +37,24 @@ void add_option(CLI::App& command, const OptionRow& row, GivenOptions& given, co
 
 void add_input_options(CLI::App& command, GivenOptions& given) {
   add_options(command, input_options(), given, "Input");
+}
+
+void add_input_options_of_one(CLI::App& command, GivenOptions& given, std::span<const std::string_view> left_out) {
+  for (const ConversionOption& option : input_options()) {
+    if (option.row.key == "levels" || std::ranges::find(left_out, option.row.key) != left_out.end()) continue;
+    add_option(command, option.row.of_one_volume(), given, "Input");
+  }
+}
+
+std::string input_words(const GivenOptions& given) {
+  std::string words;
+  for (const ConversionOption& option : input_options()) {
+    const auto found = given.find(option.row.key);
+    if (found == given.end() || found->second.empty()) continue;
+    words += cat(" --", option.row.key);
+    if (!option.row.flag()) words += cat('=', shell_word(found->second));
+  }
+  return words;
 }
 
 void add_method_options(CLI::App& command, GivenOptions& given) { add_options(command, method_options(), given); }

@@ -1,12 +1,15 @@
-// What goes wrong, as a command says it.
+// What a program says on stderr: in lines of its own, whatever the paths in them, which are what the user gave or a
+// file said. Control characters must neither break a line nor steer the terminal.
 #pragma once
 
 #include <string>
 
 namespace weir {
 
-/// Writes "weir: MESSAGE" to stderr as one line: paths are what the user gave or a file said, and control characters
-/// must neither break the line nor steer the terminal.
-void print_error_line(const std::string& message);
+/// Writes "PROGRAM: MESSAGE" to stderr, as one line.
+void print_error_line(const std::string& message, const std::string& program = "weir");
+
+/// From now on what is logged goes to stderr, as one line each, with its time and level.
+void log_in_lines(const std::string& program);
 
 }  // namespace weir

@@ -21,9 +21,14 @@ std::string extents_text(const std::vector<std::int64_t>& extents) {
   return text.empty() ? "scalar" : text;
 }
 
+std::string command_of(const InputListing& listing, const DatasetInfo& dataset) {
+  return convert_command(listing.path, listing.container, dataset) + listing.words;
+}
+
 }  // namespace
 
 InputListing list_input(const std::string& path, const SourceOptions& options) {
+  if (options.stack) return {path, "stack", false, list_single(open_source(path, options)->info(), "")};
   const SourceFormat& format = format_of(path);
   SourceOptions without_dataset = options;  // of which keep_named() says what there is
   without_dataset.dataset.clear();
@@ -64,7 +69,7 @@ void print_text(const InputListing& listing) {
       std::cout << cat("  cannot be converted: ", printable(dataset.obstacle), '\n');
       continue;
     }
-    std::cout << cat("  ", printable(convert_command(listing.path, listing.container, dataset)), '\n');
+    std::cout << cat("  ", printable(command_of(listing, dataset)), '\n');
   }
 }
 
@@ -73,17 +78,15 @@ nlohmann::ordered_json to_json(const InputListing& listing) {
   for (const DatasetInfo& dataset : listing.datasets) {
     Json attributes = Json::object();
     for (const auto& [name, value] : dataset.attributes) attributes[name] = value;
-    datasets.push_back(
-        {{"name", dataset.name},
-         {"extents", dataset.extents},
-         {"type", dataset.type},
-         {"layout", dataset.layout},
-         {"attributes", attributes},
-         {"leading_axes", dataset.leading_axes},
-         {"components", dataset.components},
-         {"obstacle", dataset.obstacle.empty() ? Json() : Json(dataset.obstacle)},
-         {"command",
-          dataset.obstacle.empty() ? Json(convert_command(listing.path, listing.container, dataset)) : Json()}});
+    datasets.push_back({{"name", dataset.name},
+                        {"extents", dataset.extents},
+                        {"type", dataset.type},
+                        {"layout", dataset.layout},
+                        {"attributes", attributes},
+                        {"leading_axes", dataset.leading_axes},
+                        {"components", dataset.components},
+                        {"obstacle", dataset.obstacle.empty() ? Json() : Json(dataset.obstacle)},
+                        {"command", dataset.obstacle.empty() ? Json(command_of(listing, dataset)) : Json()}});
   }
   return {{"path", listing.path}, {"format", listing.format}, {"datasets", datasets}};
 }

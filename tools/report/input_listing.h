@@ -15,10 +15,11 @@ struct InputListing {
   std::string format;
   bool container = false;  ///< its datasets are chosen by --dataset
   std::vector<DatasetInfo> datasets;
+  std::string words{};  ///< input options that the commands take besides their own, a space before each
 };
 
-/// Lists `path`; reads no values. Throws what open_source throws of the file itself, and of options that are not for
-/// its format, but for the dataset.
+/// Lists `path`, with options.stack as one volume; reads no values. Throws what open_source throws of the file itself,
+/// and of options that are not for its format, but for the dataset.
 InputListing list_input(const std::string& path, const SourceOptions& options);
 
 /// Leaves the datasets that `dataset` names, with or without the slash before it, or as a pattern. Throws Error(usage)

@@ -174,9 +174,9 @@ class Trial {
     const std::uint64_t fixed =
         resident_bytes() + source_.working_bytes() + kStagingBytes + kSlackBytes + threads * worker;
     if (options_.memory < fixed + 2 * kLeastBlockTrialBytes) {
-      throw Error(ErrorKind::usage,
-                  cat("--memory ", format_bytes(options_.memory), " is too small for ZFP with ", threads,
-                      " threads; give at least ", ((fixed + 2 * kLeastBlockTrialBytes) >> 20U) + 1, "MiB"));
+      throw Error(ErrorKind::usage, cat("--memory ", format_bytes(options_.memory), " is too small for ZFP with ",
+                                        threads, threads == 1 ? " thread" : " threads", "; give at least ",
+                                        ((fixed + 2 * kLeastBlockTrialBytes) >> 20U) + 1, "MiB"));
     }
     return std::min((options_.memory - fixed) / 2, kMostBlockTrialBytes);
   }

@@ -16,6 +16,7 @@
 #include "ingest/source_registry.h"
 #include "tools/command.h"
 #include "tools/options/given_options.h"
+#include "tools/options/table_options.h"
 
 namespace weir {
 namespace {
@@ -36,19 +37,7 @@ bool is_source(const std::string& path) {
 }
 
 std::string dense_words(const std::string& source, const GivenOptions& given) {
-  std::string text = cat(shell_word(source.starts_with('-') ? "./" + source : source), " --volume dense");
-  for (const ConversionOption& option : input_options()) {
-    const auto found = given.find(option.row.key);
-    if (found == given.end() || found->second.empty()) continue;
-    if (option.row.flag()) {
-      if (found->second == "true") text += cat(" --", option.row.key);
-      continue;
-    }
-    for (const std::string& value : split(found->second, '\n')) {  // of one that is given more than once
-      text += cat(" --", option.row.key, '=', shell_word(value));
-    }
-  }
-  return text;
+  return cat(shell_word(source.starts_with('-') ? "./" + source : source), " --volume dense", input_words(given));
 }
 
 SourcePreview::SourcePreview(const std::string& source, const GivenOptions& given, const std::string& work_dir,
@@ -59,7 +48,11 @@ SourcePreview::SourcePreview(const std::string& source, const GivenOptions& give
   name = name.filename();
   file_ = folder_.path() / (kept == Kept::all ? name += ".nvdb" : name.replace_extension(".nvdb"));
   GivenOptions all{{"encoding", "packed"}, {"nonfinite", "background"}};  // a preview shows what there is
-  kept == Kept::all ? all.emplace("lossless", "true") : all.emplace("rate", kRate);
+  if (kept == Kept::all) {
+    all.emplace("lossless", "true");
+  } else {
+    all.insert({{"rate", kRate}, {"at-most", "true"}});
+  }
   all.insert(given.begin(), given.end());
   auto [source_options, options] = read_conversion_request(all);
   source_options.cancel = &interrupt_flag();

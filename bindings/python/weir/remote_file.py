@@ -240,14 +240,18 @@ class HttpFile(RemoteFile):
 
     def _read_piece(self, piece: Range, through: Optional[_Connections] = None) -> bytes:
         through = through or self._connections
+        return self._again_where_it_breaks(functools.partial(self._ask_for, piece, through), through)
+
+    def _again_where_it_breaks(self, ask: Callable[[], Any], through: _Connections) -> Any:
+        """What `ask` returns, which is called as often as there are _WAITS, and once, while connections break."""
         for wait in _WAITS:
             try:
-                return self._ask_for(piece, through)
+                return ask()
             except _BrokenConnection:
                 if through.given_up.wait(wait):
-                    raise
+                    break
         try:
-            return self._ask_for(piece, through)
+            return ask()
         except _BrokenConnection as error:
             raise IoError(f"{error}; try again, or copy the file to this machine") from error
 
@@ -294,12 +298,16 @@ class HttpFile(RemoteFile):
 
     def read_beside(self, url: str) -> Optional[str]:
         self._leave_the_forks_connections()
-        with self._answer(url, {}, self._connections) as response:
+        through = self._connections
+        data = self._again_where_it_breaks(functools.partial(self._ask_for_sidecar, url, through), through)
+        return None if data is None else _sidecar_text(shown_url(url), self._count(data))
+
+    def _ask_for_sidecar(self, url: str, through: _Connections) -> Optional[bytes]:
+        with self._answer(url, {}, through) as response:
             if response.status in _MISSING:
                 return None
             _check_status(shown_url(url), response)
-            data = self._body(response, _LONGEST_SIDECAR + 1, shown_url(url))
-        return _sidecar_text(shown_url(url), self._count(data))
+            return self._body(response, _LONGEST_SIDECAR + 1, shown_url(url))
 
     @contextlib.contextmanager
     def _answer(self, url: str, headers: dict[str, str], through: _Connections) -> Iterator[urllib3.HTTPResponse]:
@@ -378,11 +386,9 @@ class HttpFile(RemoteFile):
         try:
             data = response.read(most, decode_content=False)
         except self._failures as error:
-            raise _BrokenConnection(f"{self._shown}: the connection broke: {error}") from error
+            raise _BrokenConnection(f"{shown}: the connection broke: {error}") from error
         if len(data) < most and response.length_remaining:
-            raise _BrokenConnection(
-                f"{self._shown}: the connection broke: {response.length_remaining} bytes did not come"
-            )
+            raise _BrokenConnection(f"{shown}: the connection broke: {response.length_remaining} bytes did not come")
         return data
 
 
@@ -434,7 +440,7 @@ class FsspecFile(RemoteFile):
         try:
             data = self._system.cat_file(self._path, start=offset, end=offset + count)
         except Exception as error:  # each file system has its own
-            raise self._failure(error) from self._cause(error)
+            raise _failure(error, self._shown) from self._cause(error)
         if len(data) != count:
             raise InputError(
                 f"{self._shown}: {len(data)} bytes instead of {count} at byte {offset}; "
@@ -451,21 +457,22 @@ class FsspecFile(RemoteFile):
         except Exception as error:  # of http: aiohttp's, with the status
             if getattr(error, "status", None) in _MISSING:
                 return None
-            raise self._failure(error) from self._cause(error)
+            raise _failure(error, shown_url(url)) from self._cause(error)
         return _sidecar_text(shown_url(url), self._count(data))
-
-    def _failure(self, error: Exception) -> Error:
-        """What weir raises where the file system raises `error`."""
-        if isinstance(error, FileNotFoundError):
-            return InputNotFoundError(2, f"{self._shown}: there is no such file", self._shown)
-        said = shown_urls(str(error)) or error.__class__.__name__
-        if isinstance(error, PermissionError):
-            return InputPermissionError(13, f"{self._shown}: may not be read: {said}", self._shown)
-        return IoError(f"{self._shown}: cannot be read: {said}")
 
     def _cause(self, error: Exception) -> Optional[Exception]:
         """`error`, for who looks for it; not where it may tell what the URL hides."""
         return error if self._shown == self._url else None
+
+
+def _failure(error: Exception, shown: str) -> Error:
+    """What weir raises where a file system raises `error` for the file `shown`."""
+    if isinstance(error, FileNotFoundError):
+        return InputNotFoundError(2, f"{shown}: there is no such file", shown)
+    said = shown_urls(str(error)) or error.__class__.__name__
+    if isinstance(error, PermissionError):
+        return InputPermissionError(13, f"{shown}: may not be read: {said}", shown)
+    return IoError(f"{shown}: cannot be read: {said}")
 
 
 def _parsed(url: str, shown: str) -> urllib3.util.Url:

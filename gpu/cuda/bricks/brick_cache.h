@@ -63,7 +63,7 @@ class BrickCache {
 
   /// Whether bricks come and go: there are fewer places than bricks, or an axis is too long for a BrickTable.
   bool paged() const { return paged_; }
-  TexelType texel_type() const { return type_; }
+  TexelType texel_type() const { return type_; }   ///< for tests
   std::uint64_t bytes() const;                     ///< of device memory
   std::uint64_t bricks() const { return slots_; }  ///< there is room for
   BrickCounters counters() const;                  ///< as of the last turn

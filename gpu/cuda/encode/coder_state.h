@@ -53,9 +53,10 @@ struct StreamMemory {
 };
 
 struct CoderState {
-  /// Of `boxes` that are worked on at a time, at most. What goes wrong is told to `say`, once. Throws Error(io).
-  CoderState(int number, std::size_t most_boxes, std::function<void(const Error&)> say)
-      : device(number), failed(std::move(say)), costs(1), codes(1), digests(1), boxes(most_boxes) {
+  /// On `device`, the current one, and in the calling thread's context, whichever thread calls later. `most_boxes` are
+  /// worked on at a time, at most. What goes wrong is told to `say`, once. Throws Error(io).
+  CoderState(int device, std::size_t most_boxes, std::function<void(const Error&)> say)
+      : context(device), failed(std::move(say)), costs(1), codes(1), digests(1), boxes(most_boxes) {
     std::vector<CostTables> host_costs(1);
     std::vector<CodeTables> host_codes(1);
     make_encoder_tables(built_in_tables(), host_costs[0], host_codes[0]);
@@ -65,7 +66,7 @@ struct CoderState {
   }
 
   ~CoderState() {
-    free_on(device, [&] {
+    free_on(context, [&] {
       boxes.clear();
       streams.clear();
       costs = {};
@@ -84,7 +85,7 @@ struct CoderState {
   auto attempt(const Call& call) -> decltype(call()) {
     if (broken) return {};
     try {
-      const KeptDevice kept(device);
+      const KeptDevice kept(context);
       return call();
     } catch (const Error& error) {
       fail(error);
@@ -92,7 +93,7 @@ struct CoderState {
     }
   }
 
-  int device;
+  const SharedContext context;
   std::function<void(const Error&)> failed;
   std::atomic<bool> broken{false};
   DeviceArray<CostTables> costs;
@@ -102,14 +103,14 @@ struct CoderState {
   MemoryPool<StreamMemory> streams;
 };
 
-/// Memory of `device` that goes back to its pool, once its stream has no more work.
+/// Memory of `context` that goes back to its pool, once its stream has no more work.
 template <class Memory>
 class Lent {
  public:
-  Lent(int device, MemoryPool<Memory>& pool, std::unique_ptr<Memory> memory)
-      : device_(device), pool_(pool), memory_(std::move(memory)) {}
+  Lent(const SharedContext& context, MemoryPool<Memory>& pool, std::unique_ptr<Memory> memory)
+      : context_(context), pool_(pool), memory_(std::move(memory)) {}
   ~Lent() {
-    free_on(device_, [&] {
+    free_on(context_, [&] {
       if (cudaStreamSynchronize(memory_->stream.get()) != cudaSuccess) cudaGetLastError();
     });
     pool_.give_back(std::move(memory_));
@@ -121,7 +122,7 @@ class Lent {
   Memory* operator->() const { return memory_.get(); }
 
  private:
-  int device_;
+  const SharedContext context_;
   MemoryPool<Memory>& pool_;
   std::unique_ptr<Memory> memory_;
 };

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "gpu/cuda/encode/launch.h"
+#include "gpu/volume/block_lattice.h"
 
 namespace weir {
 namespace {
@@ -39,12 +40,12 @@ class DeviceStreams final : public PendingStreams {
   /// that is null in memory of its own.
   DeviceStreams(std::shared_ptr<CoderState> coder, const BlockBox& box, const std::optional<BlockPlace>& place,
                 std::span<const StreamAsk> asks, const BlockConstants& constants, GrowingPinned* pinned)
-      : coder_(std::move(coder)), memory_(coder_->device, coder_->streams, coder_->streams.take()) {
+      : coder_(std::move(coder)), memory_(coder_->context, coder_->streams, coder_->streams.take()) {
     const std::size_t count = asks.size();
     const std::size_t bytes = std::size_t{asks.back().offset} + asks.back().bytes;
     // Resident blocks come by regions, of which one has more streams than the next: room for most, so that it seldom
     // grows.
-    const std::size_t most = place ? std::max(count, kRegionBlocks) : count;
+    const std::size_t most = place ? std::max(count, std::size_t{kRegionBlocks}) : count;
     const std::size_t most_bytes = place ? std::max(bytes, kOftenEnough) : bytes;
     EncodeCall call;
     call.box = box;
@@ -101,7 +102,6 @@ class DeviceStreams final : public PendingStreams {
   }
 
  private:
-  static constexpr std::size_t kRegionBlocks = 4096;
   static constexpr std::size_t kOftenEnough = std::size_t{2} << 20U;  // four bits a voxel
 
   std::shared_ptr<CoderState> coder_;
@@ -130,7 +130,7 @@ std::optional<BlockBox> block_box(const Box& voxels, const Box& blocks) {
 
 DeviceBlocks::DeviceBlocks(std::shared_ptr<CoderState> coder, std::unique_ptr<BoxMemory> memory,
                            std::span<const float> values, const BlockBox& box)
-    : coder_(std::move(coder)), memory_(coder_->device, coder_->boxes, std::move(memory)), box_(box) {
+    : coder_(std::move(coder)), memory_(coder_->context, coder_->boxes, std::move(memory)), box_(box) {
   float* const to = memory_->values.at_least(values.size());
   box_.values = to;
   const cudaStream_t stream = memory_->stream.get();
@@ -142,7 +142,7 @@ DeviceBlocks::DeviceBlocks(std::shared_ptr<CoderState> coder, std::unique_ptr<Bo
 
 DeviceBlocks::DeviceBlocks(std::shared_ptr<CoderState> coder, std::unique_ptr<BoxMemory> memory, const BlockBox& box,
                            const BlockPlace& place)
-    : coder_(std::move(coder)), memory_(coder_->device, coder_->boxes, std::move(memory)), box_(box), place_(place) {}
+    : coder_(std::move(coder)), memory_(coder_->context, coder_->boxes, std::move(memory)), box_(box), place_(place) {}
 
 void DeviceBlocks::begin_survey(const RungAsk& ask) {
   begun_ = coder_->attempt([&]() -> std::optional<SurveyedBlocks> {

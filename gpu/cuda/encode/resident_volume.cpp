@@ -50,7 +50,7 @@ class DeviceVolume final : public ResidentVolume {
 
   void read(const Box& box, std::span<float> values) override {
     const char* const what = "copying values from the device";
-    const KeptDevice kept(state_->device);
+    const KeptDevice kept(state_->context);
     const Index3 extent = voxels_.extent();
     const Index3 from = box.lo - voxels_.lo;
     const Index3 size = box.extent();

@@ -39,3 +39,24 @@ using Read = ssize_t (*)(Handle, void* device_base, std::size_t bytes, off_t fil
 std::string read_failure(ssize_t got, std::uint64_t at);
 
 }  // namespace weir::cufile
+
+namespace weir {
+
+/// The library's functions and, where it is `opened`, its driver.
+struct CuFile {
+  CuFile() = default;
+  ~CuFile() {
+    if (opened) driver_close();
+  }
+  CuFile(const CuFile&) = delete;
+  CuFile& operator=(const CuFile&) = delete;
+
+  cufile::DriverOpen driver_open = nullptr;
+  cufile::DriverClose driver_close = nullptr;
+  cufile::HandleRegister handle_register = nullptr;
+  cufile::HandleDeregister handle_deregister = nullptr;
+  cufile::Read read = nullptr;
+  bool opened = false;
+};
+
+}  // namespace weir

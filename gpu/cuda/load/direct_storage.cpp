@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstring>
 #include <mutex>
+#include <stdexcept>
 #include <type_traits>
 
 #include "format/base/text.h"
@@ -16,25 +17,13 @@
 #include "gpu/cuda/runtime/check.h"
 
 namespace weir {
-
-// The library's functions and, from driver_open on, its driver.
-struct CuFile {
-  CuFile() = default;
-  ~CuFile() {
-    if (opened) driver_close();
-  }
-  CuFile(const CuFile&) = delete;
-  CuFile& operator=(const CuFile&) = delete;
-
-  cufile::DriverOpen driver_open = nullptr;
-  cufile::DriverClose driver_close = nullptr;
-  cufile::HandleRegister handle_register = nullptr;
-  cufile::HandleDeregister handle_deregister = nullptr;
-  cufile::Read read = nullptr;
-  bool opened = false;
-};
-
 namespace {
+
+// Ends the reads of all threads.
+class ReadRefused : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 std::string status_text(const cufile::Status& status) {
   return status.cuda_code == 0 ? cat("cuFile error ", status.code)
@@ -123,28 +112,28 @@ CopyOutcome DirectStorage::copy(const CopyTask& task) const {
   std::mutex mutex;
   const auto take = [&](int, const FilePiece& piece) {
     double seconds = 0;
-    std::uint64_t done = 0;
-    std::string refusal;
     {
       const StageClock clock(seconds);
-      while (done < piece.bytes) {
+      for (std::uint64_t done = 0; done < piece.bytes;) {
         const ssize_t got = library_->read(handle.get(), task.target, piece.bytes - done,
                                            static_cast<off_t>(task.offset + piece.offset + done),
                                            static_cast<off_t>(piece.offset + done));
         if (got <= 0) {
           const std::string why = cufile::read_failure(got, task.offset + piece.offset + done);
           task.file.check_unchanged();
-          refusal = why;
-          break;
+          throw ReadRefused(cat("GPUDirect Storage: reading ", task.file.path(), ": ", why));
         }
         done += static_cast<std::uint64_t>(got);
       }
     }
     const std::lock_guard lock(mutex);
     outcome.stages.populate_s += seconds;
-    if (!refusal.empty()) outcome.refusal = cat("GPUDirect Storage: reading ", task.file.path(), ": ", refusal);
   };
-  for_each_piece(task, task.chunk_bytes, task.threads, take);
+  try {
+    for_each_piece(task, task.chunk_bytes, task.threads, take);
+  } catch (const ReadRefused& refused) {
+    outcome.refusal = refused.what();
+  }
   return outcome;
 }
 

@@ -22,13 +22,14 @@ class DirectStorage {
   /// Nothing, with the reason in `refusal`, where the library is missing, too old or finds no driver.
   static std::optional<DirectStorage> open(std::string& refusal);
 
-  /// Reads `task.chunk_bytes` at a time, from task.threads threads. The outcome says where the file system is not
-  /// one that cuFile reads. Throws Error(input, io, interrupted).
+  /// By functions that were found already.
+  explicit DirectStorage(std::shared_ptr<const CuFile> library) : library_(std::move(library)) {}
+
+  /// Reads `task.chunk_bytes` at a time, from task.threads threads, until one read is refused. The outcome says where
+  /// the file system is not one that cuFile reads. Throws Error(input, io, interrupted).
   CopyOutcome copy(const CopyTask& task) const;
 
  private:
-  explicit DirectStorage(std::shared_ptr<const CuFile> library) : library_(std::move(library)) {}
-
   std::shared_ptr<const CuFile> library_;
 };
 

@@ -6,15 +6,15 @@
 
 #include "format/base/text.h"
 #include "gpu/cuda/runtime/check.h"
+#include "gpu/cuda/runtime/current_device.h"
 
 namespace weir {
 namespace {
 
 bool has_attribute(cudaDeviceAttr attribute) {
-  int device = 0;
   int value = 0;
-  check_cuda(cudaGetDevice(&device), "asking for the current device");
-  check_cuda(cudaDeviceGetAttribute(&value, attribute, device), "asking for an attribute of the device");
+  check_cuda(cudaDeviceGetAttribute(&value, attribute, existing_current_device()),
+             "asking for an attribute of the device");
   return value != 0;
 }
 

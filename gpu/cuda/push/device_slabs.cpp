@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "format/base/text.h"
+#include "gpu/cuda/push/gather_planes.h"
 #include "gpu/cuda/runtime/check.h"
-#include "gpu/cuda/runtime/current_device.h"
 
 namespace weir {
 namespace {
@@ -16,32 +16,11 @@ constexpr std::string_view kCopying = "copying a slab from the device";
 
 }  // namespace
 
-bool without_gaps(const DeviceValues& values, const Index3& extent) {
-  const auto bytes = static_cast<std::int64_t>(values.value_bytes);
-  return values.stride[0] == bytes && values.stride[1] == bytes * extent.x &&
-         values.stride[2] == bytes * extent.x * extent.y;
-}
-
-bool lies_on(const void* address, int device) {
-  cudaPointerAttributes attributes{};
-  check_cuda(cudaPointerGetAttributes(&attributes, address), "asking where a volume's values are");
-  return attributes.type == cudaMemoryTypeManaged ||
-         (attributes.type == cudaMemoryTypeDevice && attributes.device == device);
-}
-
-bool is_device_memory(const void* address) {
-  if (device_count() == 0) return false;
-  cudaPointerAttributes attributes{};
-  check_cuda(cudaPointerGetAttributes(&attributes, address), "asking where a slab's values are");
-  return attributes.type == cudaMemoryTypeDevice || attributes.type == cudaMemoryTypeManaged;
-}
-
 DeviceSlabs::DeviceSlabs(const Index3& extent, std::size_t value_bytes, std::uint64_t device_bytes, Arrived arrived)
     : extent_(extent),
       value_bytes_(value_bytes),
       arrived_(std::move(arrived)),
       plane_bytes_(static_cast<std::uint64_t>(extent.x * extent.y) * value_bytes) {
-  check_cuda(cudaGetDevice(&device_), "asking for the current device");
   make_slots(device_bytes);
   worker_ = std::jthread([this] { work(); });
 }
@@ -54,7 +33,7 @@ DeviceSlabs::~DeviceSlabs() {
   }
   changed_.notify_all();
   worker_.join();
-  free_on(device_, [&] {
+  free_on(context_, [&] {
     slots_.clear();
     stream_.reset();
     staged_ = {};
@@ -92,22 +71,6 @@ void DeviceSlabs::make_slots(std::uint64_t device_bytes) {
   for (std::size_t i = 0; i < count; ++i) {
     slots_.push_back({first + i * piece_bytes, CopyEvent()});
     free_.push_back(i);
-  }
-}
-
-void check_slab(const DeviceValues& values, int device) {
-  int current = 0;
-  check_cuda(cudaGetDevice(&current), "asking for the current device");
-  if (current != device) {
-    throw Error(ErrorKind::usage, cat("device ", current, " is current, and the first slab came from device ", device,
-                                      "; make that one current"));
-  }
-  const auto bytes = static_cast<std::int64_t>(values.value_bytes);
-  const bool aligned = reinterpret_cast<std::uintptr_t>(values.first) % values.value_bytes == 0 &&
-                       std::ranges::all_of(values.stride, [&](std::int64_t s) { return s % bytes == 0; });
-  if (!aligned) {
-    throw Error(ErrorKind::usage, cat("on a device, the address and the strides of values must be multiples of the ",
-                                      bytes, " bytes of a value"));
   }
 }
 
@@ -154,7 +117,7 @@ void DeviceSlabs::copy(const Piece& piece, const DeviceValues& values, cudaStrea
 
 void DeviceSlabs::work() {
   try {
-    check_cuda(cudaSetDevice(device_), "making the device of the slabs current");
+    context_.enter();
   } catch (...) {
     end_with(error_in_flight());
   }

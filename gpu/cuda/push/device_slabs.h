@@ -21,24 +21,11 @@
 #include "gpu/cuda/load/copy_event.h"
 #include "gpu/cuda/load/pinned_memory.h"
 #include "gpu/cuda/push/background_stream.h"
-#include "gpu/cuda/push/gather_planes.h"
+#include "gpu/cuda/push/device_values.h"
+#include "gpu/cuda/runtime/current_device.h"
 #include "gpu/cuda/runtime/device_array.h"
 
 namespace weir {
-
-/// Whether kernels can read what is at `address`, which may be host memory that CUDA does not know of. False where
-/// there is no device. Throws Error(io).
-bool is_device_memory(const void* address);
-
-/// Whether they are planes of `extent` values, x fastest and without gaps.
-bool without_gaps(const DeviceValues& values, const Index3& extent);
-
-/// Throws Error(usage) where the address or a stride is no multiple of the value's bytes, or another device than
-/// `device`, which the first slab came from, is current.
-void check_slab(const DeviceValues& values, int device);
-
-/// Whether kernels of `device` can read what is at `address`, as memory of that device or managed. Throws Error(io).
-bool lies_on(const void* address, int device);
 
 class DeviceSlabs {
  public:
@@ -50,9 +37,9 @@ class DeviceSlabs {
   /// Slots of page-locked memory; two where a plane is larger than kPieceBytes.
   static constexpr std::size_t kPinnedSlots = 4;
 
-  /// For slabs of a volume of `extent` voxels on the current device. `device_bytes` may be taken there, 0 for none;
-  /// page-locked memory is kPinnedSlots pieces without it, and one piece with it. Throws Error(usage) where it holds no
-  /// plane, and Error(io) where there is no room.
+  /// For slabs of a volume of `extent` voxels on the current device, in the calling thread's context. `device_bytes`
+  /// may be taken there, 0 for none; page-locked memory is kPinnedSlots pieces without it, and one piece with it.
+  /// Throws Error(usage) where it holds no plane, and Error(io) where there is no room.
   DeviceSlabs(const Index3& extent, std::size_t value_bytes, std::uint64_t device_bytes, Arrived arrived);
   /// Waits for copies in progress; what arrives then is not handed over.
   ~DeviceSlabs();
@@ -92,7 +79,8 @@ class DeviceSlabs {
   Index3 extent_;
   std::size_t value_bytes_;
   Arrived arrived_;
-  int device_ = 0;
+  int device_ = existing_current_device();
+  SharedContext context_{device_};
   std::uint64_t plane_bytes_;
   std::int64_t piece_planes_;
   std::optional<PinnedMemory> pinned_;      // the slots, or, where they are on the device, one piece

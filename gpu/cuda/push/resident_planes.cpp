@@ -2,9 +2,8 @@
 
 #include <utility>
 
-#include "gpu/cuda/push/device_slabs.h"
+#include "gpu/cuda/push/gather_planes.h"
 #include "gpu/cuda/runtime/check.h"
-#include "gpu/cuda/runtime/current_device.h"
 
 namespace weir {
 namespace {
@@ -13,13 +12,10 @@ constexpr const char* kCopyingPlanes = "copying a slab on the device";
 
 }  // namespace
 
-ResidentPlanes::ResidentPlanes(const Index3& extent) : extent_(extent) {
-  check_cuda(cudaGetDevice(&device_), "asking for the current device");
-  values_ = DeviceArray<float>(voxels(extent.z));
-}
+ResidentPlanes::ResidentPlanes(const Index3& extent) : extent_(extent), values_(voxels(extent.z)) {}
 
 ResidentPlanes::~ResidentPlanes() {
-  free_on(device_, [&] {
+  free_on(context_, [&] {
     for (CopyEvent& copied : copied_) {
       try {
         copied.wait(kCopyingPlanes);
@@ -53,7 +49,7 @@ void ResidentPlanes::add(std::int64_t z0, std::int64_t nz, const DeviceValues& v
 }
 
 void ResidentPlanes::add(const Index3& first, const float* values, std::size_t count) {
-  const KeptDevice kept(device_);
+  const KeptDevice kept(context_);
   check_cuda(cudaMemcpyAsync(values_.data() + linear_index(first, extent_), values, count * sizeof(float),
                              cudaMemcpyHostToDevice, cudaStreamPerThread),
              kCopyingPlanes);
@@ -61,7 +57,7 @@ void ResidentPlanes::add(const Index3& first, const float* values, std::size_t c
 }
 
 void ResidentPlanes::finish() {
-  const KeptDevice kept(device_);
+  const KeptDevice kept(context_);
   const std::lock_guard lock(mutex_);
   for (CopyEvent& copied : copied_) copied.wait(kCopyingPlanes);
 }

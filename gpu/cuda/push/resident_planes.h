@@ -9,14 +9,15 @@
 
 #include "format/base/index.h"
 #include "gpu/cuda/load/copy_event.h"
-#include "gpu/cuda/push/gather_planes.h"
+#include "gpu/cuda/push/device_values.h"
+#include "gpu/cuda/runtime/current_device.h"
 #include "gpu/cuda/runtime/device_array.h"
 
 namespace weir {
 
 class ResidentPlanes {
  public:
-  /// Takes memory of the current device for `extent` values. Throws Error(io).
+  /// Takes memory of the current device for `extent` values, in the calling thread's context. Throws Error(io).
   explicit ResidentPlanes(const Index3& extent);
   /// Waits for copies in progress.
   ~ResidentPlanes();
@@ -39,7 +40,8 @@ class ResidentPlanes {
   std::size_t voxels(std::int64_t planes) const { return static_cast<std::size_t>(extent_.x * extent_.y * planes); }
 
   Index3 extent_;
-  int device_ = 0;
+  int device_ = existing_current_device();
+  SharedContext context_{device_};
   DeviceArray<float> values_;
   std::mutex mutex_;  // of the rest
   std::deque<CopyEvent> copied_;

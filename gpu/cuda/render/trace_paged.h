@@ -24,12 +24,11 @@ inline constexpr double kLaunchSeconds = 0.05;
 
 /// What a picture took.
 struct PagedReport {
-  std::uint64_t launches = 0;
-  std::uint64_t turns = 0;          ///< in which bricks were brought in
+  std::uint64_t turns = 0;          ///< in which bricks were brought in; for benchmarks
   std::uint64_t bricks = 0;         ///< brought in
   std::uint64_t decoded = 0;        ///< blocks
   std::uint64_t evicted = 0;        ///< bricks that had to go
-  std::uint32_t least_tiles = ~0U;  ///< in one launch
+  std::uint32_t least_tiles = ~0U;  ///< in one launch; for benchmarks
 };
 
 /// What a draft took.
@@ -104,7 +103,6 @@ PagedReport trace_paged(BrickCache& cache, const TaskOf& task_of, std::uint32_t 
     launch_paged<Sampler::Blocks::kNotes>(task, picture, at, count, cudaStreamPerThread);
     PagedPicture::Counts found{};
     counts.download(std::span(&found, 1));
-    ++report.launches;
     report.least_tiles = std::min(report.least_tiles, count);
     drawn += found.finished;
     if (drawn > reported) report_done(drawn - std::exchange(reported, drawn));

@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "gpu/cuda/runtime/check.h"
+#include "gpu/cuda/runtime/current_device.h"
 
 namespace weir {
 
@@ -40,8 +41,7 @@ cudaMemPool_t default_pool(int device) {
 
 std::uint64_t free_device_bytes(std::uint64_t wanted) {
   if (const std::uint64_t free = memory_now().free; free >= wanted) return free;
-  int device = 0;
-  check_cuda(cudaGetDevice(&device), "asking for the current device");
+  const int device = existing_current_device();
   check_cuda(cudaDeviceSynchronize(), "waiting for the device");
   check_cuda(cudaMemPoolTrimTo(default_pool(device), 0), "emptying the device's memory pool");
   return memory_now().free;

@@ -213,6 +213,8 @@ TEST_F(Mpi, AFailureIsOneLineAndTheSameEverywhere) {
     EXPECT_EQ(line_of(run.err, "weir-mpi"), line) << run.err;
   };
   fails({"none.raw", "-o", "out.nvdb"}, 3, "weir-mpi: none.raw: cannot open for reading: No such file or directory");
+  fails({"no\nne.raw", "-o", "out.nvdb"}, 3,
+        "weir-mpi: no\\nne.raw: cannot open for reading: No such file or directory");
   fails({cloud, "-o", "none/out.nvdb"}, 5,
         "weir-mpi: none/out.nvdb: the directory none does not exist; make it or choose another output");
   fails(
@@ -225,6 +227,20 @@ TEST_F(Mpi, AFailureIsOneLineAndTheSameEverywhere) {
   write_file(directory_ / "out.nvdb", "theirs");
   fails({cloud, "-o", "out.nvdb"}, 2, "weir-mpi: out.nvdb: exists; choose another output or pass --overwrite");
   EXPECT_EQ(read_file(directory_ / "out.nvdb"), "theirs");
+}
+
+TEST_F(Mpi, SidecarThatStdoutDoesNotTake_ExitsWith5) {
+  const std::string cloud = sample("cloud", "20x30x40", "float32");
+  const std::string convert = cat("exec '", WEIR_MPI_COMMAND, "' convert ", cloud, " -o mpi.nvdb --lossless --json ");
+  const CommandResult full = run_mpi(1, {"sh", "-c", convert + "> /dev/full"}, directory_.path());
+  EXPECT_EQ(full.exit_code, 5) << full.err;
+  EXPECT_EQ(line_of(full.err, "weir-mpi"),
+            "weir-mpi: stdout: cannot write: No space left on device; free space there or redirect it to another file")
+      << full.err;
+  // A reader that has gone is no error.
+  const CommandResult gone =
+      run_mpi(1, {"sh", "-c", "{ sleep 1; (" + convert + "--overwrite); echo $? > code; } | true"}, directory_.path());
+  EXPECT_EQ(read_file(directory_ / "code"), "0\n") << gone.err;
 }
 
 // As on two machines that do not share the directory: the second process works in another one.
@@ -276,6 +292,15 @@ TEST_F(Mpi, PushOfMissingOrRepeatedVoxels_IsRefused) {
   refused("null",
           "box: 2 data is a null pointer\n"
           "end: 2 memory: 1000 voxels are missing, those of 10:20,20:30,30:40 first\n");
+}
+
+TEST_F(Mpi, PushThatOneProcessCancels_IsInterruptedInAll) {
+  const CommandResult run =
+      push(3, sample("cloud", "20x30x40", "float32"), {"20", "30", "40", "10"}, {"1", "6"}, "cancelled");
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(sorted_lines(run.out),
+            sorted_lines("box: 130 interrupted; nothing was written\nend: 130 interrupted; nothing was written\n"));
+  EXPECT_EQ(leftovers(), std::vector<std::string>{});
 }
 
 // As `weir convert --resume on` leaves it where it is killed.

@@ -1,6 +1,6 @@
 /* push_boxes VOLUME.raw X Y Z TYPE OUT.nvdb KIND BUDGET MODE: hands a raw volume over in boxes, by all processes of the
  * job, and prints status and message of the end. MODE: all; or, what must be refused: missing, twice, outside, null,
- * differing, elsewhere, options. */
+ * differing, elsewhere, options; or cancelled, by the process that has the last box. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,6 +19,8 @@ static void* read_all(const char* path, size_t bytes) {
   fclose(file);
   return values;
 }
+
+static int cancel(void* user) { return *(int*)user; }
 
 /* The volume is cut into 2 x 3 x cuts boxes, at places that are no borders of blocks; box b is rank b % size's. */
 int main(int argc, char** argv) {
@@ -40,6 +42,9 @@ int main(int argc, char** argv) {
   options.budget_kind = atoi(argv[7]);
   options.budget = atof(argv[8]);
   options.nonfinite = WEIR_NONFINITE_BACKGROUND;
+  int cancelled = 0;
+  options.cancel = cancel;
+  options.user = &cancelled;
   const size_t value = kBytes[volume.type];
   const int64_t stride[3] = {(int64_t)value, (int64_t)value * volume.extent[0],
                              (int64_t)value * volume.extent[0] * volume.extent[1]};
@@ -68,7 +73,9 @@ int main(int argc, char** argv) {
     if (empty || (last && strcmp(mode, "missing") == 0)) continue;
     if (b % size != rank && !(last && strcmp(mode, "twice") == 0)) continue;
     if (last && strcmp(mode, "outside") == 0) lo[2] += 1;
+    cancelled = last && strcmp(mode, "cancelled") == 0;
     status = weir_mpi_push_box(push, lo, extent, last && strcmp(mode, "null") == 0 ? NULL : first, stride, &error);
+    cancelled = 0;
     if (status != WEIR_OK) printf("box: %d %s\n", (int)status, error.message);
   }
   if (push != NULL) {

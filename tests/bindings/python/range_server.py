@@ -74,6 +74,12 @@ class RangeServer:
                 self.end_headers()
                 self.wfile.write(body)
 
+            def break_off(self, head, body):
+                """Half of an answer."""
+                owner.cut -= 1
+                self.close_connection = True
+                self.wfile.write(f"HTTP/1.1 {head}\r\nContent-Length: {len(body)}\r\n\r\n".encode() + body[: len(body) // 2])
+
             def redirect(self, place):
                 self.close_connection = True
                 self.send_response(302)
@@ -109,18 +115,15 @@ class RangeServer:
                     if owner.coding is not None:
                         headers["Content_Encoding"] = owner.coding
                     if not found or not owner.ranges or not same:
+                        if owner.cut > 0:
+                            return self.break_off("200 OK", data)
                         return self.answer(200, data, **headers)
                     first, last = int(found[1]), len(data) - 1 if owner.beyond else min(int(found[2]), len(data) - 1)
                     if first >= len(data):
                         return self.answer(416)
                     if owner.cut > 0:
-                        owner.cut -= 1
-                        self.wfile.write(
-                            f"HTTP/1.1 206 Partial Content\r\nContent-Range: bytes {first}-{last}/{len(data)}\r\n"
-                            f"Content-Length: {last + 1 - first}\r\n\r\n".encode() + data[first : (first + last) // 2]
-                        )
-                        self.close_connection = True
-                        return None
+                        said = f"bytes {first}-{last}/{len(data)}"
+                        return self.break_off(f"206 Partial Content\r\nContent-Range: {said}", data[first : last + 1])
                     owner.asked.append((path, first, last))
                 return self.answer(206, data[first : last + 1], Content_Range=f"bytes {first}-{last}/{len(data)}", **headers)
 

@@ -263,6 +263,21 @@ class Remote(FolderTest):
             grid[9]
         self.assertIs(caught.exception.__class__, weir.IoError)
 
+    def test_a_sidecar_that_breaks_is_asked_for_again(self):
+        server, url = self.served()
+        mended = weir.open(url)
+        server.cut = 3
+        self.assertEqual(mended.sidecar, self.here.sidecar)
+        broken = weir.open(url)
+        server.cut = 1000
+        with self.assertRaisesRegex(
+            weir.IoError,
+            "^http://.*/run/a.nvdb.json: the connection broke: .*; try again, or copy the file to this machine$",
+        ) as caught:
+            _ = broken.sidecar
+        self.assertIs(caught.exception.__class__, weir.IoError)
+        self.assertEqual(1000 - server.cut, 4)
+
     def test_compressed_bodies_are_refused(self):
         server, url = self.served()
         grid = weir.open(url)
@@ -491,7 +506,7 @@ class Remote(FolderTest):
                 else:
                     self.assertEqual(
                         self.refused(weir.IoError, lambda: beside.sidecar),
-                        "memory://run/a.nvdb: cannot be read: 500, url=URL('https://***@host/a.nvdb.json?...",
+                        "memory://run/a.nvdb.json: cannot be read: 500, url=URL('https://***@host/a.nvdb.json?...",
                     )
             self.assertEqual(asked.call_args.args[-1], "https://host/a.nvdb.json?key=secret7")
         memory.pipe("/run/a.nvdb", bytes(len(self.files["/run/a.nvdb"])))

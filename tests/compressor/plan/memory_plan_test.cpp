@@ -93,7 +93,7 @@ TEST(MemoryPlan, TooLittleIsRefusedWithASufficientMinimum) {
         const std::string message = error.what();
         std::smatch match;
         const std::regex form("--memory 1.0 MiB is too small for this volume with " + std::to_string(threads) +
-                              " threads; give at least ([0-9]+)MiB");
+                              (threads == 1 ? " thread" : " threads") + "; give at least ([0-9]+)MiB");
         ASSERT_TRUE(std::regex_match(message, match, form)) << message;
         EXPECT_NO_THROW(plan_memory(std::stoull(match[1]) * kMiB, 20 * kMiB, threads, domain));
         EXPECT_THROW(plan_memory((std::stoull(match[1]) - 2) * kMiB, 20 * kMiB, threads, domain), Error);

@@ -21,7 +21,7 @@ TEST_F(ExpectedPlanes, MayBeFilledLaterInAnyPieces) {
   const auto fill = [&](std::int64_t z0, std::int64_t nz) { pushed.fill(z0, nz, values_.data(), stride); };
   pushed.expect(4, 16);
   EXPECT_EQ(message(ErrorKind::usage, [&] { pushed.slab(5, 1, values_.data()); }),
-            "density: a slab of 1 planes from 5 on holds plane 5, given before; give each plane once");
+            "density: a slab of 1 plane from 5 on holds plane 5, given before; give each plane once");
   EXPECT_EQ(message(ErrorKind::usage, [&] { pushed.expect(18, 3); }),
             "density: a slab of 3 planes from 18 on is not in the volume, whose planes are 0 to 19");
   EXPECT_EQ(end(), "density: planes 0 to 3 of 20 never came; give the rest first");

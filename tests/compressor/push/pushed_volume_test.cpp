@@ -271,8 +271,8 @@ TEST_F(PushMisuse, InvalidCallsAreRefusedInOneLineAndChangeNothing) {
   const auto end = [&] { return message(ErrorKind::usage, [&] { pushed.end(); }); };
   EXPECT_EQ(slab(0, 1, nullptr), "density: the slab's data is a null pointer");
   for (const auto& [z0, nz] : {Slab{-1, 1}, {0, 0}, {0, -3}, {20, 1}, {19, 2}, {1, std::int64_t{1} << 62}}) {
-    EXPECT_EQ(slab(z0, nz, values_.data()), "density: a slab of " + std::to_string(nz) + " planes from " +
-                                                std::to_string(z0) +
+    EXPECT_EQ(slab(z0, nz, values_.data()), "density: a slab of " + std::to_string(nz) +
+                                                (nz == 1 ? " plane" : " planes") + " from " + std::to_string(z0) +
                                                 " on is not in the volume, whose planes are 0 to 19");
   }
   EXPECT_EQ(end(), "density: planes 0 to 19 of 20 never came; give the rest first");
@@ -281,7 +281,7 @@ TEST_F(PushMisuse, InvalidCallsAreRefusedInOneLineAndChangeNothing) {
   EXPECT_EQ(slab(3, 12, values_.data()),
             "density: a slab of 12 planes from 3 on holds planes 4 to 6, given before; give each plane once");
   EXPECT_EQ(slab(10, 1, values_.data()),
-            "density: a slab of 1 planes from 10 on holds plane 10, given before; give each plane once");
+            "density: a slab of 1 plane from 10 on holds plane 10, given before; give each plane once");
   EXPECT_EQ(slab(18, 1, values_.data()), "no error");
   EXPECT_EQ(end(), "density: planes 0 to 3, 7 to 9, 11 to 17 and 1 more of 20 never came; give the rest first");
   EXPECT_EQ(files_.names(), (std::vector<std::string>{"out.nvdb.partial"}));

@@ -12,11 +12,13 @@
 #include "compressor/conversion.h"
 #include "compressor/select/encoding_choice.h"
 #include "format/base/error.h"
+#include "format/base/text.h"
 #include "format/leaf/leaf_decode.h"
 #include "ingest/synthetic/synthetic.h"
 #include "tests/compressor/support/converted.h"
 #include "tests/compressor/support/crash_file_system.h"
 #include "tests/stock/stock_tree.h"
+#include "tests/support/message_of_error.h"
 
 namespace weir::error_target_test {
 namespace {
@@ -261,6 +263,51 @@ TEST(ErrorTarget, OfALeafThatSpansAllOfFloat_IsThatOfOneLevel) {
     options.budget.target = 1e38;
     EXPECT_THROW(test::convert(volume, options), Error) << encoding_name(encoding);
   }
+}
+
+// Zeros, and of 50 voxels one that is anything.
+MemoryVolume sparse_noise() {
+  MemoryVolume volume({{0, 0, 0}, {32, 32, 32}}, [](const Index3& i) {
+    const auto n = static_cast<std::uint32_t>(i.x + 32 * (i.y + 32 * i.z)) * 2654435761U;
+    return n % 50 == 0 ? static_cast<float>(n >> 8U) * 0x1p-22F - 2 : 0.0F;
+  });
+  return volume;
+}
+
+// Estimates of such leaves are far too high.
+TEST(ErrorTargetOfSparseValues, WhatTheEncodingReachesIsNotRefused) {
+  MemoryVolume volume = sparse_noise();
+  ConversionOptions options;
+  options.encoding = Encoding::fp4;
+  options.budget.kind = Budget::Kind::size;
+  options.budget.bytes = 3'000'000;
+  options.budget.at_most = true;
+  const double most = test::convert(volume, options).sidecar.error.psnr_db.value();
+  options.budget = {};
+  options.budget.kind = Budget::Kind::psnr;
+  options.budget.target = most - 0.5;
+  EXPECT_GE(test::convert(volume, options).sidecar.error.psnr_db.value(), most - 0.5);
+  options.budget.target = most + 1;
+  const std::string message = message_of_error(ErrorKind::budget, [&] { test::convert(volume, options); });
+  EXPECT_NE(message.find(cat(" reaches about ", std::floor(most * 10) / 10, " dB at most")), std::string::npos)
+      << message;
+}
+
+// Two materials, and voxels without a value, whose leaves are estimated as if the background could be anywhere.
+TEST(ErrorTargetOfMissingValues, WhatIsExactTakesNoMoreBitsThanItNeeds) {
+  MemoryVolume volume({{0, 0, 0}, {32, 32, 32}}, [](const Index3& i) {
+    const auto n = static_cast<std::uint32_t>(i.x + 32 * (i.y + 32 * i.z)) * 2654435761U >> 7U;
+    return n % 50 == 0 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(n % 2);
+  });
+  ConversionOptions options;
+  options.non_finite = NonFinitePolicy::background;
+  options.background = 0.5F;
+  options.budget.kind = Budget::Kind::psnr;
+  options.budget.target = 60;
+  const Converted converted = test::convert(volume, options);
+  EXPECT_EQ(converted.sidecar.error.max_abs, 0);
+  const auto& bits = converted.sidecar.selection.bits;
+  EXPECT_EQ(bits[4], 0U) << "leaves of 16 bits, of 64";
 }
 
 }  // namespace

@@ -1,12 +1,38 @@
-// What is said of a read of cuFile that brought nothing.
+// Reads by a pretended cuFile that fail, and what is said of them.
+#include "gpu/cuda/load/direct_storage.h"
+
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cerrno>
+#include <cstddef>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <vector>
 
 #include "gpu/cuda/load/cufile.h"
+#include "tests/support/temporary_directory.h"
 
 namespace weir::direct_storage_test {
 namespace {
+
+constexpr std::uint64_t kPiece = 4096;
+constexpr std::uint64_t kPieces = 64;
+
+std::atomic<int> reads{0};
+
+// Refuses all reads.
+std::shared_ptr<const CuFile> refusing_library() {
+  auto library = std::make_shared<CuFile>();
+  library->handle_register = [](cufile::Handle*, cufile::FileDescription*) { return cufile::Status{0, 0}; };
+  library->handle_deregister = [](cufile::Handle) {};
+  library->read = [](cufile::Handle, void*, std::size_t, off_t, off_t) -> ssize_t {
+    ++reads;
+    return -5027;
+  };
+  return library;
+}
 
 TEST(DirectStorage, ReadAtTheEndOfTheFile_SaysWhereItEnds) {
   EXPECT_EQ(cufile::read_failure(0, 4096), "the file ends at byte 4096");
@@ -16,6 +42,24 @@ TEST(DirectStorage, FailedRead_SaysTheErrorOfTheSystemOrOfCuFile) {
   errno = EIO;
   EXPECT_EQ(cufile::read_failure(-1, 0), "Input/output error");
   EXPECT_EQ(cufile::read_failure(-5027, 0), "cuFile error 5027");
+}
+
+TEST(DirectStorage, RefusedRead_EndsThoseOfAllPieces) {
+  const TemporaryDirectory directory;
+  const std::string path = directory / "grid.nvdb";
+  std::ofstream(path, std::ios::binary) << std::string(kPieces * kPiece, 'v');
+  const FileMapping file(path, ".nvdb");
+  std::vector<std::byte> target(kPieces * kPiece);
+  CopyTask task{file, 0, target.size(), target.data()};
+  task.chunk_bytes = kPiece;
+  for (const int threads : {1, 4}) {
+    reads = 0;
+    task.threads = threads;
+    const std::string refusal = DirectStorage(refusing_library()).copy(task).refusal;
+    if (refusal.find("no direct reads of") != std::string::npos) GTEST_SKIP() << refusal;
+    EXPECT_EQ(refusal, "GPUDirect Storage: reading " + path + ": cuFile error 5027");
+    EXPECT_LE(reads, threads);
+  }
 }
 
 }  // namespace

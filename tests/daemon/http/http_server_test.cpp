@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "daemon/jobs/process_usage.h"
+#include "daemon/store/sqlite.h"
 #include "format/base/error.h"
 #include "tests/daemon/support/fake_control.h"
 #include "tests/daemon/support/raw_client.h"
@@ -347,6 +348,16 @@ TEST(HttpServer, ErrorWhileAnswering_Is500WithItsMessage) {
   EXPECT_EQ(response.status, 500);
   EXPECT_EQ(response.body, "{\"error\":\"weir.db: cannot read: Input/output error\"}\n");
   EXPECT_EQ(client.ask(kHealth).status, 200);
+}
+
+TEST(HttpServer, DamagedDatabaseWhileAnswering_EndsTheServersThread) {
+  boost::asio::io_context io;
+  const HttpServer server(io, {"127.0.0.1", 0}, {}, [](const HttpRequest&) -> HttpResponse {
+    throw CorruptDatabase(ErrorKind::io, "weir.db: cannot use the state: database disk image is malformed");
+  });
+  RawClient client(server.port());
+  client.send(kHealth);
+  EXPECT_THROW(io.run_for(std::chrono::seconds(5)), CorruptDatabase);
 }
 
 TEST(HttpServer, RefusesAPortThatIsTaken) {

@@ -1,6 +1,8 @@
 // Sources that a deletion which was interrupted has left under a hidden name.
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -82,6 +84,37 @@ TEST_F(InterruptedDeletion, WriterOfTheHiddenSource_IsWaitedFor) {
   writer.reset();
   EXPECT_TRUE(run_until([&] { return deletion_.idle(); }));
   EXPECT_EQ(list_directory(directory_ / "in"), Names{});
+}
+
+// Another user's source: neither a lease nor the other processes can be asked.
+class InterruptedDeletionOfAnotherUser : public DeletingWatch {
+ protected:
+  void SetUp() override {
+    if (::geteuid() != 0) GTEST_SKIP() << "only root has other users' files";
+    fs::rename(source_, hidden(convert()));
+    ASSERT_EQ(::chmod(directory_.path().c_str(), 0755), 0);
+    ASSERT_EQ(::chmod((directory_ / "in").c_str(), 0777), 0);
+  }
+  void delete_as_nobody() {
+    ASSERT_EQ(::seteuid(65534), 0);
+    deletion_.configure(config_);
+    EXPECT_TRUE(run_until([&] { return deletion_.idle(); }));
+    ASSERT_EQ(::seteuid(0), 0);
+  }
+};
+
+TEST_F(InterruptedDeletionOfAnotherUser, WritersThatCannotBeKnown_GiveTheNameBack) {
+  delete_as_nobody();
+  EXPECT_EQ(list_directory(directory_ / "in"), Names{"a_1x2x3_uint8.raw"});
+  EXPECT_TRUE(logged(" reason=\"whether a program writes to it cannot be known here; "));
+  EXPECT_FALSE(logged(" deleted "));
+}
+
+TEST_F(InterruptedDeletionOfAnotherUser, WriterThatSaysWhenItIsDone_IsDeletedAndNotCalledUnused) {
+  config_.watches[0].complete = Completion::rename;
+  delete_as_nobody();
+  EXPECT_EQ(list_directory(directory_ / "in"), Names{});
+  EXPECT_TRUE(logged(" in_use=\"not known\""));
 }
 
 TEST_F(InterruptedDeletion, WatchThatKeepsSourcesNow_GivesTheNameBack) {

@@ -1,8 +1,17 @@
 #include "daemon/jobs/output_cleaning.h"
 
 #include <gtest/gtest.h>
+#include <linux/filter.h>
+#include <linux/seccomp.h>
+#include <sys/inotify.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
+#include <array>
 #include <atomic>
+#include <cerrno>
+#include <cstddef>
 #include <filesystem>
 #include <future>
 #include <thread>
@@ -11,7 +20,9 @@
 #include "daemon/store/file_identity.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "format/io/descriptor.h"
 #include "format/io/file_system.h"
+#include "tests/support/child_answer.h"
 #include "tests/support/run_command.h"
 
 namespace weir::output_cleaning_test {
@@ -53,6 +64,39 @@ TEST(OutputCleaning, RemovesOnlyTheLeftoversOfKilledConversions) {
   EXPECT_EQ(read_file(directory / "lost.nvdb.json"), "lost.nvdb.json.previous") << "the record came back";
   clean(directory, true);
   EXPECT_EQ(list_directory(directory / "deep"), Names{});
+}
+
+// From here on no thread of this process can read a directory on, as where a disk fails.
+bool fail_directories() {
+  std::array<sock_filter, 4> steps{{BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
+                                    BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_getdents64, 0, 1),
+                                    BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | EIO),
+                                    BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW)}};
+  const sock_fprog filter{static_cast<unsigned short>(steps.size()), steps.data()};
+  return ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 &&
+         ::syscall(SYS_seccomp, SECCOMP_SET_MODE_FILTER, SECCOMP_FILTER_FLAG_TSYNC, &filter) == 0;
+}
+
+// More spill files than one call of the system lists: it fails when the first one is removed.
+TEST(OutputCleaning, WorkDirectoryThatCannotBeReadToItsEnd_StaysAndIsReported) {
+  constexpr int kFiles = 6000;
+  const TemporaryDirectory directory;
+  const std::string work = directory / ".a.nvdb.work";
+  fs::create_directories(work);
+  for (int i = 0; i < kFiles; ++i) write_file(cat(work, "/spill", 100'000 + i), "");
+  const std::string answer = answer_of_child([&] {
+    const Descriptor removals(::inotify_init1(IN_CLOEXEC));
+    ::inotify_add_watch(removals.get(), work.c_str(), IN_DELETE);
+    std::future<bool> failing = std::async(std::launch::async, [&] {
+      std::array<char, 4096> event{};
+      return ::read(removals.get(), event.data(), event.size()) > 0 && fail_directories();
+    });
+    const Names left = clean(directory).left;
+    if (!failing.get()) return std::string("no seccomp");
+    return left.size() == 1 ? left[0].substr(directory.path().string().size()) : cat(left.size(), " reports");
+  });
+  if (answer == "no seccomp") GTEST_SKIP() << answer;
+  EXPECT_EQ(answer, "/.a.nvdb.work: Directory not empty");
 }
 
 TEST(OutputCleaning, KillBetweenTheRenames_TheOldVolumeGetsItsSidecarBack) {

@@ -65,12 +65,26 @@ TEST(WorkerProcess, GivesExitCodeLogAndAnnouncements) {
 }
 
 TEST(WorkerProcess, IgnoresNoSignalThatTheServiceIgnores) {
-  const auto before = std::signal(SIGPIPE, SIG_IGN);
-  ShellRun shell("while read -r key value; do [ $key != SigIgn: ] || echo $value >&3; done </proc/self/status");
+  for (const int signal : {SIGPIPE, SIGCHLD}) {
+    const auto before = std::signal(signal, SIG_IGN);
+    ShellRun shell(
+        "sleep 0.1; while read -r key value; do [ $key != SigIgn: ] || echo $value >&3; done </proc/self/status");
+    shell.run();
+    std::signal(signal, before);
+    ASSERT_EQ(shell.lines.size(), 1U);
+    EXPECT_EQ(std::stoull(shell.lines[0], nullptr, 16) >> (signal - 1) & 1U, 0U) << shell.lines[0];
+  }
+}
+
+// The system reaps it then, and tells nobody how it ended.
+TEST(WorkerProcess, SigchldIgnored_WorkerCountsAsFailedWithTheReason) {
+  const auto before = std::signal(SIGCHLD, SIG_IGN);
+  ShellRun shell("echo out; sleep 0.1; exit 3");
   shell.run();
-  std::signal(SIGPIPE, before);
-  ASSERT_EQ(shell.lines.size(), 1U);
-  EXPECT_EQ(std::stoull(shell.lines[0], nullptr, 16) >> (SIGPIPE - 1) & 1U, 0U) << shell.lines[0];
+  std::signal(SIGCHLD, before);
+  ASSERT_TRUE(shell.end);
+  EXPECT_EQ(shell.end->exit_code, static_cast<int>(ErrorKind::internal));
+  EXPECT_EQ(shell.end->log, "out\nweir: how its process ended is not known (No child processes)\n");
 }
 
 TEST(WorkerProcess, KeepsTheEndOfALongLog) {

@@ -5,7 +5,6 @@
 #include <fstream>
 #include <thread>
 
-#include "daemon/store/job_store.h"
 #include "format/base/text.h"
 #include "tests/daemon/support/service_harness.h"
 #include "tests/support/scoped_mount.h"
@@ -35,39 +34,6 @@ TEST(WatchFaults, ALostStateFileIsRebuiltFromTheOutputs) {
   EXPECT_EQ(service.logged("done already"), 2U) << service.log();
   EXPECT_EQ(fs::last_write_time(service.out(one + ".nvdb")), made);
   EXPECT_EQ(service.get("/api/status")["done_total"], 0) << "no conversion in this process";
-}
-
-// More than SQLite keeps in memory, so that what is damaged on disk is read.
-TEST(WatchFaults, StateFileDamagedWhileRunning_EndsTheServiceAndIsRebuilt) {
-  ServiceHarness service;
-  {
-    JobStore store(service.path("weir.db"));
-    store.together([&] {
-      for (int i = 0; i < 20'000; ++i) {
-        const std::string source = service.in(cat(std::string(200, 'x'), i, ".h5"));
-        store.cancel(store.observe(service.in(), source, {}, "").job.id);
-      }
-    });
-  }
-  service.start();
-  const auto size = fs::file_size(service.path("weir.db"));
-  ASSERT_GT(size, 8U << 20U);
-  std::fstream(service.path("weir.db"), std::ios::in | std::ios::out | std::ios::binary) << std::string(size, 'x');
-  for (int i = 0; i < 20 && service.running(); ++i) {
-    service.add(cat("v", i));
-    std::this_thread::sleep_for(milliseconds(50));
-  }
-  CommandResult end;
-  EXPECT_EQ(service.wait(&end), 5);
-  EXPECT_EQ(end.err, cat("weir: ", service.path("weir.db"),
-                         ": cannot use the state: database disk image is malformed; start again, then it is moved "
-                         "aside and rebuilt\n"));
-  EXPECT_EQ(service.logged("error end reason="), 1U) << service.log();
-  for (int i = 0; i < 20; ++i) service.add(cat("v", i));
-  service.start();
-  ASSERT_TRUE(service.eventually_done(20)) << service.log();
-  EXPECT_TRUE(fs::exists(service.path("weir.db.corrupt-1")));
-  EXPECT_EQ(service.leftovers(), Names{});
 }
 
 TEST(WatchFaults, FullDiskOfTheStateFile_PausesAllJobsUntilThereIsRoom) {
@@ -310,6 +276,21 @@ TEST(WatchFaults, ForeignOutput_IsNotReplaced) {
   fs::remove(service.out(name + ".nvdb"));
   EXPECT_EQ(service.post("/api/retry-failed")["retried"], 1);
   ASSERT_TRUE(service.eventually_done(1)) << service.log();
+}
+
+TEST(WatchFaults, StartedWithSigchldIgnored_DamagedOutputFailsItsVerification) {
+  ServiceHarness service;
+  service.ignore_sigchld();
+  service.start();
+  const std::string name = service.add("one", 3);
+  ASSERT_TRUE(service.eventually_done(1)) << service.log();
+  std::string bytes = read_file(service.out(name + ".nvdb"));
+  bytes[bytes.size() - 1000] ^= 1;
+  write_file(service.out(name + ".nvdb"), bytes);
+  service.post(cat("/api/jobs/", service.job(name + ".raw")["id"].get<int>(), "/retry"));
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" attempt-failed ") == 1; })) << service.log();
+  EXPECT_NE(service.log().find("reason=\"verify: "), std::string::npos) << service.log();
+  EXPECT_EQ(service.stop(), 0);
 }
 
 TEST(WatchFaults, LeftoversOfAKilledConversionAreCleanedAtStart) {

@@ -38,6 +38,25 @@ TEST_F(StoredJobs, TogetherCommitsAllOrNothing) {
   EXPECT_EQ(store_->count({JobState::waiting, "", ""}), 2000U);
 }
 
+// The second of its times cannot be had: that of the next attempt.
+TEST_F(StoredJobs, PostponementThatFailsHalfway_ChangesNothing) {
+  store_.reset();
+  int times = 10;
+  JobStore store(directory_ / "weir.db", [&] {
+    if (times-- == 0) throw Error(ErrorKind::io, "no time");
+    return now_;
+  });
+  const std::int64_t id = store.observe("w", "/in/a.raw", kIdentity, "").job.id;
+  store.enqueue(id);
+  store.start(id);
+  times = 1;
+  EXPECT_THROW(store.postpone(id, "busy", 30'000), Error);
+  times = 10;
+  EXPECT_EQ(store.job(id)->state, JobState::running);
+  EXPECT_TRUE(store.postpone(id, "busy", 30'000));
+  EXPECT_EQ(store.next_due_ms(), 30'000);
+}
+
 TEST_F(StoredJobs, FullDisk_RefusesWritesAndKeepsStoredJobs) {
   const std::string place = directory_ / "small";
   std::filesystem::create_directory(place);

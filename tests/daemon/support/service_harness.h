@@ -28,6 +28,8 @@ class ServiceHarness {
 
   /// From now on the service runs as nobody, whom permissions stop, where the test runs as root, whom they do not.
   void run_unprivileged();
+  /// From now on the service is started with SIGCHLD ignored, as by a program that does not wait for its children.
+  void ignore_sigchld() { launcher_ = {"env", "--ignore-signal=CHLD"}; }
   /// Starts `weir watch` and waits until it is ready.
   void start();
   /// Starts it without waiting.

@@ -1,6 +1,9 @@
 #include "daemon/watch/file_system_kind.h"
 
 #include <gtest/gtest.h>
+#include <sys/vfs.h>
+
+#include <cstdint>
 
 #include "format/base/error.h"
 
@@ -19,6 +22,13 @@ TEST(FileSystemKind, OnlyKnownLocalFileSystemsSeeAllChanges) {
   EXPECT_FALSE(kind(0xFF534D42).sees_all_changes);  // cifs, above 2^31
   EXPECT_EQ(kind(0xABCDEF01).name, "type 0xABCDEF01");
   EXPECT_FALSE(kind(0xABCDEF01).sees_all_changes);
+}
+
+TEST(FileSystemKind, NumberAbove2To31_IsKnownWhereItsTypeIsNegative) {
+  struct statfs status {};
+  status.f_type = static_cast<std::int32_t>(0x9123683E);
+  ASSERT_LT(status.f_type, 0);
+  EXPECT_EQ(file_system_kind(status).name, "btrfs");
 }
 
 TEST(FileSystemKind, NamesTheFileSystemOfAPath) {

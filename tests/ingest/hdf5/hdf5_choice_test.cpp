@@ -112,7 +112,7 @@ with h5py.File("alone.h5", "w") as f:
   EXPECT_EQ(open_source(scratch_.path("a.h5"), options)->info().dataset, "/v");
   const std::string why =
       ": its type is compound of 2 members; a volume has integers of 8 to 64 bits or floats of 16, 32 or 64";
-  EXPECT_EQ(said, (std::vector<std::string>{scratch_.path("a.h5") + ": /v is converted; left out: /c1" + why + "; /c2" +
+  EXPECT_EQ(said, (std::vector<std::string>{scratch_.path("a.h5") + ": /v is read; left out: /c1" + why + "; /c2" +
                                             why + "; /c3" + why + "; and 1 more (weir inspect lists them)"}));
   said.clear();
   options.dataset = "v";

@@ -29,11 +29,11 @@ TEST(LeftOut, VolumesWithAnObstacle_AreUnread) {
 
 TEST(LeftOut, Notice_NamesThreeAndCountsTheOthers) {
   const std::vector<LeftOut> all{{"a", "A"}, {"b", "B"}, {"c", "C"}, {"d", "D"}, {"e", "E"}};
-  EXPECT_EQ(left_out_notice("x.h5", "/v", std::span(all).first(1)).text(), "x.h5: /v is converted; left out: a: A");
+  EXPECT_EQ(left_out_notice("x.h5", "/v", std::span(all).first(1)).text(), "x.h5: /v is read; left out: a: A");
   EXPECT_EQ(left_out_notice("x.h5", "/v", std::span(all).first(3)).text(),
-            "x.h5: /v is converted; left out: a: A; b: B; c: C");
+            "x.h5: /v is read; left out: a: A; b: B; c: C");
   EXPECT_EQ(left_out_notice("x.h5", "/v", all).text(),
-            "x.h5: /v is converted; left out: a: A; b: B; c: C; and 2 more (weir inspect lists them)");
+            "x.h5: /v is read; left out: a: A; b: B; c: C; and 2 more (weir inspect lists them)");
 }
 
 }  // namespace

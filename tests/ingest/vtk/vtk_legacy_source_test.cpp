@@ -214,7 +214,7 @@ TEST(VtkLegacySource, ArraysThatCannotBeRead_AreNamedBesideTheOneThatIsTaken) {
   options.notice = [&](const Message& line) { said.push_back(line.text()); };
   EXPECT_EQ(open_source(path, options)->info().dataset, "a");
   EXPECT_EQ(said, (std::vector<std::string>{
-                      path + ": a is converted; left out: mask: its type is 'bit', and char to double can be read"}));
+                      path + ": a is read; left out: mask: its type is 'bit', and char to double can be read"}));
   options.dataset = "a";
   open_source(path, options);
   EXPECT_EQ(said.size(), 1U) << "where it is named, nothing is said";

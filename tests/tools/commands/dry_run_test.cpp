@@ -184,6 +184,8 @@ TEST_F(DryRunTest, DoneOutput_IsSaidToBeDone) {
   const auto other = dry_run({"-o", output_, "--skip-done", "--rate", "5", "--json"});
   EXPECT_EQ(other.exit_code, 0) << other.err;
   EXPECT_EQ(nlohmann::json::parse(other.out)["file"]["value"], 96 * 80 * 72 * 4 / 5);
+  EXPECT_NE(other.err.find(output_ + ": would be converted again: made with other options"), std::string::npos)
+      << other.err;
   EXPECT_EQ(read_file(output_), volume);
 }
 

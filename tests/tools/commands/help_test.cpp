@@ -36,5 +36,24 @@ TEST(Help, OptionThatMayBeRepeated_IsShownWithOneValue) {
   EXPECT_NE(help.find("may be given several times"), std::string::npos) << help;
 }
 
+TEST(Help, OfACommandThatReadsOneVolume_SaysNothingOfSeveral) {
+  for (const std::string command : {"render", "compare", "view", "sweep", "inspect"}) {
+    const std::string help = run_weir({command, "--help"}).out;
+    EXPECT_NE(help.find("--dataset NAME "), std::string::npos) << command;
+    EXPECT_NE(help.find("--level N "), std::string::npos) << command;
+    EXPECT_EQ(help.find("--levels ") != std::string::npos, command == "compare") << "of the level that a file is of";
+    for (const std::string text : {"a file of each", "several times", "FROM:TO"}) {
+      EXPECT_EQ(help.find(text), std::string::npos) << command << ' ' << text;
+    }
+  }
+}
+
+TEST(Help, OfInspect_HasNoOptionThatChoosesAPart) {
+  const std::string help = run_weir({"inspect", "--help"}).out;
+  for (const std::string option : {"--index", "--component", "--magnitude", "--roi", "--ghost"}) {
+    EXPECT_EQ(help.find(option + ' '), std::string::npos) << option;
+  }
+}
+
 }  // namespace
 }  // namespace weir::help_test

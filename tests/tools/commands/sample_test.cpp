@@ -252,5 +252,13 @@ TEST(Sample, FullDisk_OffersAnotherOutputAlone) {
                      "system or choose another with -o");
 }
 
+TEST(Sample, Help_OffersTheTypesThatItWrites) {
+  std::string help = run_weir({"sample", "--help"}).out;
+  std::erase(help, ' ');
+  std::erase(help, '\n');
+  EXPECT_NE(help.find("uint8,int8,uint16,int16,uint32,int32,float32orfloat64;default:"), std::string::npos) << help;
+  EXPECT_EQ(help.find("float16"), std::string::npos) << help;
+}
+
 }  // namespace
 }  // namespace weir::sample_test

@@ -61,7 +61,19 @@ TEST_F(Verify, FileThatIsNotThere_IsOneLine) {
   const std::string none = directory_ / "none.nvdb";
   const CommandResult result = run_weir({"verify", none, "--progress", "never"});
   EXPECT_EQ(result.exit_code, 3);
-  EXPECT_EQ(result.err, "weir: structure: " + none + ": cannot open: No such file or directory\n");
+  EXPECT_EQ(result.err, "weir: " + none + ": cannot open: No such file or directory\n");
+}
+
+TEST_F(Verify, RelativeNameThatIsNotThere_IsSaidWithARemedy) {
+  CommandOptions options;
+  options.directory = directory_.path();
+  const CommandResult result = run_weir({"verify", "none.nvdb", volume_, "--json", "--progress", "never"}, options);
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_EQ(result.err,
+            "weir: none.nvdb: cannot open: No such file or directory; check the name and the current directory\n");
+  const auto report = nlohmann::json::parse(result.out);
+  EXPECT_EQ(report.at("volumes").at(0).at("checks").at(0).at("name"), "structure");
+  EXPECT_EQ(report.at("volumes").at(1).at("ok"), true) << "the others are looked at";
 }
 
 // Of sysfs, whose files cannot be mapped: as of a disk or file server that fails, that says nothing of the content.
@@ -190,8 +202,7 @@ TEST_F(Verify, MissingVolumeAndSidecar) {
        ".json: cannot read the sidecar: No such file or directory; write it with weir convert, or look at the "
        "volume alone with weir inspect"});
   fs::remove(volume_);
-  EXPECT_NE(verify().err.find("structure: " + volume_ + ": cannot open: No such file or directory\n"),
-            std::string::npos);
+  EXPECT_NE(verify().err.find("weir: " + volume_ + ": cannot open: No such file or directory\n"), std::string::npos);
 }
 
 TEST_F(Verify, SidecarOfAnotherVolume) {

@@ -97,6 +97,21 @@ watch "all"
       << "checking made something";
 }
 
+TEST_F(WatchCheck, ControlSocketAndPortFile_ArePrintedWhereTheyAreSet) {
+  const std::string out = check(R"([service]
+control_socket = "weir.sock"
+port_file = "port"
+[[watch]]
+directory = "in"
+output = "out"
+)")
+                              .out;
+  EXPECT_NE(
+      out.find(here("\n  listen      127.0.0.1:8470\n  control     @/weir.sock\n  port_file   @/port\n  memory ")),
+      std::string::npos)
+      << out;
+}
+
 TEST_F(WatchCheck, MissingDirectory_LeavesTheWatchMethodOpen) {
   const std::string keys = "[[watch]]\ndirectory = 'later'\noutput = 'out'\n";
   EXPECT_NE(check(keys).out.find("\n  watch       auto: inotify or polling every 1 s, by its file system\n"),

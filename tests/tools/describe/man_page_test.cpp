@@ -147,9 +147,17 @@ TEST(ManPage, OfEveryCommand) {
 }
 
 TEST(ManPage, UnwritableDirectory_IsRefused) {
-  const CommandResult result = run_weir({"man", "/proc/none"});
+  const CommandResult result = run_weir({"man", "/proc"});
   EXPECT_EQ(result.exit_code, 5);
-  EXPECT_EQ(result.err, "weir: /proc/none/weir.1: cannot be written; name a directory that can\n");
+  EXPECT_EQ(result.err, "weir: /proc/weir.1: cannot be written; name a directory that can\n");
+}
+
+TEST(ManPage, MissingDirectory_IsSaidWithHowToMakeIt) {
+  const TemporaryDirectory directory;
+  const std::string pages = directory / "my pages";
+  const CommandResult result = run_weir({"man", pages});
+  EXPECT_EQ(result.exit_code, 5);
+  EXPECT_EQ(result.err, "weir: " + pages + ": this directory does not exist; make it: mkdir -p '" + pages + "'\n");
 }
 
 }  // namespace

@@ -64,7 +64,8 @@ TEST_F(EmptyNames, ShortNameWithAnEqualsSign_ExitsWith2) {
 TEST_F(EmptyNames, FileThatEndsInAnEqualsSign_IsTaken) {
   const CommandResult result = run_weir({"verify", "--", "--output="});
   EXPECT_EQ(result.exit_code, 3);
-  EXPECT_EQ(result.err, "weir: structure: --output=: cannot open: No such file or directory\n");
+  EXPECT_EQ(result.err,
+            "weir: --output=: cannot open: No such file or directory; check the name and the current directory\n");
 }
 
 }  // namespace

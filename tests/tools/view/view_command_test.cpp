@@ -181,6 +181,17 @@ TEST_F(ViewCommandTest, Source_IsShownThroughAConversionThatGoesWithIt) {
   EXPECT_EQ(list_directory(folder), std::vector<std::string>{});
 }
 
+TEST_F(ViewCommandTest, PreviewOfFewValues_IsAsSmallAsItCanBe) {
+  const std::string raw = directory_ / "plain_64x64x64_uint8.raw";
+  write_file(raw, std::string(std::size_t{64} * 64 * 64, '\3'));
+  ChildProcess child({WEIR_COMMAND, "view", raw, "--work-dir", directory_.path(), "--progress", "never"});
+  ASSERT_NE(port_of(child), 0);
+  child.send_signal(SIGINT);
+  const CommandResult result = child.wait();
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(result.err.find("padding"), std::string::npos) << result.err;
+}
+
 TEST_F(ViewCommandTest, SourceToCompareWith_IsShownWithoutLoss) {
   const std::string folder = directory_ / "work";
   std::filesystem::create_directory(folder);

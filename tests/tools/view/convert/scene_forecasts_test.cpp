@@ -166,7 +166,7 @@ TEST_F(SceneForecastsTest, Failure_IsTriedAgain) {
 
 TEST_F(SceneForecastsTest, MemoryThatIsTooLittle_IsSaidInWhatItsReaderCanSet) {
   SceneForecasts forecasts(io_,
-                           program("echo 'weir: --memory 64.0 MiB is too small for this volume with 1 threads; give at "
+                           program("echo 'weir: --memory 64.0 MiB is too small for this volume with 1 thread; give at "
                                    "least 71MiB' >&2; exit 2"),
                            {}, tell_);
   forecasts.ask(1, 1, conversion(), "a\n");

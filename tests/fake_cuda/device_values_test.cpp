@@ -1,0 +1,52 @@
+// Values of callers, on the pretended device: where they are, and whether they have gaps.
+#include "gpu/cuda/push/device_values.h"
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+
+#include "tests/fake_cuda/fake_runtime.h"
+
+namespace weir::device_values_test {
+namespace {
+
+class DeviceValuesTest : public testing::Test {
+ protected:
+  DeviceValuesTest() { runtime().reset(); }
+  ~DeviceValuesTest() override { runtime().reset(); }
+
+  static test::FakeRuntime& runtime() { return test::FakeRuntime::instance(); }
+};
+
+TEST_F(DeviceValuesTest, Place_IsThatOfDeviceMemoryAndNoneOfTheHosts) {
+  void* device = nullptr;
+  ASSERT_EQ(cudaMallocAsync(&device, 100, nullptr), cudaSuccess);
+  const std::byte* const last = static_cast<const std::byte*>(device) + 99;
+  ASSERT_TRUE(device_place(last));
+  EXPECT_EQ(device_place(last)->device, 0);
+  EXPECT_TRUE(is_device_memory(last));
+  EXPECT_TRUE(lies_on(last, 0));
+  EXPECT_FALSE(lies_on(last, 1));
+  const std::byte host{};
+  EXPECT_FALSE(device_place(&host));
+  EXPECT_FALSE(lies_on(&host, 0));
+  ASSERT_EQ(cudaFreeAsync(device, nullptr), cudaSuccess);
+}
+
+TEST_F(DeviceValuesTest, Place_IsNoneWhereThereIsNoDevice) {
+  runtime().set_devices(0);
+  const std::byte host{};
+  EXPECT_FALSE(device_place(&host));
+  EXPECT_EQ(runtime().calls("cudaPointerGetAttributes"), 0U);
+}
+
+TEST_F(DeviceValuesTest, Gaps_AreSeenAlongEachAxis) {
+  const Index3 extent{3, 4, 5};
+  EXPECT_TRUE(without_gaps({nullptr, {4, 12, 48}, 4}, extent));
+  EXPECT_FALSE(without_gaps({nullptr, {8, 12, 48}, 4}, extent));
+  EXPECT_FALSE(without_gaps({nullptr, {4, 16, 48}, 4}, extent));
+  EXPECT_FALSE(without_gaps({nullptr, {4, 12, 52}, 4}, extent));
+}
+
+}  // namespace
+}  // namespace weir::device_values_test
