@@ -16,7 +16,7 @@ constexpr std::size_t kMostLeftOut = 8;  // in an error
 
 std::string positions_text(std::size_t count) { return cat(count, count == 1 ? " position" : " positions"); }
 
-// "the leading axes time of 3, member of 10".
+// "the leading axes time of 3, member of 10", or "the leading axis 0 of 3".
 std::string leading_text(const DatasetInfo& dataset) {
   std::string text = dataset.index_axes.size() == 1 ? "the leading axis " : "the leading axes ";
   for (std::size_t i = 0; i < dataset.index_axes.size(); ++i) {

@@ -2,6 +2,7 @@
 #include "ingest/files/input_directory.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -161,32 +162,44 @@ class FileNames {
   std::map<std::string, std::vector<DatasetInfo>> datasets_;
 };
 
-// "{dataset} and no {step}": the words of `name` that `step` has none of.
-std::string missing_words(std::string_view name, const SeriesStep& step) {
-  std::string missing;
-  for (const char* word : {"{stem}", "{dataset}", "{step}"}) {
-    if (name.find(word) == std::string_view::npos || !step_name(word, step).empty()) continue;
-    missing += cat(missing.empty() ? "" : " and no ", word);
+constexpr std::array<const char*, 3> kNameWords{"{stem}", "{dataset}", "{step}"};
+
+void refuse_words_of_directory(const std::string& output, std::string_view directory) {
+  for (const char* word : kNameWords) {
+    if (directory.find(word) == std::string_view::npos) continue;
+    throw usage_error(compose(option("output", output), ": ", word,
+                              " stands for something in a file's name only, and this is a directory's; give "
+                              "DIRECTORY/{stem}.nvdb, or DIRECTORY/ alone"));
   }
-  return missing;
 }
 
-// Without a word that the step has not, a name may be an extension alone, that of a hidden file.
+void require_step(const std::string& output, std::string_view name, const SeriesStep& step) {
+  if (name.find("{step}") == std::string_view::npos || !step.step.empty()) return;
+  throw usage_error(compose(option("output", output), ": ", volume_text(step), " has no {step}: a pattern with %d, ",
+                            "'run_%d.raw', or a range of ", option("index"),
+                            " gives one, * and lists do not; use {stem}, or such a pattern"));
+}
+
+// Without its dataset, which a step may not have, a name may be an extension alone, that of a hidden file.
 void require_stem(const std::string& output, std::string_view name, const SeriesStep& step, const std::string& path) {
   const std::string made = path.substr(path.rfind('/') + 1);
   const bool is_bare = made.empty() || (made.front() == '.' && made.find('.', 1) == std::string::npos);
-  const std::string missing = missing_words(name, step);
-  if (!is_bare || missing.empty()) return;
+  if (!is_bare || name.find("{dataset}") == std::string_view::npos || !step.dataset.empty()) return;
   const std::string would = made.empty() ? "there would be no name" : cat("the name would be ", made);
-  throw Error(ErrorKind::usage, compose(option("output", output), ": ", volume_text(step), " has no ", missing, ", so ",
+  throw Error(ErrorKind::usage, compose(option("output", output), ": ", volume_text(step), " has no {dataset}, so ",
                                         would, "; use {stem} or a plain name"));
 }
 
 // No name tells volumes apart that have the same words.
 Message remedy_for_names(const SeriesStep& a, const SeriesStep& b) {
-  if (a.stem != b.stem || dataset_part(a.dataset) != dataset_part(b.dataset) || a.step != b.step) {
-    return compose("give ", option("output"),
-                   " a directory, with a slash at its end, or a name with {stem}, {dataset} or {step}");
+  std::string words;  // that both have, and by which they differ
+  for (const char* word : kNameWords) {
+    const std::string of_a = step_name(word, a);
+    const std::string of_b = step_name(word, b);
+    if (!of_a.empty() && !of_b.empty() && of_a != of_b) words += cat(words.empty() ? "" : " or ", word);
+  }
+  if (!words.empty()) {
+    return compose("give ", option("output"), " a directory, with a slash at its end, or a name with ", words);
   }
   const Message dataset = a.dataset == b.dataset ? Message() : compose(option("dataset"), " and ");
   return compose("convert them one at a time, with ", dataset, option("output", "NAME.nvdb"));
@@ -216,20 +229,22 @@ std::string step_name(std::string_view name, const SeriesStep& step) {
 std::vector<std::string> series_outputs(std::span<const SeriesStep> steps, const std::string& output,
                                         const SourceOptions& options, DefaultNames names) {
   const bool directory = output.ends_with('/') || (steps.size() > 1 && std::filesystem::is_directory(output));
-  const std::size_t directory_end = output.rfind('/') + 1;  // braces in a directory's name are its own
+  const std::size_t directory_end = output.rfind('/') + 1;
+  const std::string name = output.substr(directory_end);
+  refuse_words_of_directory(output, std::string_view(output).substr(0, directory_end));
   FileNames of_file(options);
   const auto default_name = [&](const SeriesStep& step) {
-    const auto name = names == DefaultNames::of_file ? of_file.name_of(step) : std::nullopt;
-    return name ? *name : name_in_call(step, steps);
+    const auto by_file = names == DefaultNames::of_file ? of_file.name_of(step) : std::nullopt;
+    return by_file ? *by_file : name_in_call(step, steps);
   };
   std::map<std::string, const SeriesStep*> taken;
   std::vector<std::string> paths;
   for (const SeriesStep& step : steps) {
-    const std::string name = output.substr(directory_end);
     std::filesystem::path path = output.substr(0, directory_end) + step_name(name, step);
     if (output.empty()) path = std::filesystem::path(named_by_head(step.path)).replace_filename(default_name(step));
     if (directory) path /= default_name(step);
     path = with_level(path.string(), step);
+    require_step(output, name, step);
     require_stem(output, name, step, path.string());
     const auto [other, is_new] = taken.emplace(path.lexically_normal().string(), &step);
     if (!is_new) {

@@ -25,11 +25,11 @@ enum class DefaultNames {
 };
 
 /// Where each step's file goes: beside its input where `output` is empty; into `output` where that ends with a
-/// slash, or is a directory and there are several; else to the name it gives, with the braces of its last part
+/// slash, or is a directory and there are several; else to the name it gives, with the words in braces of its last part
 /// replaced. Where `output` gives no name, `names` does. Of Levels::separate each name ends with _level_N.nvdb, N from
 /// 0, the finest, on. `options` are those that the steps were made with, and files that hold several volumes are listed
-/// for it. Throws Error(usage) where two steps would share one name, or words that a step has none of would leave a
-/// name empty before its extension.
+/// for it. Throws Error(usage) where two steps would share one name, a directory has such a word, a step has no
+/// {step} and the name has, or a {dataset} that a step has not would leave a name empty before its extension.
 std::vector<std::string> series_outputs(std::span<const SeriesStep> steps, const std::string& output,
                                         const SourceOptions& options = {}, DefaultNames names = DefaultNames::of_file);
 

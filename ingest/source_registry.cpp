@@ -30,15 +30,8 @@ std::vector<DatasetInfo> list_raw(const std::string& path, const SourceOptions& 
   return list_single(open_raw(path, options)->info(), "contiguous");
 }
 
-using Ending = std::string_view;
-constexpr std::array<Ending, 2> kNrrdEndings{".nrrd", ".nhdr"};
-constexpr std::array<Ending, 2> kMetaImageEndings{".mhd", ".mha"};
-constexpr std::array<Ending, 2> kNiftiEndings{".nii", ".nii.gz"};
-constexpr std::array<Ending, 1> kVdbEndings{".vdb"};
-constexpr std::array<Ending, 1> kVtkXmlEndings{".vti"};
-constexpr std::array<Ending, 1> kVtkLegacyEndings{".vtk"};
-constexpr std::array<Ending, 2> kZarrEndings{".zarr.zip", ".ozx"};
-constexpr std::array<Ending, 6> kHdf5Endings{".h5", ".hdf5", ".he5", ".nc", ".nc4", ".cdf"};
+/// Other zip files of arrays are no volumes for sure.
+constexpr std::array<std::string_view, 2> kWatchedZarrEndings{".zarr.zip", ".ozx"};
 
 constexpr std::array kFormats{
     SourceFormat{.name = "nrrd",
@@ -97,7 +90,7 @@ constexpr std::array kFormats{
                  .vectors = true,
                  .directory = true,
                  .chunks = true,
-                 .watched_endings = kZarrEndings},
+                 .watched_endings = kWatchedZarrEndings},
     // Asked late: its signature may lie anywhere behind a user block.
     SourceFormat{.name = "hdf5",
                  .recognises = recognises_hdf5,

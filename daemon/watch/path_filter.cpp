@@ -40,12 +40,9 @@ bool is_known_format(std::string_view path, bool any_raw) {
   const std::string_view name = name_of(path);
   if (name.starts_with('.')) return false;
   if (is_plotfile_head(path)) return true;
-  const std::string lower = lower_case(name);
-  if (lower.ends_with(".raw")) return any_raw || parse_raw_name(name).has_value();
-  return std::ranges::any_of(source_formats(), [&](const SourceFormat& format) {
-    return std::ranges::any_of(format.watched_endings,
-                               [&](std::string_view ending) { return lower.ends_with(ending); });
-  });
+  if (lower_case(name).ends_with(".raw")) return any_raw || parse_raw_name(name).has_value();
+  return std::ranges::any_of(
+      source_formats(), [&](const SourceFormat& format) { return ends_with_one_of(name, format.watched_endings); });
 }
 
 // What a conversion writes beside a volume, or is in the middle of writing.

@@ -1,6 +1,8 @@
 // Letters, digits and white space of ASCII, whatever the locale: other bytes are none of these.
 #pragma once
 
+#include <algorithm>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -23,6 +25,12 @@ inline std::string lower_case(std::string_view text) {
   std::string lower(text);
   for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   return lower;
+}
+
+/// Whether it ends with one of `endings`, which are in lower case, in letters of either case.
+inline bool ends_with_one_of(std::string_view text, std::span<const std::string_view> endings) {
+  const std::string lower = lower_case(text);
+  return std::ranges::any_of(endings, [&](std::string_view ending) { return lower.ends_with(ending); });
 }
 
 /// Letters in upper case.

@@ -37,6 +37,12 @@ Error io_error(const std::string& path, const Message& action, int errno_value) 
           SystemFailure{errno_value, path}};
 }
 
+std::string reason_of(const Error& error, const std::string& where) {
+  const std::string text = error.what();
+  const std::string begin = where + ": ";
+  return text.starts_with(begin) ? text.substr(begin.size()) : text;
+}
+
 Error error_in_flight() {
   try {
     throw;

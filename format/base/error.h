@@ -64,6 +64,9 @@ Error input_error(const std::string& path, const Message& message);
 /// "PATH: ACTION: strerror(ERRNO)", kind io; ENOENT and ENOTDIR say the path is missing.
 Error io_error(const std::string& path, const Message& action, int errno_value);
 
+/// What `error` says in the command line's words, without "WHERE: " where it begins so: for a list that says where.
+std::string reason_of(const Error& error, const std::string& where);
+
 /// The exception that is being handled; one of another type is of kind internal.
 Error error_in_flight();
 

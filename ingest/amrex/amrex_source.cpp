@@ -15,6 +15,7 @@
 #include "ingest/amrex/plotfile_text.h"
 #include "ingest/files/input_directory.h"
 #include "ingest/headers/header_text.h"
+#include "ingest/headers/named_choice.h"
 #include "ingest/source/convert_command.h"
 #include "ingest/source/extent.h"
 #include "ingest/values/axis_placement.h"
@@ -86,20 +87,18 @@ void refuse_second(const std::string& path, const std::vector<std::string>& name
 
 Error several_components(const std::string& path, const std::vector<std::string>& names) {
   const std::vector<std::string> obstacles = component_obstacles(names);
-  Message commands;
-  std::size_t shown = 0;
-  for (std::size_t i = 0; i < names.size() && shown < kMostComponentsShown; ++i) {
+  std::vector<Message> commands;
+  for (std::size_t i = 0; i < names.size(); ++i) {
     if (!obstacles[i].empty()) continue;
     DatasetInfo info;
     info.name = names[i];
-    commands +=
-        compose(shown++ == 0 ? "" : "; ", CommandLineText{convert_command(path, true, info), volume_keys(info)});
+    commands.emplace_back(CommandLineText{convert_command(path, true, info), volume_keys(info)});
   }
-  if (names.size() > shown)
-    commands += shown == 0 ? "none has a name of its own (weir inspect lists them)"
-                           : cat("; and ", names.size() - shown, " more (weir inspect lists them)");
-  return {ErrorKind::usage,
-          compose(path, ": holds ", names.size(), " components; choose one with ", option("dataset"), ": ", commands)};
+  if (commands.empty()) {
+    return usage_error(compose(path, ": holds ", names.size(), " components; choose one with ", option("dataset"),
+                               ": none has a name of its own (weir inspect lists them)"));
+  }
+  return several_volumes(path, "components", names.size(), commands);
 }
 
 std::size_t chosen_component(const std::string& path, const std::vector<std::string>& names,
@@ -149,11 +148,6 @@ Box bounds_of(const std::vector<CellBox>& boxes) {
   Box bounds = boxes.front().box();
   for (const CellBox& box : boxes) bounds = {min(bounds.lo, box.box().lo), max(bounds.hi, box.box().hi)};
   return bounds;
-}
-
-void refuse_index(const std::string& path, const SourceOptions& options) {
-  if (options.index.empty()) return;
-  throw usage_error(compose(path, ": ", option("index"), " is for arrays of more than three axes; leave it out"));
 }
 
 std::array<double, 3> first_centre(const AmrexHeader& header, std::size_t level) {

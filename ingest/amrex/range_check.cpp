@@ -1,12 +1,11 @@
 #include "ingest/amrex/range_check.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <utility>
 
+#include "format/base/load_scalar.h"
 #include "format/base/scalar_type.h"
 #include "format/base/text.h"
 
@@ -15,17 +14,6 @@ namespace {
 
 /// Of the larger of the two bounds: some codes write them with six digits, and the values as float32.
 constexpr double kSlack = 1e-5;
-
-constexpr std::uint32_t reversed_bytes(std::uint32_t v) { return __builtin_bswap32(v); }
-constexpr std::uint64_t reversed_bytes(std::uint64_t v) { return __builtin_bswap64(v); }
-
-template <typename Stored, typename Bits, bool BigEndian>
-Stored stored_value(const std::byte* at) {
-  Bits bits;
-  std::memcpy(&bits, at, sizeof bits);
-  constexpr bool kReversed = BigEndian != (std::endian::native == std::endian::big);
-  return std::bit_cast<Stored>(kReversed ? reversed_bytes(bits) : bits);
-}
 
 /// As a value of that size is rounded where it is stored.
 template <typename Stored>
@@ -41,9 +29,7 @@ double first_outside(std::span<const std::byte> values, const ComponentRange& ra
   const double slack = kSlack * std::max(std::fabs(range.min), std::fabs(range.max));
   const auto least = rounded_bound<Stored>(range.min - slack);
   const auto most = rounded_bound<Stored>(range.max + slack);
-  const auto value = [&](std::size_t i) {
-    return stored_value<Stored, Bits, BigEndian>(values.data() + i * sizeof(Stored));
-  };
+  const auto value = [&](std::size_t i) { return load_scalar<Stored>(values.data() + i * sizeof(Stored), BigEndian); };
   const std::size_t count = values.size() / sizeof(Stored);
   Bits outside = 0;
   for (std::size_t i = 0; i < count; ++i)

@@ -29,8 +29,8 @@ std::string axis_note(const AxisPlace& axis, std::size_t of_volume);
 /// empty.
 std::string units_note(const VolumeAxes& axes);
 
-/// "its axes are called x, y, z, slowest first: the file's z lies along x, ...", where the names of at least two are
-/// those of others among them; else empty.
+/// "its axes are x, y, z, slowest first, and x is the fastest: the file's z lies along x, ...", where the names of at
+/// least two are those of others among them; else empty.
 std::string order_note(const VolumeAxes& axes);
 
 /// Which of them points down and what that means, where CF's `positive` says it and spacing and origin do not; else

@@ -15,11 +15,6 @@
 namespace weir {
 namespace {
 
-ConversionLoss times(const ConversionLoss& loss, std::int64_t voxels) {
-  const auto n = static_cast<std::uint64_t>(voxels);
-  return {loss.inexact * n, loss.overflow * n, loss.max_abs_error, loss.unmarked * n};
-}
-
 /// Calls visit(first voxel of the run in `part`, voxels) for the longest runs of `part` that are contiguous
 /// both in a chunk of `chunk` voxels and in `box`.
 template <typename Visit>
@@ -56,7 +51,7 @@ ConversionLoss ChunkBoxes::read_chunk(const Index3& chunk, const Box& box, std::
     const auto run = values.subspan(static_cast<std::size_t>(linear_index(first - box.lo, box.extent())), count);
     if (bytes.empty()) {
       std::ranges::fill(run, fill_);
-      loss.add(times(fill_loss_, voxels));
+      loss.add(fill_loss_.times(count));
       return;
     }
     const std::size_t at = static_cast<std::size_t>(linear_index(first - lo, c)) * voxel_bytes;

@@ -19,7 +19,7 @@ struct Hdf5Driver {
   const Hdf5Reads* reads;
 };
 
-/// The functions of the driver for the HDF5 file `path`. Throw Error(input) where there is no driver (load_driver).
+/// The functions of the driver for the HDF5 file `path`. Throw Error(io) where there is no driver (load_driver).
 std::unique_ptr<VolumeSource> open_by_hdf5_driver(const std::string& path, const SourceOptions& options);
 std::vector<DatasetInfo> list_by_hdf5_driver(const std::string& path, const SourceOptions& options);
 

@@ -13,7 +13,6 @@ namespace {
 
 constexpr std::string_view kSignature{"\x89HDF\r\n\x1a\n", 8};
 constexpr std::uint64_t kFirstUserBlock = 512;
-constexpr std::array<std::string_view, 5> kSuffixes{".h5", ".hdf5", ".he5", ".nc", ".nc4"};
 
 bool begins_with(std::span<const std::byte> bytes, std::string_view text) {
   return bytes.size() >= text.size() && std::memcmp(bytes.data(), text.data(), text.size()) == 0;
@@ -38,8 +37,7 @@ bool is_classic_netcdf(std::span<const std::byte> head) {
 
 bool recognises_hdf5(std::string_view path, std::span<const std::byte> head) {
   if (begins_with(head, kSignature) || is_classic_netcdf(head)) return true;
-  const auto named = [name = lower_case(path)](std::string_view suffix) { return name.ends_with(suffix); };
-  return std::any_of(kSuffixes.begin(), kSuffixes.end(), named) || has_hdf5_signature(std::string(path));
+  return ends_with_one_of(path, kHdf5Endings) || has_hdf5_signature(std::string(path));
 }
 
 }  // namespace weir

@@ -118,9 +118,7 @@ std::vector<DatasetInfo> list_hdf5(const std::string& path, const SourceOptions&
       datasets.push_back(described(object, dataset_facts(file.get(), object)));
     } catch (const Error& error) {
       if (!options.lists_damaged || error.kind() != ErrorKind::input) throw;
-      const std::string text = error.what();
-      const std::string where = object.where() + ": ";
-      add_unread({object.name, text.starts_with(where) ? text.substr(where.size()) : text});
+      add_unread({object.name, reason_of(error, object.where())});
     }
   };
   walk_datasets(file.get(), "/", add_dataset, add_unread);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <vector>
 
-#include "format/base/error.h"
 #include "format/base/text.h"
 #include "ingest/headers/header_text.h"
 
@@ -11,6 +10,7 @@ namespace weir {
 namespace {
 
 constexpr std::size_t kMostShown = 20;
+constexpr std::size_t kMostChoicesShown = 8;
 
 // "'density', 'heat' and 3 more".
 std::string names_text(std::span<const NamedVolume> there, std::span<const std::size_t> which) {
@@ -55,6 +55,15 @@ std::size_t choose_volume(const std::string& path, std::string_view kind, std::s
   }
   throw Error(ErrorKind::usage, compose(path, ": holds ", usable.size(), ' ', kind, "s that can be converted; name ",
                                         article(kind), " with ", option("dataset"), ": ", names_text(there, usable)));
+}
+
+Error several_volumes(const std::string& path, std::string_view kind, std::size_t count,
+                      std::span<const Message> choices) {
+  Message text;
+  const std::size_t shown = std::min(choices.size(), kMostChoicesShown);
+  for (std::size_t i = 0; i < shown; ++i) text += compose(i == 0 ? "" : "; ", choices[i]);
+  if (count > shown) text += cat("; and ", count - shown, " more (weir inspect lists them)");
+  return usage_error(compose(path, ": holds ", count, ' ', kind, "; choose one with ", option("dataset"), ": ", text));
 }
 
 }  // namespace weir

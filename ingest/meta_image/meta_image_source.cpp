@@ -66,8 +66,7 @@ HeaderVolume describe_meta_image(const std::string& path) {
 }  // namespace
 
 bool recognises_meta_image(std::string_view path, std::span<const std::byte>) {
-  const std::string name = lower_case(path);
-  return name.ends_with(".mha") || name.ends_with(".mhd");
+  return ends_with_one_of(path, kMetaImageEndings);
 }
 
 std::unique_ptr<VolumeSource> open_meta_image(const std::string& path, const SourceOptions& options) {

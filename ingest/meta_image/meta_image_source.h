@@ -2,6 +2,7 @@
 // file of their own.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -15,7 +16,10 @@
 
 namespace weir {
 
-/// By the name, .mha or .mhd: the text has no magic.
+/// Of the names of its files, in lower case.
+inline constexpr std::array<std::string_view, 2> kMetaImageEndings{".mhd", ".mha"};
+
+/// By the name, kMetaImageEndings: the text has no magic.
 bool recognises_meta_image(std::string_view path, std::span<const std::byte> head);
 
 /// --index chooses along the axes after the third; spacing, offset and transform become spacing and origin as

@@ -1,11 +1,12 @@
 #include "ingest/nifti/nifti_header.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "format/base/error.h"
+#include "format/base/load_scalar.h"
 #include "format/base/text.h"
 #include "ingest/headers/header_text.h"
 
@@ -23,7 +24,7 @@ struct Layout1 {
   using Offset = float;
   using Code = std::int16_t;
   using Units = std::uint8_t;
-  static constexpr std::size_t kHeader = kBytes1, kMagic = 344, kDim = 40, kDatatype = 70, kPixdim = 76,
+  static constexpr std::size_t kHeader = kBytes1, kMagic = 344, kDim = 40, kDatatype = 70, kBitpix = 72, kPixdim = 76,
                                kVoxOffset = 108, kSlope = 112, kIntercept = 116, kQformCode = 252, kSformCode = 254,
                                kQuaternion = 256, kQoffset = 268, kSrow = 280, kUnits = 123, kToffset = 136;
   static constexpr std::string_view kSingle{"n+1\0", 4}, kPair{"ni1\0", 4};
@@ -34,7 +35,7 @@ struct Layout2 {
   using Offset = std::int64_t;
   using Code = std::int32_t;
   using Units = std::int32_t;
-  static constexpr std::size_t kHeader = kBytes2, kMagic = 4, kDim = 16, kDatatype = 12, kPixdim = 104,
+  static constexpr std::size_t kHeader = kBytes2, kMagic = 4, kDim = 16, kDatatype = 12, kBitpix = 14, kPixdim = 104,
                                kVoxOffset = 168, kSlope = 176, kIntercept = 184, kQformCode = 344, kSformCode = 348,
                                kQuaternion = 352, kQoffset = 376, kSrow = 400, kUnits = 500, kToffset = 216;
   static constexpr std::string_view kSingle{"n+2\0\r\n\032\n", 8}, kPair{"ni2\0\r\n\032\n", 8};
@@ -63,14 +64,6 @@ constexpr std::array<Datatype, 17> kDatatypes{{{1, "1-bit", {}},
                                                {2048, "complex256", {}},
                                                {2304, "RGBA32", {}}}};
 
-template <typename T>
-T load(std::span<const std::byte> bytes, std::size_t at, bool big_endian) {
-  std::array<std::byte, sizeof(T)> value;
-  std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(at), sizeof(T), value.begin());
-  if (big_endian != (std::endian::native == std::endian::big)) std::reverse(value.begin(), value.end());
-  return std::bit_cast<T>(value);
-}
-
 template <typename Layout>
 class FieldReader {
  public:
@@ -93,7 +86,7 @@ class FieldReader {
  private:
   template <typename T>
   T at(std::size_t offset) const {
-    return load<T>(bytes_, offset, big_endian_);
+    return load_scalar<T>(bytes_.data() + offset, big_endian_);
   }
   double real(std::size_t offset, std::size_t i) const {
     return static_cast<double>(at<typename Layout::Real>(offset + i * sizeof(typename Layout::Real)));
@@ -134,9 +127,22 @@ class FieldReader {
     const auto code = at<std::int16_t>(Layout::kDatatype);
     const auto* const known =
         std::find_if(kDatatypes.begin(), kDatatypes.end(), [&](const Datatype& d) { return d.code == code; });
-    if (known != kDatatypes.end() && known->type) return *known->type;
+    if (known != kDatatypes.end() && known->type) {
+      require_bits(*known);
+      return *known->type;
+    }
     throw wrong("datatype", Layout::kDatatype, cat(code, known == kDatatypes.end() ? "" : cat(" (", known->name, ')')),
                 "integers of 8 to 64 bits, float32 and float64 can be read");
+  }
+
+  // nifti1.h: bitpix is that of the datatype. Some writers leave it 0.
+  void require_bits(const Datatype& datatype) const {
+    const auto bits = at<std::int16_t>(Layout::kBitpix);
+    const std::size_t expected = 8 * scalar_bytes(*datatype.type);
+    if (bits == 0 || std::cmp_equal(bits, expected)) return;
+    throw wrong("bitpix", Layout::kBitpix, bits,
+                cat("datatype ", datatype.code, " (", datatype.name, ") has ", expected,
+                    "; correct the one of the two that is wrong"));
   }
 
   std::uint64_t values_offset(bool pair) const {
@@ -219,7 +225,7 @@ class FieldReader {
 std::optional<bool> is_big_endian(std::span<const std::byte> head) {
   if (head.size() < 4) return std::nullopt;
   for (const bool big_endian : {false, true}) {
-    const auto size = load<std::uint32_t>(head, 0, big_endian);
+    const auto size = load_scalar<std::uint32_t>(head.data(), big_endian);
     if (size == kBytes1 || size == kBytes2) return big_endian;
   }
   return std::nullopt;
@@ -234,7 +240,7 @@ NiftiHeader parse_nifti_header(std::span<const std::byte> bytes, const std::stri
   if (!big_endian) {
     throw Error(ErrorKind::input, cat(path, ": is no NIfTI file: its first four bytes are neither 348 nor 540"));
   }
-  const auto size = load<std::uint32_t>(bytes, 0, *big_endian);
+  const auto size = load_scalar<std::uint32_t>(bytes.data(), *big_endian);
   if (bytes.size() < size) {
     throw Error(ErrorKind::input, cat(path, ": ends after ", bytes.size(), " bytes, its header alone has ", size));
   }

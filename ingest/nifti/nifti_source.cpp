@@ -108,8 +108,7 @@ HeaderVolume describe_nifti(const std::string& path, std::span<const std::int64_
 }  // namespace
 
 bool recognises_nifti(std::string_view path, std::span<const std::byte> head) {
-  const std::string name = lower_case(path);
-  return name.ends_with(".nii") || name.ends_with(".nii.gz") || (name.ends_with(".hdr") && begins_like_nifti(head));
+  return ends_with_one_of(path, kNiftiEndings) || (lower_case(path).ends_with(".hdr") && begins_like_nifti(head));
 }
 
 std::unique_ptr<VolumeSource> open_nifti(const std::string& path, const SourceOptions& options) {

@@ -2,6 +2,7 @@
 // them in the .img beside it.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -15,7 +16,10 @@
 
 namespace weir {
 
-/// By the name: .nii, .nii.gz, or .hdr where the file also begins as NIfTI does. The magic lies further in.
+/// Of the names of its files, in lower case; those of a header beside its values say nothing of the format.
+inline constexpr std::array<std::string_view, 2> kNiftiEndings{".nii", ".nii.gz"};
+
+/// By the name: kNiftiEndings, or .hdr where the file also begins as NIfTI does. The magic lies further in.
 bool recognises_nifti(std::string_view path, std::span<const std::byte> head);
 
 /// NIfTI-1 and NIfTI-2. --index chooses along the axes after the third, of which the fourth may be a time; the sform,

@@ -198,8 +198,7 @@ HeaderVolume describe_nrrd(const std::string& path) {
 
 bool recognises_nrrd(std::string_view path, std::span<const std::byte> head) {
   const std::string_view begin(reinterpret_cast<const char*>(head.data()), head.size());
-  const std::string name = lower_case(path);
-  return begin.starts_with(kNrrdMagic) || name.ends_with(".nrrd") || name.ends_with(".nhdr");
+  return begin.starts_with(kNrrdMagic) || ends_with_one_of(path, kNrrdEndings);
 }
 
 std::unique_ptr<VolumeSource> open_nrrd(const std::string& path, const SourceOptions& options) {

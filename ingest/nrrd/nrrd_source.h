@@ -2,6 +2,7 @@
 // of their own.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -15,7 +16,10 @@
 
 namespace weir {
 
-/// By its magic, whatever the name; and what only looks so, by a name (.nrrd, .nhdr).
+/// Of the names of its files, in lower case.
+inline constexpr std::array<std::string_view, 2> kNrrdEndings{".nrrd", ".nhdr"};
+
+/// By its magic, whatever the name; and what only looks so, by a name (kNrrdEndings).
 bool recognises_nrrd(std::string_view path, std::span<const std::byte> head);
 
 /// A first axis of one value (NRRD keeps channels there) is dropped, --index chooses along the axes after the next

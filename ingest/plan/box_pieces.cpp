@@ -3,7 +3,6 @@
 #include <algorithm>
 
 namespace weir {
-namespace {}  // namespace
 
 BoxPieces::BoxPieces(const Index3& extent, const Box& box, std::size_t voxel_bytes, std::uint64_t header_bytes,
                      std::uint64_t piece_bytes)

@@ -48,7 +48,7 @@ constexpr std::array<NamedFormat, 5> kNamed{
      {".xdmf", kXdmf, kArraysOfXdmf},
      {".xmf", kXdmf, kArraysOfXdmf}}};
 
-// Fewer bytes than asked for where the file ends before.
+// Empty where the file ends before.
 std::string bytes_at(InputFile& file, std::uint64_t offset, std::size_t count) {
   if (file.size() < offset + count) return {};
   std::string bytes(count, '\0');

@@ -46,7 +46,7 @@ Error unfit(const std::string& path, const DatasetInfo& dataset, const SourceOpt
   }
   std::string text;
   for (std::size_t i = 0; i < axes.size(); ++i) {
-    text += cat(i == 0 ? "" : ", ", axes[i].name.empty() ? cat("axis ", i) : axes[i].name, " of ", axes[i].extent);
+    text += cat(i == 0 ? "" : ", ", axis_name(axes[i].name, i), " of ", axes[i].extent);
   }
   return usage_error(compose(path, ": ", option("index"), " has ", choices.size(),
                              choices.size() == 1 ? " position" : " positions", ", and ", name, " has ",

@@ -20,10 +20,6 @@ bool read_end(std::string_view text, std::optional<std::int64_t>& end) {
   return end.has_value();
 }
 
-std::string name_of(std::span<const LeadingAxis> axes, std::size_t axis) {
-  return axes[axis].name.empty() ? cat("axis ", axis) : axes[axis].name;
-}
-
 std::string choice_text(const AxisChoice& choice) {
   const auto end = [](const std::optional<std::int64_t>& position) {
     return position ? cat(*position) : std::string();
@@ -39,31 +35,28 @@ std::size_t axis_of(const AxisChoice& choice, std::size_t place, std::span<const
   return static_cast<std::size_t>(found - axes.begin());
 }
 
-// [first, end) of the axis's own positions.
-std::pair<std::int64_t, std::int64_t> bounds_of(const AxisChoice& choice, std::int64_t extent) {
-  const auto counted = [extent](std::int64_t position) { return position < 0 ? position + extent : position; };
-  const std::int64_t first = counted(choice.first.value_or(0));
-  return {first, choice.range ? counted(choice.end.value_or(extent)) : first + 1};
-}
-
-// The same, checked. `name` is the axis's.
+// [first, end) of the axis's own positions. `name` is the axis's.
 std::pair<std::int64_t, std::int64_t> checked_bounds(const std::string& where, const std::string& name,
                                                      const AxisChoice& choice, const LeadingAxis& axis) {
   const std::int64_t extent = axis.extent;
-  const auto [first, end] = bounds_of(choice, extent);
-  if (first < 0 || end > extent) {
+  const auto counted = [extent](std::int64_t position) { return position < 0 ? position + extent : position; };
+  const std::int64_t first = counted(choice.first.value_or(0));
+  const std::int64_t last = choice.range ? counted(choice.end.value_or(extent)) - 1 : first;
+  if (first < 0 || last >= extent) {
     throw usage_error(compose(where, ": ", option("index"), " has ", choice_text(choice), ", and ", name,
                               " has the positions 0 to ", extent - 1, unwritten_text(axis), ", or from the end -",
                               extent, " to -1"));
   }
-  if (first >= end) {
+  if (first > last) {
     throw usage_error(compose(where, ": ", option("index"), " has ", choice_text(choice), " for ", name,
                               ", which holds no position; give FROM:TO with FROM below TO"));
   }
-  return {first, end};
+  return {first, last + 1};
 }
 
 }  // namespace
+
+std::string axis_name(const std::string& label, std::size_t i) { return label.empty() ? cat("axis ", i) : label; }
 
 std::string unwritten_text(const LeadingAxis& axis) {
   if (axis.unwritten == 0) return {};
@@ -110,7 +103,7 @@ std::vector<std::vector<std::int64_t>> chosen_positions(const std::string& where
   std::vector<std::vector<std::int64_t>> positions{{}};
   for (std::size_t axis = 0; axis < axes.size(); ++axis) {
     const std::int64_t extent = axes[axis].extent;
-    const std::string name = name_of(axes, axis);
+    const std::string name = axis_name(axes[axis].name, axis);
     if (of_axis[axis] == nullptr && extent != 1) {
       throw usage_error(compose(where, ": ", option("index"), " says nothing of ", name,
                                 ", which has the positions 0 to ", extent - 1, "; add ", name, "=0"));

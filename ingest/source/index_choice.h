@@ -1,6 +1,7 @@
 // Which positions of an array's leading axes are asked for: --index.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -16,6 +17,9 @@ struct LeadingAxis {
   std::int64_t extent = 0;
   std::int64_t unwritten = 0;  ///< elements that its dimension has behind these, and the file has not
 };
+
+/// Of the axis at position `i`, from 0, of an array: `label` or, where that is empty, "axis 0".
+std::string axis_name(const std::string& label, std::size_t i);
 
 /// Of an axis with unwritten elements, " (2 was not written)", " (2 to 4 were not written)"; else empty.
 std::string unwritten_text(const LeadingAxis& axis);

@@ -5,36 +5,47 @@
 #include <cstdint>
 #include <span>
 #include <utility>
+#include <vector>
+
+#include "ingest/source/forwarded_source.h"
 
 namespace weir {
 namespace {
 
-class ReversedSource final : public VolumeSource {
+class ReversedSource final : public ForwardedSource {
  public:
   ReversedSource(std::unique_ptr<VolumeSource> source, const std::array<bool, 3>& reversed)
-      : source_(std::move(source)), reversed_(reversed) {}
-
-  const SourceInfo& info() const override { return source_->info(); }
-  bool in_memory() const override { return source_->in_memory(); }
-  std::uint64_t working_bytes() const override { return source_->working_bytes(); }
-  std::uint64_t bytes_read() const override { return source_->bytes_read(); }
+      : ForwardedSource(std::move(source)), reversed_(reversed) {}
 
   // Chunks end where they began.
   AccessShape access() const override {
-    AccessShape shape = source_->access();
+    AccessShape shape = source().access();
     shape.chunk_origin = mirrored({shape.chunk_origin, shape.chunk_origin}).lo;
     return shape;
   }
   ConversionLoss read(const Box& box, std::span<float> values) override {
-    const ConversionLoss loss = source_->read(mirrored(box), values);
+    const ConversionLoss loss = source().read(mirrored(box), values);
     reverse(box.extent(), values);
     return loss;
   }
   ConversionLoss read_alone(const Box& box, std::span<float> values) override {
-    const ConversionLoss loss = source_->read_alone(mirrored(box), values);
+    const ConversionLoss loss = source().read_alone(mirrored(box), values);
     reverse(box.extent(), values);
     return loss;
   }
+  std::vector<Box> voxels_with_values(const Box& box) const override {
+    std::vector<Box> boxes = source().voxels_with_values(mirrored(box));
+    for (Box& part : boxes) part = mirrored(part);
+    return boxes;
+  }
+  // The source's leaves are none here, where its extent is no multiple of 8.
+  std::vector<RepeatedPart> repeated_parts(const Box& box) const override { return {{box}}; }
+  ConversionLoss read_repeated(const RepeatedPart& part, std::span<float> values) override {
+    return read_alone(part.box, values);
+  }
+  ResidentVolume* resident() override { return nullptr; }
+  const CellPlaces* places() const override { return nullptr; }
+  const HeldLeaves* held(const Box& /*box*/) const override { return nullptr; }
 
  private:
   // Where the source has the voxels of `box`.
@@ -62,7 +73,6 @@ class ReversedSource final : public VolumeSource {
     }
   }
 
-  std::unique_ptr<VolumeSource> source_;
   std::array<bool, 3> reversed_;
 };
 

@@ -79,4 +79,7 @@ struct SourceOptions {
   }
 };
 
+/// Throws Error(usage) where --index is given: for formats in which there is nothing that it could choose.
+void refuse_index(const std::string& path, const SourceOptions& options);
+
 }  // namespace weir

@@ -9,37 +9,55 @@
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "ingest/source/extent.h"
+#include "ingest/source/forwarded_source.h"
 
 namespace weir {
 namespace {
 
-class SourceView final : public VolumeSource {
+/// A source at another place in the world.
+class PlacedSource final : public ForwardedSource {
  public:
-  // `info` is the source's own but for its domain, which lies inside the source's, and its place.
-  SourceView(std::unique_ptr<VolumeSource> source, SourceInfo info)
-      : source_(std::move(source)), info_(std::move(info)) {}
+  // `info` is the source's own but for its place.
+  PlacedSource(std::unique_ptr<VolumeSource> source, SourceInfo info)
+      : ForwardedSource(std::move(source)), info_(std::move(info)) {}
 
   const SourceInfo& info() const override { return info_; }
-  AccessShape access() const override { return source_->access(); }
-  std::uint64_t bytes_read() const override { return source_->bytes_read(); }
-  std::uint64_t working_bytes() const override { return source_->working_bytes(); }
-  bool in_memory() const override { return source_->in_memory(); }
+
+ private:
+  SourceInfo info_;
+};
+
+class CroppedSource final : public ForwardedSource {
+ public:
+  // `info` is the source's own but for its domain, which lies inside the source's.
+  CroppedSource(std::unique_ptr<VolumeSource> source, SourceInfo info)
+      : ForwardedSource(std::move(source)), info_(std::move(info)) {}
+
+  const SourceInfo& info() const override { return info_; }
   ConversionLoss read(const Box& box, std::span<float> values) override {
     check(box);
-    return source_->read(box, values);
+    return source().read(box, values);
   }
   ConversionLoss read_alone(const Box& box, std::span<float> values) override {
     check(box);
-    return source_->read_alone(box, values);
+    return source().read_alone(box, values);
+  }
+  std::vector<Box> voxels_with_values(const Box& box) const override {
+    check(box);
+    return source().voxels_with_values(box);
   }
   std::vector<RepeatedPart> repeated_parts(const Box& box) const override {
     check(box);
-    return source_->repeated_parts(box);
+    return source().repeated_parts(box);
   }
   ConversionLoss read_repeated(const RepeatedPart& part, std::span<float> values) override {
     check(part.box);
-    return source_->read_repeated(part, values);
+    return source().read_repeated(part, values);
   }
+  // These are of whole volumes and whole leaves, which the region's border cuts.
+  ResidentVolume* resident() override { return nullptr; }
+  const CellPlaces* places() const override { return nullptr; }
+  const HeldLeaves* held(const Box& /*box*/) const override { return nullptr; }
 
  private:
   void check(const Box& box) const {
@@ -48,7 +66,6 @@ class SourceView final : public VolumeSource {
                 cat(info_.path, ": read of box ", box_text(box), " outside the region ", box_text(info_.domain())));
   }
 
-  std::unique_ptr<VolumeSource> source_;
   SourceInfo info_;
 };
 
@@ -105,7 +122,7 @@ std::unique_ptr<VolumeSource> crop_source(std::unique_ptr<VolumeSource> source, 
   SourceInfo cropped = info;
   cropped.extent = region.extent();
   cropped.index_origin = region.lo;
-  return std::make_unique<SourceView>(std::move(source), std::move(cropped));
+  return std::make_unique<CroppedSource>(std::move(source), std::move(cropped));
 }
 
 namespace {
@@ -147,7 +164,7 @@ std::unique_ptr<VolumeSource> place_source(std::unique_ptr<VolumeSource> source,
     }
     placed.details.units_note.clear();
   }
-  return std::make_unique<SourceView>(std::move(source), std::move(placed));
+  return std::make_unique<PlacedSource>(std::move(source), std::move(placed));
 }
 
 }  // namespace weir

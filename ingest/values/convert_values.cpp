@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
-#include <type_traits>
 
+#include "format/base/load_scalar.h"
 #include "format/base/simd.h"
 
 namespace weir {
@@ -16,22 +16,9 @@ namespace {
 
 static_assert(std::numeric_limits<float>::is_iec559 && std::numeric_limits<double>::is_iec559);
 
-template <std::size_t Bytes>
-using Word = std::conditional_t<
-    Bytes == 1, std::uint8_t,
-    std::conditional_t<Bytes == 2, std::uint16_t, std::conditional_t<Bytes == 4, std::uint32_t, std::uint64_t>>>;
-
-constexpr std::uint8_t swap_bytes(std::uint8_t v) { return v; }
-constexpr std::uint16_t swap_bytes(std::uint16_t v) { return __builtin_bswap16(v); }
-constexpr std::uint32_t swap_bytes(std::uint32_t v) { return __builtin_bswap32(v); }
-constexpr std::uint64_t swap_bytes(std::uint64_t v) { return __builtin_bswap64(v); }
-
 template <typename T, bool Swap>
 T load(const std::byte* bytes, std::size_t i) {
-  Word<sizeof(T)> word;
-  std::memcpy(&word, bytes + i * sizeof(T), sizeof(T));
-  if constexpr (Swap) word = swap_bytes(word);
-  return std::bit_cast<T>(word);
+  return load_scalar<T>(bytes + i * sizeof(T), Swap != kNativeIsBig);
 }
 
 /// IEEE 754 binary16 to binary32, exact; NaN payloads move to the upper bits.

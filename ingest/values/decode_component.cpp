@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstdint>
 #include <cstring>
 
+#include "format/base/load_scalar.h"
 #include "ingest/values/convert_values.h"
 #include "ingest/values/decode_values.h"
 #include "ingest/values/vector_lengths.h"
@@ -31,12 +31,9 @@ void gather(const std::byte* from, std::size_t width, std::size_t stride, std::s
 }
 
 template <typename T>
-void widen(std::span<const std::byte> bytes, bool swap, const ValueMapping& mapping, std::span<double> numbers) {
+void widen(std::span<const std::byte> bytes, bool big_endian, const ValueMapping& mapping, std::span<double> numbers) {
   for (std::size_t i = 0; i < numbers.size(); ++i) {
-    std::array<std::byte, sizeof(T)> one;
-    std::memcpy(one.data(), bytes.data() + i * sizeof(T), sizeof(T));
-    if (swap) std::reverse(one.begin(), one.end());
-    const T stored = std::bit_cast<T>(one);
+    const T stored = load_scalar<T>(bytes.data() + i * sizeof(T), big_endian);
     numbers[i] = mapping.scales() ? static_cast<double>(mapping.scaled(stored)) : static_cast<double>(stored);
   }
 }
@@ -44,18 +41,17 @@ void widen(std::span<const std::byte> bytes, bool swap, const ValueMapping& mapp
 /// Numbers after scale and offset, in double.
 void scaled_numbers(std::span<const std::byte> bytes, ScalarType type, bool big_endian, const ValueMapping& mapping,
                     std::span<double> numbers) {
-  const bool swap = big_endian != kNativeIsBig;
   switch (type) {
     case ScalarType::uint32:
-      return widen<std::uint32_t>(bytes, swap, mapping, numbers);
+      return widen<std::uint32_t>(bytes, big_endian, mapping, numbers);
     case ScalarType::int32:
-      return widen<std::int32_t>(bytes, swap, mapping, numbers);
+      return widen<std::int32_t>(bytes, big_endian, mapping, numbers);
     case ScalarType::uint64:
-      return widen<std::uint64_t>(bytes, swap, mapping, numbers);
+      return widen<std::uint64_t>(bytes, big_endian, mapping, numbers);
     case ScalarType::int64:
-      return widen<std::int64_t>(bytes, swap, mapping, numbers);
+      return widen<std::int64_t>(bytes, big_endian, mapping, numbers);
     case ScalarType::float64:
-      return widen<double>(bytes, swap, mapping, numbers);
+      return widen<double>(bytes, big_endian, mapping, numbers);
     default:  // exact in float32
       break;
   }

@@ -1,26 +1,17 @@
 #include "ingest/values/decode_doubles.h"
 
-#include <algorithm>
 #include <array>
-#include <bit>
 #include <cstdint>
 #include <limits>
 #include <variant>
 
 #include "format/base/error.h"
+#include "format/base/load_scalar.h"
 #include "ingest/values/convert_values.h"
 #include "ingest/values/half_values.h"
 
 namespace weir {
 namespace {
-
-template <typename T>
-T load(std::span<const std::byte> bytes, bool swap) {
-  std::array<std::byte, sizeof(T)> word;
-  std::copy_n(bytes.begin(), sizeof(T), word.begin());
-  if (swap) std::reverse(word.begin(), word.end());
-  return std::bit_cast<T>(word);
-}
 
 float load_half(std::span<const std::byte> bytes, ScalarType type, bool big_endian) {
   std::array<float, 1> value{};
@@ -48,7 +39,7 @@ double decoded(T stored, ScalarType type, const ValueMapping& mapping) {
 
 template <typename T>
 double decode_as(std::span<const std::byte> bytes, ScalarType type, bool big_endian, const ValueMapping& mapping) {
-  return decoded(load<T>(bytes, big_endian != kNativeIsBig), type, mapping);
+  return decoded(load_scalar<T>(bytes.data(), big_endian), type, mapping);
 }
 
 double decode_one(std::span<const std::byte> bytes, ScalarType type, bool big, const ValueMapping& mapping) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "format/base/error.h"
+#include "format/base/load_scalar.h"
 #include "ingest/values/convert_values.h"
 #include "ingest/values/half_values.h"
 
@@ -104,25 +105,24 @@ class Decoder {
 };
 
 template <typename T>
-void load(const std::byte* bytes, bool swap, std::span<T> into) {
-  std::memcpy(into.data(), bytes, into.size_bytes());
-  if (!swap) return;
-  for (T& value : into) {
-    auto* const first = reinterpret_cast<std::byte*>(&value);
-    std::reverse(first, first + sizeof(T));
+void load(const std::byte* bytes, bool big_endian, std::span<T> into) {
+  if (big_endian == kNativeIsBig) {
+    std::memcpy(into.data(), bytes, into.size_bytes());
+    return;
   }
+  for (std::size_t i = 0; i < into.size(); ++i) into[i] = load_scalar<T>(bytes + i * sizeof(T), big_endian);
 }
 
 template <typename T>
-ConversionLoss decode_as(std::span<const std::byte> bytes, ScalarType type, bool swap, const ValueMapping& mapping,
-                         std::span<float> values) {
+ConversionLoss decode_as(std::span<const std::byte> bytes, ScalarType type, bool big_endian,
+                         const ValueMapping& mapping, std::span<float> values) {
   const Decoder<T> decoder(type, mapping);
   std::array<T, kAtOnce> stored;
   ConversionLoss loss;
   for (std::size_t start = 0; start < values.size(); start += kAtOnce) {
     const auto part = values.subspan(start, std::min(kAtOnce, values.size() - start));
     const auto used = std::span(stored).first(part.size());
-    load<T>(bytes.data() + start * sizeof(T), swap, used);
+    load<T>(bytes.data() + start * sizeof(T), big_endian, used);
     loss.add(decoder.decode(used, part));
   }
   return loss;
@@ -162,31 +162,30 @@ ConversionLoss decode_values(std::span<const std::byte> bytes, ScalarType type, 
     tell_from_missing(values);
     return loss;
   }
-  const bool swap = big_endian != kNativeIsBig;
   switch (type) {
     case ScalarType::uint8:
-      return decode_as<std::uint8_t>(bytes, type, swap, mapping, values);
+      return decode_as<std::uint8_t>(bytes, type, big_endian, mapping, values);
     case ScalarType::int8:
-      return decode_as<std::int8_t>(bytes, type, swap, mapping, values);
+      return decode_as<std::int8_t>(bytes, type, big_endian, mapping, values);
     case ScalarType::uint16:
-      return decode_as<std::uint16_t>(bytes, type, swap, mapping, values);
+      return decode_as<std::uint16_t>(bytes, type, big_endian, mapping, values);
     case ScalarType::int16:
-      return decode_as<std::int16_t>(bytes, type, swap, mapping, values);
+      return decode_as<std::int16_t>(bytes, type, big_endian, mapping, values);
     case ScalarType::uint32:
-      return decode_as<std::uint32_t>(bytes, type, swap, mapping, values);
+      return decode_as<std::uint32_t>(bytes, type, big_endian, mapping, values);
     case ScalarType::int32:
-      return decode_as<std::int32_t>(bytes, type, swap, mapping, values);
+      return decode_as<std::int32_t>(bytes, type, big_endian, mapping, values);
     case ScalarType::uint64:
-      return decode_as<std::uint64_t>(bytes, type, swap, mapping, values);
+      return decode_as<std::uint64_t>(bytes, type, big_endian, mapping, values);
     case ScalarType::int64:
-      return decode_as<std::int64_t>(bytes, type, swap, mapping, values);
+      return decode_as<std::int64_t>(bytes, type, big_endian, mapping, values);
     case ScalarType::float16:
     case ScalarType::bfloat16:
       return decode_half(bytes, type, big_endian, mapping, values);
     case ScalarType::float32:
-      return decode_as<float>(bytes, type, swap, mapping, values);
+      return decode_as<float>(bytes, type, big_endian, mapping, values);
     case ScalarType::float64:
-      return decode_as<double>(bytes, type, swap, mapping, values);
+      return decode_as<double>(bytes, type, big_endian, mapping, values);
   }
   throw Error(ErrorKind::internal, "unknown scalar type");
 }

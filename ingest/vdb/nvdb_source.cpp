@@ -43,9 +43,7 @@ GridCandidate open_candidate(const FileMapping& mapping, const std::string& path
       candidate.volume.obstacle = "its map is not finite or has a voxel size of 0";
     }
   } catch (const Error& error) {
-    candidate.volume.obstacle = error.what();
-    const std::string prefix = path + ": ";
-    if (candidate.volume.obstacle.starts_with(prefix)) candidate.volume.obstacle.erase(0, prefix.size());
+    candidate.volume.obstacle = reason_of(error, path);
   }
   return candidate;
 }
@@ -88,10 +86,7 @@ bool recognises_nvdb(std::string_view path, std::span<const std::byte> head) {
 }
 
 std::unique_ptr<VolumeSource> open_nvdb(const std::string& path, const SourceOptions& options) {
-  if (!options.index.empty()) {
-    throw Error(ErrorKind::usage,
-                compose(path, ": ", option("index"), " is for arrays of more than three axes; leave it out"));
-  }
+  refuse_index(path, options);
   auto file = std::make_unique<InputFile>(path, DirectIo::off);
   const FileMapping mapping(path, ".nvdb");  // to choose and check a grid; its values are read otherwise
   auto candidates = candidates_of(mapping, path);

@@ -36,7 +36,7 @@ class OpenVdbLibrary {
   ~OpenVdbLibrary() = default;
 };
 
-/// Throws Error(input), beginning with `what`, where there is no weir_openvdb.so (ingest/drivers/driver.h).
+/// Throws Error(io), beginning with `what`, where there is no weir_openvdb.so (ingest/drivers/driver.h).
 const OpenVdbLibrary& openvdb_library(const std::string& what);
 
 }  // namespace weir

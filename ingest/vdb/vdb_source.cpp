@@ -112,14 +112,11 @@ void require_memory(const std::string& where, std::uint64_t tree_bytes, const So
 bool recognises_vdb(std::string_view path, std::span<const std::byte> head) {
   constexpr std::string_view kMagic(" BDV\0\0\0\0", 8);
   const std::string_view begin(reinterpret_cast<const char*>(head.data()), head.size());
-  return begin.starts_with(kMagic) || lower_case(path).ends_with(".vdb");
+  return begin.starts_with(kMagic) || ends_with_one_of(path, kVdbEndings);
 }
 
 std::unique_ptr<VolumeSource> open_vdb(const std::string& path, const SourceOptions& options) {
-  if (!options.index.empty()) {
-    throw Error(ErrorKind::usage,
-                compose(path, ": ", option("index"), " is for arrays of more than three axes; leave it out"));
-  }
+  refuse_index(path, options);
   InputFile file(path, DirectIo::off);
   FileStream stream(file);
   VdbReader reader(stream, file.size(), path);

@@ -16,26 +16,29 @@ namespace weir {
 namespace {
 
 constexpr std::size_t kValuesAtATime = 16384;
+constexpr std::size_t kLongestNumber = 400;  // characters: 17 digits and an exponent tell each double
 
-/// The words of a text; no number is longer than kMaxWord.
+/// The words of a text.
 class Words {
  public:
   explicit Words(FileText& text) : text_(text) {}
 
-  /// The next word, cut after kMaxWord characters; empty at the end.
+  /// The next word, cut after kLongestNumber characters; empty at the end.
   std::string_view next() {
     int c = text_.next();
     while (is_space(c)) c = text_.next();
     std::size_t length = 0;
-    for (; c >= 0 && !is_space(c) && length < kMaxWord; c = text_.next()) word_[length++] = static_cast<char>(c);
+    for (; c >= 0 && !is_space(c) && length < kLongestNumber; c = text_.next()) word_[length++] = static_cast<char>(c);
+    cut_ = c >= 0 && !is_space(c);
     return {word_.data(), length};
   }
+  /// Whether the last word was cut.
+  bool cut() const { return cut_; }
 
  private:
-  static constexpr std::size_t kMaxWord = 400;  // a double written out in full has 327 digits
-
   FileText& text_;
-  std::array<char, kMaxWord> word_{};
+  std::array<char, kLongestNumber> word_{};
+  bool cut_ = false;
 };
 
 template <typename T>
@@ -73,6 +76,10 @@ void spool_words(Words& words, std::uint64_t count, SpoolFile& spool, const std:
     if (word.empty()) {
       throw Error(ErrorKind::input, cat(where, ": has ", i, " values as text, and its header asks for ", count,
                                         "; the file is cut or damaged"));
+    }
+    if (words.cut()) {
+      throw Error(ErrorKind::input, cat(where, ": value ", i, " of its text is longer than ", kLongestNumber,
+                                        " characters; write it with fewer digits"));
     }
     T value{};
     if (!parse_word(word, value)) {

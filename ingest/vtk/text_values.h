@@ -12,7 +12,8 @@ namespace weir {
 
 /// Reads `count` numbers that white space separates and writes them to `spool` as values of `type` in this machine's
 /// byte order; floating-point types take nan and inf too. Where `all`, nothing else may follow. Throws Error(input),
-/// beginning with `where`, naming the position of a word that is no number of that type, or where there are too few.
+/// beginning with `where`, naming the position of a word that is no number of that type or is longer than 400
+/// characters, or where there are too few.
 void spool_text_values(FileText& text, std::uint64_t count, ScalarType type, bool all, SpoolFile& spool,
                        const std::string& where);
 

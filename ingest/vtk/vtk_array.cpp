@@ -2,7 +2,6 @@
 
 #include <cstddef>
 
-#include "format/base/error.h"
 #include "format/base/text.h"
 #include "ingest/headers/header_text.h"
 #include "ingest/source/extent.h"
@@ -29,10 +28,6 @@ VtkVolume vtk_volume(const InputFile& file, const char* format, const VtkImage& 
   return volume;
 }
 
-void refuse_vtk_index(const std::string& path, const SourceOptions& options) {
-  if (options.index.empty()) return;
-  throw Error(ErrorKind::usage,
-              compose(path, ": ", option("index"), " is for arrays of more than three axes; leave it out"));
-}
+std::string full_vtk_name(const std::string& name, bool cells) { return cat(cells ? "CellData/" : "PointData/", name); }
 
 }  // namespace weir

@@ -1,9 +1,12 @@
 // An array of a VTK image, whatever the format of the file, and the volume that it is.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <iterator>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -52,7 +55,20 @@ void say_vtk_left_out(const std::string& path, const std::vector<Array>& arrays,
   options.notice(left_out_notice(path, taken.name, left_out));
 }
 
-/// Throws Error(usage): there is nothing that --index could choose.
-void refuse_vtk_index(const std::string& path, const SourceOptions& options);
+/// "PointData/a" or "CellData/a".
+std::string full_vtk_name(const std::string& name, bool cells);
+
+/// Gives arrays that points and cells both have their full names. The names that these had.
+template <typename Array>
+std::set<std::string> tell_equal_names_apart(std::vector<Array>& arrays) {
+  std::array<std::set<std::string>, 2> names;  // of points, of cells
+  for (const VtkArray& array : arrays) names[array.cells ? 1 : 0].insert(array.name);
+  std::set<std::string> of_both;
+  std::ranges::set_intersection(names[0], names[1], std::inserter(of_both, of_both.end()));
+  for (VtkArray& array : arrays) {
+    if (of_both.contains(array.name)) array.name = full_vtk_name(array.name, array.cells);
+  }
+  return of_both;
+}
 
 }  // namespace weir

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <map>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -69,7 +68,7 @@ class LegacyParser {
       }
     }
     require_dimensions();
-    tell_equal_names_apart();
+    tell_equal_names_apart(header_.arrays);
     return std::move(header_);
   }
 
@@ -289,14 +288,6 @@ class LegacyParser {
       }
     }
     return text;
-  }
-
-  void tell_equal_names_apart() {
-    std::map<std::string, unsigned> where;  // bit 0: points, bit 1: cells
-    for (const VtkLegacyArray& array : header_.arrays) where[array.name] |= array.cells ? 2U : 1U;
-    for (VtkLegacyArray& array : header_.arrays) {
-      if (where[array.name] == 3) array.name = cat(array.cells ? "CellData/" : "PointData/", array.name);
-    }
   }
 
   VtkLegacyText text_;

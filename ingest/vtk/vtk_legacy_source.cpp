@@ -39,11 +39,11 @@ std::unique_ptr<InputFile> spool_text(InputFile& file, const VtkLegacyArray& arr
 
 bool recognises_vtk_legacy(std::string_view path, std::span<const std::byte> head) {
   const std::string_view begin(reinterpret_cast<const char*>(head.data()), head.size());
-  return lower_case(begin).starts_with("# vtk datafile") || lower_case(path).ends_with(".vtk");
+  return lower_case(begin).starts_with("# vtk datafile") || ends_with_one_of(path, kVtkLegacyEndings);
 }
 
 std::unique_ptr<VolumeSource> open_vtk_legacy(const std::string& path, const SourceOptions& options) {
-  refuse_vtk_index(path, options);
+  refuse_index(path, options);
   auto file = std::make_unique<InputFile>(path, options.direct_io);
   const VtkLegacyHeader header = read_legacy_header(*file);
   const std::vector<NamedVolume> volumes = vtk_volumes(header.arrays, options);

@@ -1,6 +1,7 @@
 // Legacy VTK structured points, .vtk.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -13,6 +14,9 @@
 #include "ingest/source/volume_source.h"
 
 namespace weir {
+
+/// Of the names of its files, in lower case.
+inline constexpr std::array<std::string_view, 1> kVtkLegacyEndings{".vtk"};
 
 /// By its first line or the name.
 bool recognises_vtk_legacy(std::string_view path, std::span<const std::byte> head);

@@ -26,7 +26,7 @@ class VtkLegacyText {
 
   /// The next line without its end, LF or CRLF; valid until the next call. nullopt at the end of the file.
   std::optional<std::string_view> line();
-  /// The first word of the last line; valid until the next call.
+  /// The first word of the last line; empty where that has none.
   std::string first_word() const;
   /// Skips lines up to an empty one, and that.
   void skip_paragraph();

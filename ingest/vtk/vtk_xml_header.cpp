@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
 #include <pugixml.hpp>
 #include <string_view>
 #include <utility>
@@ -57,7 +56,9 @@ class XmlParser {
     }
     read_arrays(piece.child("PointData"), false);
     read_arrays(piece.child("CellData"), true);
-    tell_equal_names_apart();
+    if (tell_equal_names_apart(header_.arrays).contains(header_.scalars)) {
+      header_.scalars = full_vtk_name(header_.scalars, false);
+    }
     return std::move(header_);
   }
 
@@ -199,18 +200,6 @@ class XmlParser {
     }
     array.begin = static_cast<std::uint64_t>(range->front());
     array.end = static_cast<std::uint64_t>(range->back());
-  }
-
-  void tell_equal_names_apart() {
-    std::map<std::string, unsigned> where;  // bit 0: points, bit 1: cells
-    for (const VtkXmlArray& array : header_.arrays) where[array.name] |= array.cells ? 2U : 1U;
-    const auto full_name = [](const std::string& name, bool cells) {
-      return cat(cells ? "CellData/" : "PointData/", name);
-    };
-    if (where[header_.scalars] == 3) header_.scalars = full_name(header_.scalars, false);
-    for (VtkXmlArray& array : header_.arrays) {
-      if (where[array.name] == 3) array.name = full_name(array.name, array.cells);
-    }
   }
 
   const std::string& path_;

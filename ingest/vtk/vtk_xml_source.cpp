@@ -52,11 +52,11 @@ std::string layout_text(const VtkXmlHeader& header, const VtkXmlArray& array) {
 
 bool recognises_vtk_xml(std::string_view path, std::span<const std::byte> head) {
   const std::string_view begin(reinterpret_cast<const char*>(head.data()), head.size());
-  return begin.starts_with("<VTKFile") || lower_case(path).ends_with(".vti");
+  return begin.starts_with("<VTKFile") || ends_with_one_of(path, kVtkXmlEndings);
 }
 
 std::unique_ptr<VolumeSource> open_vtk_xml(const std::string& path, const SourceOptions& options) {
-  refuse_vtk_index(path, options);
+  refuse_index(path, options);
   auto file = std::make_unique<InputFile>(path, options.direct_io);
   const VtkXmlHeader header = read_xml_header(*file);
   const VtkXmlArray& array = choose_array(header, path, options);

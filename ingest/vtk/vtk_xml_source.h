@@ -1,6 +1,7 @@
 // VTK XML image data, .vti.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -13,6 +14,9 @@
 #include "ingest/source/volume_source.h"
 
 namespace weir {
+
+/// Of the names of its files, in lower case.
+inline constexpr std::array<std::string_view, 1> kVtkXmlEndings{".vti"};
 
 /// By the name, or where the file begins with VTK's own element.
 bool recognises_vtk_xml(std::string_view path, std::span<const std::byte> head);

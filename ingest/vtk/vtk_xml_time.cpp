@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 
@@ -15,14 +16,17 @@
 namespace weir {
 namespace {
 
-constexpr std::size_t kMostTimeText = 4096;  // with white space around the number
+constexpr std::uint64_t kMostTimeText = 4096;  // with white space around the number
 
 double time_in_text(InputFile& file, const VtkXmlArray& array, const std::string& where) {
-  std::string text(static_cast<std::size_t>(array.end - array.begin), '\0');
-  if (text.size() <= kMostTimeText) {
-    file.read_buffered(array.begin, std::as_writable_bytes(std::span(text)), ReadPath::through);
-    if (const auto numbers = parse_doubles(text); numbers && numbers->size() == 1) return numbers->front();
+  const std::uint64_t length = array.end - array.begin;
+  if (length > kMostTimeText) {
+    throw Error(ErrorKind::input, cat(where, ": its text has ", length, " characters, and at most ", kMostTimeText,
+                                      " are read for one number"));
   }
+  std::string text(static_cast<std::size_t>(length), '\0');
+  file.read_buffered(array.begin, std::as_writable_bytes(std::span(text)), ReadPath::through);
+  if (const auto numbers = parse_doubles(text); numbers && numbers->size() == 1) return numbers->front();
   throw Error(ErrorKind::input, cat(where, ": its text is ", in_quotes(trimmed(text)), ", not one number"));
 }
 

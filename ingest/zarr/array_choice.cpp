@@ -9,6 +9,7 @@
 #include "format/base/text.h"
 #include "ingest/axes/axis_details.h"
 #include "ingest/headers/header_text.h"
+#include "ingest/headers/named_choice.h"
 #include "ingest/source/convert_command.h"
 #include "ingest/source/left_out.h"
 #include "ingest/values/value_notes.h"
@@ -94,23 +95,11 @@ ChosenArray named_array(ZarrStore& store, const std::string& path, const std::st
 }
 
 Error several_arrays(const std::string& path, const std::vector<DatasetInfo>& volumes) {
-  Message commands;
-  for (std::size_t i = 0; i < std::min(volumes.size(), kMostArraysShown); ++i) {
-    commands +=
-        compose(i == 0 ? "" : "; ", CommandLineText{convert_command(path, true, volumes[i]), volume_keys(volumes[i])});
+  std::vector<Message> commands;
+  for (const DatasetInfo& info : volumes) {
+    commands.emplace_back(CommandLineText{convert_command(path, true, info), volume_keys(info)});
   }
-  if (volumes.size() > kMostArraysShown) {
-    commands += cat("; and ", volumes.size() - kMostArraysShown, " more (weir inspect lists them)");
-  }
-  return usage_error(
-      compose(path, ": holds ", volumes.size(), " volumes; choose one with ", option("dataset"), ": ", commands));
-}
-
-/// `error` without the document that it begins with.
-std::string reason_of(const Error& error, const std::string& document) {
-  const std::string text = error.what();
-  const std::string prefix = document + ": ";
-  return text.starts_with(prefix) ? text.substr(prefix.size()) : text;
+  return several_volumes(path, "volumes", volumes.size(), commands);
 }
 
 void add_units(const VolumeAxes& axes, DatasetInfo& info) {

@@ -22,7 +22,12 @@ TEST(SeriesNames, StepsMayNotShareAName) {
   const std::vector<SeriesStep> volumes{{"c.nc", "/qc", {2}, "c", "2"}, {"c.nc", "/w", {2, 0}, "c", "2_0"}};
   EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { series_outputs(volumes, "c.nvdb"); }),
             "c.nvdb: 2 volumes, and two of them (c.nc: /qc at 2 and c.nc: /w at 2,0) would have this name; give -o a "
-            "directory, with a slash at its end, or a name with {stem}, {dataset} or {step}");
+            "directory, with a slash at its end, or a name with {dataset} or {step}");
+  const std::vector<SeriesStep> files{{"s_0.raw", "", {}, "s_0", ""}, {"s_1.raw", "", {}, "s_1", ""}};
+  EXPECT_EQ(
+      message_of_error(ErrorKind::usage, [&] { series_outputs(files, "c.nvdb"); }),
+      "c.nvdb: 2 volumes, and two of them (s_0.raw and s_1.raw) would have this name; give -o a directory, with a "
+      "slash at its end, or a name with {stem}");
 }
 
 // Slashes in a file's name become dots: neither a directory nor {dataset} tells these apart.
@@ -69,17 +74,37 @@ TEST(SeriesNames, WordsThatLeaveNothingBeforeTheExtension_AreRefused) {
   const auto refusal = [&](const std::string& output) {
     return message_of_error(ErrorKind::usage, [&] { series_outputs(one, output); });
   };
-  EXPECT_EQ(refusal("{step}.nvdb"),
-            "-o {step}.nvdb: in/a.raw has no {step}, so the name would be .nvdb; use {stem} or a plain name");
-  EXPECT_EQ(refusal("e/{dataset}{step}.nvdb"),
-            "-o e/{dataset}{step}.nvdb: in/a.raw has no {dataset} and no {step}, so the name would be .nvdb; use "
-            "{stem} or a plain name");
-  EXPECT_EQ(refusal("e/{step}"),
-            "-o e/{step}: in/a.raw has no {step}, so there would be no name; use {stem} or a plain name");
-  EXPECT_EQ(series_outputs(one, "e/t{step}.nvdb"), Names{"e/t.nvdb"});
-  EXPECT_EQ(series_outputs(one, "e/{stem}{step}.nvdb"), Names{"e/a.nvdb"});
-  EXPECT_EQ(series_outputs(one, "{step}/.nvdb"), Names{"{step}/.nvdb"}) << "as it is given";
+  EXPECT_EQ(refusal("e/{dataset}.nvdb"),
+            "-o e/{dataset}.nvdb: in/a.raw has no {dataset}, so the name would be .nvdb; use {stem} or a plain name");
+  EXPECT_EQ(refusal("e/{dataset}"),
+            "-o e/{dataset}: in/a.raw has no {dataset}, so there would be no name; use {stem} or a plain name");
+  EXPECT_EQ(series_outputs(one, "e/t{dataset}.nvdb"), Names{"e/t.nvdb"});
+}
+
+TEST(SeriesNames, StepOfAVolumeWithoutOne_IsRefused) {
+  const std::vector<SeriesStep> files{{"s_0.raw", "", {}, "s_0", ""}, {"s_1.raw", "", {}, "s_1", ""}};
+  for (const std::size_t count : {std::size_t{1}, std::size_t{2}}) {
+    for (const std::string output : {"gl_{step}.nvdb", "{step}.nvdb", "out/{stem}_{step}.nvdb", "out/{step}"}) {
+      EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { series_outputs(std::span(files).first(count), output); }),
+                cat("-o ", output,
+                    ": s_0.raw has no {step}: a pattern with %d, 'run_%d.raw', or a range of --index gives one, * and "
+                    "lists do not; use {stem}, or such a pattern"));
+    }
+  }
   EXPECT_EQ(series_outputs(std::vector<SeriesStep>{{"a.raw", "", {}, "a", "7"}}, "{step}.nvdb"), Names{"7.nvdb"});
+}
+
+TEST(SeriesNames, WordsInADirectorysName_AreRefused) {
+  const std::vector<SeriesStep> one{{"a.raw", "", {}, "a", "7"}};
+  const auto refusal = [&](const std::string& output) {
+    return message_of_error(ErrorKind::usage, [&] { series_outputs(one, output); });
+  };
+  const std::string rest =
+      " stands for something in a file's name only, and this is a directory's; give DIRECTORY/{stem}.nvdb, or "
+      "DIRECTORY/ alone";
+  EXPECT_EQ(refusal("fr_{step}/"), "-o fr_{step}/: {step}" + rest);
+  EXPECT_EQ(refusal("run/{stem}/x_{step}.nvdb"), "-o run/{stem}/x_{step}.nvdb: {stem}" + rest);
+  EXPECT_EQ(series_outputs(one, "run{1}/{stem}.nvdb"), Names{"run{1}/a.nvdb"}) << "other braces are its own";
 }
 
 // Of a file that cannot be listed, or holds one volume.

@@ -20,9 +20,9 @@ TEST(Series, AFileIsOneStep) {
   EXPECT_EQ(series_outputs(steps, ""), (std::vector<std::string>{"runs/a_4x3x2_uint8.nvdb"}));
   EXPECT_EQ(series_outputs(steps, "b.nvdb"), (std::vector<std::string>{"b.nvdb"}));
   EXPECT_EQ(series_outputs(steps, "out/{stem}_x.nvdb"), (std::vector<std::string>{"out/a_4x3x2_uint8_x.nvdb"}));
-  // What stands in braces in a directory's name is a part of it.
-  EXPECT_EQ(series_outputs(steps, "run{1}/case {step} x/{stem}.nvdb"),
-            (std::vector<std::string>{"run{1}/case {step} x/a_4x3x2_uint8.nvdb"}));
+  // What else stands in braces in a directory's name is a part of it.
+  EXPECT_EQ(series_outputs(steps, "run{1}/case {time} x/{stem}.nvdb"),
+            (std::vector<std::string>{"run{1}/case {time} x/a_4x3x2_uint8.nvdb"}));
   EXPECT_EQ(series_outputs(steps, "out{run}/"), (std::vector<std::string>{"out{run}/a_4x3x2_uint8.nvdb"}));
 }
 

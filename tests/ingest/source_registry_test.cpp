@@ -251,6 +251,16 @@ TEST(SourceRegistry, ExtensionsInCapitals_AreThoseInSmallLetters) {
   EXPECT_EQ(open_source(scratch.write("Scan_4x3x2_uint8.RAW", bytes), {})->info().extent, kExtent);
 }
 
+TEST(SourceRegistry, EveryWatchedEnding_IsRecognisedAsItsFormat) {
+  const Scratch scratch;
+  for (const SourceFormat& format : source_formats()) {
+    for (const std::string_view ending : format.watched_endings) {
+      const std::string path = scratch.write(cat("a", ending), std::vector<std::byte>(24));
+      EXPECT_EQ(format_of(path).name, format.name) << ending;
+    }
+  }
+}
+
 TEST(SourceRegistry, NoResultIsWrittenToTheNameOfAWatchedFormat) {
   for (const SourceFormat& format : source_formats()) {
     for (const std::string_view ending : format.watched_endings) {

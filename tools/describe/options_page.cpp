@@ -45,6 +45,11 @@ std::string options_page() {
       "\nOf `--size`, `--rate`, `--psnr`, `--max-error` and `--lossless` one can be given "
       "([budget.md](budget.md)). A `[[watch]]`\ntable takes the keys of the first two tables but `stack`, and "
       "`backend`; memory, threads and the like are the\nservice's ([operations.md](operations.md)).\n"
+      "\nOf the name of `-o`, and of `name` in a `[[watch]]` table, three words are replaced. `{stem}` is the input's "
+      "name without its\nsuffix. `{dataset}` is what `--dataset` names, with dots for slashes. `{step}` is the number "
+      "by which a pattern with `%d`, of\nthe input or of `--dataset`, found the volume, or its position in a range of "
+      "`--index`. A name with `{step}` is refused for a\nvolume that has no such number: files that `*` or a list "
+      "names are told apart by `{stem}`. In a directory's name the words are\nrefused.\n"
       "\n`--overwrite` is of results: without it an existing one is refused, but `weir play` replaces its frames. What "
       "a command writes\nbesides is replaced: the chart or table of `weir compare --spectrum`, the chart of `weir "
       "inspect --plot`, and a trace; `--trace`\nrefuses any other file.\n");

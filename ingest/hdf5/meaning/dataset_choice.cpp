@@ -12,6 +12,7 @@
 #include "ingest/hdf5/meaning/dimension_scales.h"
 #include "ingest/hdf5/meaning/hdf5_lookup.h"
 #include "ingest/hdf5/meaning/volume_slice.h"
+#include "ingest/headers/named_choice.h"
 #include "ingest/source/convert_command.h"
 #include "ingest/source/left_out.h"
 #include "ingest/vtk/vtk_marks.h"
@@ -19,25 +20,17 @@
 namespace weir {
 namespace {
 
-constexpr std::size_t kMostCandidates = 8;  // in a message
-
 struct DatasetCandidate {
   DatasetInfo info;
   std::string axes;
 };
 
 Error several(const std::string& path, const std::vector<DatasetCandidate>& candidates) {
-  Message commands;
-  for (std::size_t i = 0; i < std::min(candidates.size(), kMostCandidates); ++i) {
-    const DatasetInfo& info = candidates[i].info;
-    commands += compose(i == 0 ? "" : "; ", CommandLineText{convert_command(path, true, info), volume_keys(info)}, " (",
-                        candidates[i].axes, ")");
+  std::vector<Message> commands;
+  for (const auto& [info, axes] : candidates) {
+    commands.push_back(compose(CommandLineText{convert_command(path, true, info), volume_keys(info)}, " (", axes, ")"));
   }
-  if (candidates.size() > kMostCandidates) {
-    commands += cat("; and ", candidates.size() - kMostCandidates, " more (weir inspect lists them)");
-  }
-  return {ErrorKind::usage, compose(path, ": holds ", candidates.size(), " volumes; choose one with ",
-                                    option("dataset"), ": ", commands)};
+  return several_volumes(path, "volumes", candidates.size(), commands);
 }
 
 // Whether the positions of --index, where there are any, and --component are for it.

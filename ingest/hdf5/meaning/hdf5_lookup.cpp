@@ -1,12 +1,12 @@
 #include "ingest/hdf5/meaning/hdf5_lookup.h"
 
 #include <algorithm>
-#include <cctype>
 #include <numeric>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "format/base/ascii.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "ingest/hdf5/file/hdf5_error.h"
@@ -100,11 +100,7 @@ namespace {
 
 constexpr std::size_t kMostEdits = 2;
 
-std::string last_part_lowered(std::string_view path) {
-  std::string part(path.substr(path.rfind('/') + 1));
-  std::transform(part.begin(), part.end(), part.begin(), [](unsigned char c) { return std::tolower(c); });
-  return part;
-}
+std::string last_part_lowered(std::string_view path) { return lower_case(path.substr(path.rfind('/') + 1)); }
 
 // Levenshtein's distance, a row at a time.
 std::size_t edits(std::string_view a, std::string_view b) {

@@ -14,8 +14,7 @@ namespace {
 std::string ranges_text(std::span<const AxisPlace> axes, const std::vector<std::size_t>& others) {
   std::string text;
   for (const std::size_t i : others) {
-    const std::string name = axes[i].label.empty() ? cat("axis ", i) : axes[i].label;
-    text += cat(text.empty() ? "" : ", ", name, " in 0..", axes[i].extent - 1,
+    text += cat(text.empty() ? "" : ", ", axis_name(axes[i].label, i), " in 0..", axes[i].extent - 1,
                 unwritten_text({axes[i].label, axes[i].extent, axes[i].unwritten}));
   }
   return text;

@@ -25,8 +25,7 @@ class ConstantSource final : public VolumeSource {
 
   ConversionLoss read(const Box& box, std::span<float> values) override {
     std::ranges::fill(values, value_);
-    const auto voxels = static_cast<std::uint64_t>(box.voxels());
-    return {loss_.inexact * voxels, loss_.overflow * voxels, loss_.max_abs_error, loss_.unmarked * voxels};
+    return loss_.times(static_cast<std::uint64_t>(box.voxels()));
   }
 
  private:

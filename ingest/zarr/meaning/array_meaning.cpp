@@ -94,8 +94,8 @@ std::vector<std::int64_t> checked_index(const ArrayMeaning& meaning, const std::
   const auto refuse = [&](const Message& found) {
     std::string ranges;
     for (std::size_t axis = 0; axis < leading.size(); ++axis) {
-      const std::string name = leading[axis].name.empty() ? cat("axis ", axis) : leading[axis].name;
-      ranges += cat(ranges.empty() ? "" : ", ", name, " in 0..", leading[axis].extent - 1);
+      ranges +=
+          cat(ranges.empty() ? "" : ", ", axis_name(leading[axis].name, axis), " in 0..", leading[axis].extent - 1);
     }
     const Message remedy = leading.empty() ? compose("leave ", option("index"), " out")
                                            : compose("give ", option("index"), " with ", leading.size(),

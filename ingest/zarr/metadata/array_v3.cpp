@@ -69,6 +69,15 @@ ZarrChunkKeys read_keys(const nlohmann::json& encoding, const std::string& where
   return keys;
 }
 
+// "dimension_names": one name or null for each axis, or none at all.
+void require_axis_names(const nlohmann::json& names, std::size_t axes, const std::string& where) {
+  const auto is_name = [](const nlohmann::json& name) { return name.is_string() || name.is_null(); };
+  if (names.is_null()) return;
+  if (names.is_array() && names.size() == axes && std::all_of(names.begin(), names.end(), is_name)) return;
+  throw input_error(where, cat("dimension_names is ", json_text(names), ", and must be a list of one name or null for ",
+                               "each of the ", axes, " axes of shape; the file is damaged"));
+}
+
 }  // namespace
 
 ZarrArray parse_zarr_v3(const nlohmann::json& metadata, const std::string& where) {
@@ -86,7 +95,9 @@ ZarrArray parse_zarr_v3(const nlohmann::json& metadata, const std::string& where
   array.fill_text = json_text(fill);
   array.fill = fill_bytes(fill, array.type, array.values().big_endian, where);
   array.attributes = json_member(metadata, "attributes");
-  read_axis_names(json_member(metadata, "dimension_names"), array);
+  const nlohmann::json& names = json_member(metadata, "dimension_names");
+  require_axis_names(names, array.shape.size(), where);
+  read_axis_names(names, array);
   return array;
 }
 

@@ -63,7 +63,7 @@ class Render(FolderTest):
         numpy.testing.assert_array_equal(picture, plain)
         self.assertEqual(
             logs.output,
-            ["WARNING:weir:no CUDA device answers: the CPU draws, and devices and device_memory have no effect"],
+            ["WARNING:weir:backend cpu was chosen, and devices and device_memory have no effect"],
         )
 
     def test_linear_is_radiance(self):

@@ -32,5 +32,17 @@ TEST(NamedChoice, ListsStayShort) {
   EXPECT_TRUE(message.ends_with("'18', '19' and 10 more")) << message;
 }
 
+TEST(NamedChoice, OfSeveralVolumes_EightAreShown) {
+  std::vector<Message> choices;
+  for (int i = 0; i < 10; ++i) choices.emplace_back(cat("take ", i));
+  EXPECT_STREQ(several_volumes("a.h5", "volumes", 2, std::span(choices).first(2)).what(),
+               "a.h5: holds 2 volumes; choose one with --dataset: take 0; take 1");
+  const Error error = several_volumes("plt", "components", 12, choices);
+  EXPECT_EQ(error.kind(), ErrorKind::usage);
+  EXPECT_STREQ(error.what(),
+               "plt: holds 12 components; choose one with --dataset: take 0; take 1; take 2; take 3; take 4; take 5; "
+               "take 6; take 7; and 4 more (weir inspect lists them)");
+}
+
 }  // namespace
 }  // namespace weir::named_choice_test

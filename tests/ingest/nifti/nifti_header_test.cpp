@@ -117,6 +117,15 @@ TEST(NiftiHeader, ParsesSupportedTypesAndNamesOthers) {
   EXPECT_EQ(refusal(NiftiBytes(1).set<std::int16_t>(70, 3)), "a.nii: datatype at byte 70 is 3" + readable);
 }
 
+TEST(NiftiHeader, BitpixOfAnotherDatatype_IsRefused_UnlessItIsZero) {
+  EXPECT_EQ(refusal(NiftiBytes(1).set<std::int16_t>(72, 16)),
+            "a.nii: bitpix at byte 72 is 16; datatype 2 (uint8) has 8; correct the one of the two that is wrong");
+  EXPECT_EQ(refusal(NiftiBytes(2, true).set<std::int16_t>(12, 64).set<std::int16_t>(14, 32)),
+            "a.nii: bitpix at byte 14 is 32; datatype 64 (float64) has 64; correct the one of the two that is wrong");
+  EXPECT_EQ(parse(NiftiBytes(1).set<std::int16_t>(70, 4).set<std::int16_t>(72, 16)).type, ScalarType::int16);
+  EXPECT_EQ(parse(NiftiBytes(1).set<std::int16_t>(70, 4).set<std::int16_t>(72, 0)).type, ScalarType::int16);
+}
+
 TEST(NiftiHeader, PairsHaveValuesAnywhere) {
   const NiftiHeader header = parse(NiftiBytes(1).set_text(344, "ni1").set<float>(108, 0));
   EXPECT_TRUE(header.pair);

@@ -64,10 +64,17 @@ TEST(IndexChoice, Choices_FitByNumberOrByName) {
 TEST(IndexChoice, Refusals_NameTheAxisAndItsPositions) {
   EXPECT_EQ(refusal("4,0"), "a.h5: --index has 4, and time has the positions 0 to 3, or from the end -4 to -1");
   EXPECT_EQ(refusal("0,1:4"), "a.h5: --index has 1:4, and level has the positions 0 to 2, or from the end -3 to -1");
+  EXPECT_EQ(refusal("time=9223372036854775807,level=0"),
+            "a.h5: --index has 9223372036854775807, and time has the positions 0 to 3, or from the end -4 to -1");
   EXPECT_EQ(refusal("2:2,0"),
             "a.h5: --index has 2:2 for time, which holds no position; give FROM:TO with FROM below TO");
   EXPECT_EQ(refusal("time=0"), "a.h5: --index says nothing of level, which has the positions 0 to 2; add level=0");
   EXPECT_EQ(refusal("time=0,time=1"), "a.h5: --index names time twice");
+}
+
+TEST(IndexChoice, AnAxisWithoutAName_IsCalledByItsPosition) {
+  EXPECT_EQ(axis_name("time", 0), "time");
+  EXPECT_EQ(axis_name("", 1), "axis 1");
 }
 
 TEST(IndexChoice, MoreVolumesThanACallIsFor_AreRefusedBeforeTheyAreListed) {

@@ -8,6 +8,7 @@
 
 #include "ingest/source/source_view.h"
 #include "ingest/values/array_source.h"
+#include "tests/ingest/support/telling_source.h"
 
 namespace weir::reversed_source_test {
 namespace {
@@ -75,6 +76,28 @@ TEST_F(ReversedSourceTest, ChunksEndWhereTheyBegan) {
   const auto view = reverse_axes(std::make_unique<ChunkedVolume>(source()), {true, false, true});
   EXPECT_EQ(view->access().chunk, (Index3{3, 2, 2}));
   EXPECT_EQ(view->access().chunk_origin, (Index3{4, 0, 4}));
+}
+
+TEST_F(ReversedSourceTest, VoxelsWithValues_LieAtTheOtherEnd) {
+  Told told;
+  const auto view = reverse_axes(std::make_unique<TellingSource>(told), {true, false, false});
+  EXPECT_EQ(view->voxels_with_values({{0, 0, 0}, {16, 8, 8}}), (std::vector<Box>{{{8, 0, 0}, {16, 8, 8}}}));
+  EXPECT_EQ(view->voxels_with_values({{2, 1, 1}, {6, 2, 2}}), (std::vector<Box>{{{4, 1, 1}, {6, 2, 2}}}));
+  EXPECT_EQ(told.asked.back(), (Box{{10, 1, 1}, {14, 2, 2}}));
+}
+
+TEST_F(ReversedSourceTest, NothingRepeatsAndNothingIsHeld) {
+  Told told;
+  const auto view = reverse_axes(std::make_unique<TellingSource>(told), {true, false, false});
+  const std::vector<RepeatedPart> parts = view->repeated_parts({{0, 0, 0}, {8, 8, 8}});
+  ASSERT_EQ(parts.size(), 1U);
+  EXPECT_FALSE(parts[0].repeats());
+  std::vector<float> values(512);
+  view->read_repeated(parts[0], values);
+  EXPECT_EQ(told.asked.back(), (Box{{8, 0, 0}, {16, 8, 8}}));
+  EXPECT_EQ(view->resident(), nullptr);
+  EXPECT_EQ(view->places(), nullptr);
+  EXPECT_EQ(view->held({{0, 0, 0}, {8, 8, 8}}), nullptr);
 }
 
 TEST_F(ReversedSourceTest, RegionsCountInTheReversedVolume) {

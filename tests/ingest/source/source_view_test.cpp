@@ -8,6 +8,7 @@
 
 #include "ingest/raw/raw_source.h"
 #include "tests/ingest/support/scratch.h"
+#include "tests/ingest/support/telling_source.h"
 
 namespace weir::source_view_test {
 namespace {
@@ -85,6 +86,25 @@ TEST(SourceView, ReadsNothingOutsideTheRegion) {
                                source->read({{0, 0, 0}, {1, 1, 1}}, value);
                              }),
             scratch.path("v_10x8x6_uint16.raw") + ": read of box 0:1,0:1,0:1 outside the region 3:9,2:8,1:4");
+}
+
+TEST(SourceView, Region_HasTheValuesOfItsBoxes_AndNothingOfWholeVolumes) {
+  Told told;
+  const auto source = crop_source(std::make_unique<TellingSource>(told), {{2, 0, 0}, {10, 8, 8}});
+  EXPECT_EQ(source->voxels_with_values({{2, 0, 0}, {10, 8, 8}}), (std::vector<Box>{{{2, 0, 0}, {6, 8, 8}}}));
+  EXPECT_EQ(source->resident(), nullptr);
+  EXPECT_EQ(source->places(), nullptr);
+  EXPECT_EQ(source->held({{2, 0, 0}, {8, 8, 8}}), nullptr);
+}
+
+TEST(SourceView, PlacedVolume_AnswersAsItsSource) {
+  Told told;
+  SourceOptions options;
+  options.spacing = {0.5, 0.5, 0.5};
+  const auto source = place_source(std::make_unique<TellingSource>(told), options);
+  EXPECT_EQ(source->info().spacing, (std::array<double, 3>{0.5, 0.5, 0.5}));
+  EXPECT_EQ(source->voxels_with_values({{0, 0, 0}, {8, 8, 8}}), (std::vector<Box>{{{0, 0, 0}, {4, 8, 8}}}));
+  EXPECT_EQ(source->held({{0, 0, 0}, {8, 8, 8}}), &told.held);
 }
 
 TEST(SourceView, RefusesInvalidSpacingAndOrigin) {

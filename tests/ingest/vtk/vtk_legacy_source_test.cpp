@@ -248,6 +248,23 @@ TEST(VtkLegacySource, WordsThatAreNoNumbersAreRefused) {
                                "type in the header");
 }
 
+TEST(VtkLegacySource, NumberOfMoreThan400Characters_IsRefused) {
+  const Scratch scratch;
+  const auto with_first = [&](std::size_t threes) {
+    std::string text = ramp_text();
+    text.replace(0, 1, "0." + std::string(threes, '3'));
+    return write_headed(scratch, "a.vtk", head("ASCII", "POINT_DATA 24\n") + scalars("a", "double", text));
+  };
+  std::vector<float> expected = ramp();
+  expected[0] = 1.0F / 3.0F;
+  EXPECT_EQ(read_volume(*open_source(with_first(398), {})), expected);
+  for (const std::size_t threes : {std::size_t{399}, std::size_t{420}}) {
+    const std::string path = with_first(threes);
+    EXPECT_EQ(refusal(path),
+              path + ": array 'a': value 0 of its text is longer than 400 characters; write it with fewer digits");
+  }
+}
+
 TEST(VtkLegacySource, AFileCutAtAnyByteIsRefused) {
   const Scratch scratch;
   for (const bool binary : {true, false}) {

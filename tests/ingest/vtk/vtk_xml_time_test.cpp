@@ -77,6 +77,8 @@ TEST(VtkXmlTime, TimeThatCannotBeRead_IsLeftOut_AndSaid) {
   const std::string rest = ": the volume's time is left out";
   EXPECT_EQ(said(with_field({}, time_array("type=\"Float64\"", "soon"))),
             where + "its text is 'soon', not one number" + rest);
+  EXPECT_EQ(said(with_field({}, time_array("type=\"Float64\"", "1" + std::string(4096, ' ')))),
+            where + "its text has 4097 characters, and at most 4096 are read for one number" + rest);
   EXPECT_EQ(said(with_field({}, time_array("type=\"String\"", "49 0"))),
             where + "its type is 'String', and Int8 to Float64 can be read" + rest);
   EXPECT_EQ(said(with_field({}, time_array("type=\"Float64\" format=\"zipped\"", "1"))),

@@ -157,6 +157,26 @@ TEST(ZarrMetadata, Version3_WhatIsNotReadIsNamed) {
             "a: has the chunk grid 'ragged', and only regular ones are read; write the array with chunks of one shape");
 }
 
+TEST(ZarrMetadata, Version3_DimensionNamesOfAnotherNumberThanAxes_AreRefused) {
+  const auto named = [](std::string_view names) {
+    return zarr_json("[1,1,1]", "[1,1,1]", R"([{"name":"bytes"}])", "uint8", "0", cat(",\"dimension_names\":", names));
+  };
+  const auto refused = [](std::string_view found) {
+    return cat("a: dimension_names is ", found,
+               ", and must be a list of one name or null for each of the 3 axes of shape; the file is damaged");
+  };
+  EXPECT_EQ(refusal_v3(named(R"(["y","x"])")), refused("a list of 2"));
+  EXPECT_EQ(refusal_v3(named(R"(["z","y",1])")), refused("a list of 3"));
+  EXPECT_EQ(refusal_v3(named("\"zyx\"")), refused("\"zyx\""));
+  EXPECT_EQ(v3(named("null")).axis_names, std::vector<std::string>(3));
+}
+
+TEST(ZarrMetadata, Version2_DimensionsOfAnotherNumberThanAxes_NameNone) {
+  const ZarrArray array =
+      parse_zarr_v2(parse_zarr_json(zarray("[1,1,1]", "[1,1,1]"), "a"), {{"_ARRAY_DIMENSIONS", {"y", "x"}}}, "a");
+  EXPECT_EQ(array.axis_names, std::vector<std::string>(3));
+}
+
 TEST(ZarrMetadata, Version3_CodecsOutOfPlaceAreRefused) {
   EXPECT_EQ(refusal_of_codecs("[]"),
             "a: codecs is a list of 0, and must be a list of 1 to 16 codecs; the file is damaged");
