@@ -34,7 +34,8 @@ Sidecar::CertifiedError describe_error(const DecodedErrors& tiles, const Decoded
   DecodedErrors all = tiles;
   all.squared += leaves.squared;
   all.add_but_squares(leaves);
-  const Certificate c = make_certificate(all.squared, all.max_abs, all.exact, finite, survey.min, survey.max);
+  const Certificate c =
+      make_certificate(all.squared, all.max_abs, all.kept != Kept::lossy, finite, survey.min, survey.max);
   return {c.mse, c.rmse, c.nmse, c.psnr_db, c.max_abs, c.lossless};
 }
 

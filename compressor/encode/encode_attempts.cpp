@@ -174,7 +174,7 @@ bool keeps_promise(const EncodedFile& encoded, const FileRequest& request) {
     case Budget::Kind::max_error:
       return std::max(tiles.max_abs, leaves.max_abs) <= request.budget.target;
     case Budget::Kind::lossless:
-      return encoded.file.plan.exact_tiles && leaves.exact;
+      return std::min(tiles.kept, leaves.kept) == Kept::all;
     case Budget::Kind::automatic:
       return request.budget.target == 0 || seen_error(encoded) <= request.squared_error;
     case Budget::Kind::size:
@@ -214,12 +214,12 @@ struct Attempts {
     }
     // Within 3 % of the error asked, 0.13 dB, is small enough.
     const double error = seen_error(encoded);
-    const bool loses_less = expects_loss_of_nothing(encoded);
-    if (kept && !loses_less && (number >= 2 || error >= 0.97 * request.squared_error || !(error > 0))) return false;
+    const bool may_lose_more = number + 1 < kMostEstimated && expects_loss_of_nothing(encoded);
+    if (kept && !may_lose_more && (number >= 2 || error >= 0.97 * request.squared_error || !(error > 0))) return false;
     const bool exhausted = !kept && keeps_everything(encoded);
     if (kept) met = request.planned_error;
     request.adjusted = true;
-    if (number + 1 < kMostEstimated && loses_less) {
+    if (may_lose_more) {
       request.planned_error *= 8;
     } else if (number + 1 < kMostEstimated && !exhausted) {
       // A volume of few leaves has few errors to choose from: the same choice again calls for a longer step.

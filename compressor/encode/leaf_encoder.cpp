@@ -154,7 +154,7 @@ class LeafEncoder final : public LayerEncoder {
                               nodes_[i], insides_[i], statistics[i], image);
         records_.back().squared_error = leaf.squared_error;
         records_.back().max_abs = leaf.max_abs;
-        records_.back().exact = leaf.exact ? 1 : 0;
+        records_.back().kept = leaf.kept;
         records_.back().zeros_lost = leaf.zeros_lost;
       }
       if (masks_[i]) set_active_voxels(nodes_[i], *masks_[i], image);

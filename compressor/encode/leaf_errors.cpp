@@ -38,7 +38,7 @@ DecodedErrors sum_leaf_errors(const TreeRegions& tree, const RecordStore& record
       if (!seen[leaf]) continue;
       const LeafRecord& record = kept[leaf];
       squares.add(record.squared_error);
-      errors.add_but_squares({0, record.max_abs, record.exact != 0, record.zeros_lost});
+      errors.add_but_squares({0, record.max_abs, record.kept, record.zeros_lost});
     }
     errors.squared = squares.value();
   };

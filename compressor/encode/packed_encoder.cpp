@@ -182,22 +182,21 @@ class PackedEncoder final : public PackedLayerEncoder {
   }
 
   DecodedErrors loss() const {
-    DecodedErrors loss = loss_of(source_);
-    if (replaced_) loss.exact = loss_of(values_).exact;
+    const LeafDifference lost = difference_from(source_);
+    DecodedErrors loss{lost.squared_error, lost.max_abs, Kept::all, lost.zeros_lost};
+    const LeafDifference of_all = replaced_ ? difference_from(values_) : lost;
+    if (of_all.different > 0 || of_all.nonfinite_different > 0) {
+      loss.kept = replaced_ && lost.different == 0 ? Kept::values : Kept::lossy;
+    }
     return loss;
   }
 
   // Of the in-domain voxels.
-  DecodedErrors loss_of(const LeafValues& before) const {
-    if (inside_ == node_) return as_loss(difference_of(before, decoded_));
+  LeafDifference difference_from(const LeafValues& before) const {
+    if (inside_ == node_) return difference_of(before, decoded_);
     LeafValues seen = decoded_;
     for_each_inside(node_, inside_, [&](std::size_t i) { seen[i] = before[i]; });
-    return as_loss(difference_of(seen, decoded_));
-  }
-
-  static DecodedErrors as_loss(const LeafDifference& difference) {
-    return {difference.squared_error, difference.max_abs,
-            difference.different == 0 && difference.nonfinite_different == 0, difference.zeros_lost};
+    return difference_of(seen, decoded_);
   }
 
   // The chunk that a coder has left its streams in, at `offset` of the file, and the pieces of it that are to be

@@ -48,7 +48,7 @@ void RecordBatch::compute() {
     LeafRecord record = make_leaf_record(values_[i], nodes_[i], insides_[i], statistics[i]);
     record.squared_error = losses_[i].squared;
     record.max_abs = losses_[i].max_abs;
-    record.exact = losses_[i].exact ? 1 : 0;
+    record.kept = losses_[i].kept;
     record.zeros_lost = static_cast<std::uint32_t>(losses_[i].zeros_lost);
     held_.push_back(record);
   }

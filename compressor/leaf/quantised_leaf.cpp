@@ -140,7 +140,7 @@ void measure(const LeafValues& source, QuantisedLeaf& leaf) {
   leaf.squared_error = lanes[0];
   std::memcpy(lanes.data(), largest.data(), sizeof lanes);
   leaf.max_abs = *std::max_element(lanes.begin(), lanes.end());
-  leaf.exact = differ == 0;
+  leaf.kept = differ == 0 ? Kept::all : Kept::lossy;
 }
 
 }  // namespace
@@ -165,8 +165,9 @@ QuantisedLeaf quantise_leaf(const LeafValues& values, const LeafValues& source, 
   const LeafDifference lost = difference_of(seen, leaf.decoded);
   leaf.squared_error = lost.squared_error;
   leaf.max_abs = lost.max_abs;
-  leaf.exact =
-      difference_of(whole ? values : inside_only(values, leaf.decoded, node, inside), leaf.decoded).different == 0;
+  const LeafDifference of_all =
+      difference_of(whole ? values : inside_only(values, leaf.decoded, node, inside), leaf.decoded);
+  leaf.kept = of_all.different == 0 ? Kept::all : lost.different == 0 ? Kept::values : Kept::lossy;
   return leaf;
 }
 

@@ -8,6 +8,7 @@
 #include "compressor/leaf/leaf_quantiser.h"
 #include "format/base/index.h"
 #include "format/leaf/leaf_codec.h"
+#include "format/leaf/leaf_record.h"
 
 namespace weir {
 
@@ -18,7 +19,7 @@ struct QuantisedLeaf {
   LeafValues decoded{};                            ///< fl(fl(code * quantum) + minimum)
   double squared_error = 0;                        ///< over the finite in-domain values of the source
   double max_abs = 0;                              ///< the same
-  bool exact = true;                               ///< every in-domain value decodes to its own bits
+  Kept kept = Kept::all;                           ///< of the in-domain voxels
   std::uint32_t zeros_lost = 0;                    ///< in-domain values equal to 0 that decode to another
 };
 

@@ -13,25 +13,15 @@
 namespace weir {
 namespace {
 
-// What tiles keep, bit for bit.
-struct TileKeeps {
-  bool values = true;  // every finite value
-  bool all = true;     // and what else is there: Fill::exact()
-
-  void add(const TileKeeps& other) {
-    values = values && other.values;
-    all = all && other.all;
-  }
-};
-
-TileKeeps keeps_of(const TileSums& sums) { return {sums.keeps_values, sums.exact}; }
+Kept kept_by(bool values, bool all) { return all ? Kept::all : values ? Kept::values : Kept::lossy; }
+Kept kept_of(const TileSums& sums) { return kept_by(sums.keeps_values, sums.exact); }
 
 // What merges without regard to order.
 struct PlanTally {
   double max_abs = 0;
   double seen_max_abs = 0;
-  TileKeeps keeps;
-  TileKeeps seen_keeps;          // of what can be seen
+  Kept kept = Kept::all;         // by tiles
+  Kept seen_kept = Kept::all;    // by those that can be seen
   std::uint64_t zeros_lost = 0;  // to tiles
   bool leaves_exact = true;      // at their widths, where they can be seen
   std::array<std::uint64_t, 6> leaves_by_width{};
@@ -40,8 +30,8 @@ struct PlanTally {
   void add(const PlanTally& other) {
     max_abs = std::max(max_abs, other.max_abs);
     seen_max_abs = std::max(seen_max_abs, other.seen_max_abs);
-    keeps.add(other.keeps);
-    seen_keeps.add(other.seen_keeps);
+    kept = std::min(kept, other.kept);
+    seen_kept = std::min(seen_kept, other.seen_kept);
     zeros_lost += other.zeros_lost;
     leaves_exact = leaves_exact && other.leaves_exact;
     for (std::size_t i = 0; i < leaves_by_width.size(); ++i) leaves_by_width[i] += other.leaves_by_width[i];
@@ -96,30 +86,29 @@ class RegionPlanner {
         return;
       }
       const float value = rule_.packed ? region.packed_value : rule_.fill.leaf_value(row);
-      const TileKeeps keeps{Fill::keeps_values(row, value), rule_.fill.exact(row, voxels, value)};
+      const Kept kept = kept_by(Fill::keeps_values(row, value), rule_.fill.exact(row, voxels, value));
       squares.add(row.sse_about(value));
       tally.max_abs = std::max(tally.max_abs, row.max_abs_about(value));
-      tally.keeps.add(keeps);
+      tally.kept = std::min(tally.kept, kept);
       tally.zeros_lost += row.zeros_lost_to(value);
       if (rule_.visibility == nullptr) return;
-      add_seen_tile(rows, leaf, value, keeps, seen_squares, expected, tally);
+      add_seen_tile(rows, leaf, value, kept, seen_squares, expected, tally);
     });
     region.squared_error = squares.value();
     return {seen_squares.value(), expected.value()};
   }
 
   // A region that reads `value` all over.
-  RegionErrors add_tile(const RegionRows& rows, float value, const TileKeeps& keeps, Region& region,
-                        PlanTally& tally) const {
+  RegionErrors add_tile(const RegionRows& rows, float value, Kept kept, Region& region, PlanTally& tally) const {
     region.squared_error = region.sums.sse_about(value);
     tally.max_abs = std::max(tally.max_abs, region.sums.max_abs_about(value));
-    tally.keeps.add(keeps);
+    tally.kept = std::min(tally.kept, kept);
     tally.zeros_lost += region.sums.zeros_lost_to(value);
     if (rule_.visibility == nullptr) return {};
     CompensatedSum seen_squares;
     CompensatedSum expected;
     rows.for_each([&](const Index3& leaf, const LeafRow&) {
-      add_seen_tile(rows, leaf, value, keeps, seen_squares, expected, tally);
+      add_seen_tile(rows, leaf, value, kept, seen_squares, expected, tally);
     });
     return {seen_squares.value(), expected.value()};
   }
@@ -140,14 +129,14 @@ class RegionPlanner {
     return rule_.visibility == nullptr || rule_.visibility->shows(rows.reach(leaf));
   }
 
-  void add_seen_tile(const RegionRows& rows, const Index3& leaf, float value, const TileKeeps& keeps,
-                     CompensatedSum& squares, CompensatedSum& expected, PlanTally& tally) const {
+  void add_seen_tile(const RegionRows& rows, const Index3& leaf, float value, Kept kept, CompensatedSum& squares,
+                     CompensatedSum& expected, PlanTally& tally) const {
     const LeafRow& row = rows.at(leaf);
     expected.add(rule_.tile_weight(rows.reach(leaf), value) * row.sse_about(value));
     if (!seen(rows, leaf)) return;
     squares.add(row.sse_about(value));
     tally.seen_max_abs = std::max(tally.seen_max_abs, row.max_abs_about(value));
-    tally.seen_keeps.add(keeps);
+    tally.seen_kept = std::min(tally.seen_kept, kept);
   }
 
   const GainRule& rule_;
@@ -236,12 +225,12 @@ TreePlan plan_tree(const Selection& selection, const RowStore& rows, TreeRegions
     if (region.open) {
       of_region = planner.add_leaves(choices, region_rows, region, tallies.local());
     } else if (rule.packed) {
-      of_region = planner.add_tile(region_rows, region.packed_value, keeps_of(region.sums), region, tallies.local());
+      of_region = planner.add_tile(region_rows, region.packed_value, kept_of(region.sums), region, tallies.local());
     } else {
       // One tile, of this region or of the whole upper node.
       const Upper& upper = tree.uppers[static_cast<std::size_t>(tree.upper_of(index))];
       const TileSums& sums = upper.open ? region.sums : upper.sums;
-      of_region = planner.add_tile(region_rows, tile_value(rule.fill, sums), keeps_of(sums), region, tallies.local());
+      of_region = planner.add_tile(region_rows, tile_value(rule.fill, sums), kept_of(sums), region, tallies.local());
     }
     if (rule.packed) {
       const Upper& upper = tree.uppers[static_cast<std::size_t>(tree.upper_of(index))];
@@ -273,14 +262,14 @@ TreePlan plan_tree(const Selection& selection, const RowStore& rows, TreeRegions
     plan.preview.max_abs = std::max(plan.preview.max_abs, of_region.preview_max_abs);
   }
   plan.preview.squared = preview.value();
-  plan.preview.exact = plan.preview.squared == 0 && plan.preview.max_abs == 0 && rule.packed.has_value();
-  plan.tiles = {squares.value(), total.max_abs, total.keeps.values, total.zeros_lost};
+  const bool same_values = plan.preview.squared == 0 && plan.preview.max_abs == 0 && rule.packed.has_value();
+  plan.preview.kept = same_values ? Kept::all : Kept::lossy;
+  plan.tiles = {squares.value(), total.max_abs, total.kept, total.zeros_lost};
   for (const Region& region : tree.regions) plan.zeros += region.sums.zeros;
   const bool weighed = rule.visibility != nullptr;
-  plan.seen_tiles = weighed ? DecodedErrors{seen.value(), total.seen_max_abs, total.seen_keeps.values, 0} : plan.tiles;
+  plan.seen_tiles = weighed ? DecodedErrors{seen.value(), total.seen_max_abs, total.seen_kept, 0} : plan.tiles;
   plan.expected_error = weighed ? expected.value() : plan.tiles.squared + expected.value();
-  plan.exact_tiles = (weighed ? total.seen_keeps : total.keeps).all;
-  plan.loses_nothing = plan.exact_tiles && total.leaves_exact;
+  plan.loses_nothing = plan.seen_tiles.kept == Kept::all && total.leaves_exact;
   plan.leaves_by_width = total.leaves_by_width;
   plan.blocks = total.blocks;
 

@@ -20,7 +20,6 @@ struct TreePlan {
   DecodedErrors tiles;         ///< of what reads a tile
   DecodedErrors seen_tiles;    ///< of what of that can be seen: all, unless a scene says otherwise
   double expected_error = 0;   ///< squared, of tiles and kept leaves, estimated; weighted where the rule weighs
-  bool exact_tiles = false;    ///< what can be seen of tiles reads what leaves would: voxels without a value, too
   bool loses_nothing = false;  ///< every bit that can be seen is read
   /// Kept leaves by log2(bits a voxel), 5 for float32.
   std::array<std::uint64_t, 6> leaves_by_width{};

@@ -9,6 +9,13 @@
 
 namespace weir {
 
+/// What decoding keeps of voxels, bit for bit. Of several the least counts.
+enum class Kept : std::uint32_t {
+  lossy,   ///< a value reads another one
+  values,  ///< every value, but not what is to take the place of voxels without one
+  all
+};
+
 struct LeafRecord {
   double mean = 0;
   double m2 = 0;
@@ -19,7 +26,7 @@ struct LeafRecord {
   // Of a quantised leaf, decoded, over the finite in-domain values.
   double squared_error = 0;
   double max_abs = 0;
-  std::uint32_t exact = 1;       ///< 0: some voxel reads other bits than it should
+  Kept kept = Kept::all;
   std::uint32_t zeros_lost = 0;  ///< zeros that read another value
   // Where not all in-domain voxels are active: mean and m2 are those of the active ones, bounds those of all.
   MinMax active = kNoBounds;                 ///< bounds of the active values

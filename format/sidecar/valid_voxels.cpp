@@ -53,7 +53,7 @@ std::string under_background(const Sidecar& s, bool one) {
   }
   if (s.error.lossless) {
     return cat(one ? "; it reads" : "; they read", " as the background, ", short_number(s.background.value),
-               ", or as the one value of their block");
+               ", or as the nearest value that their block holds");
   }
   return cat(one ? "; it reads" : "; they read", " as the background, ", short_number(s.background.value),
              ", only where a block is exact, and ", one ? "its" : "their", " error is not counted");

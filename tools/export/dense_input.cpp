@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <filesystem>
 #include <utility>
 
 #include "compressor/survey/background.h"
@@ -13,6 +12,7 @@
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "format/io/file_system.h"
+#include "format/io/temporary_directory.h"
 #include "format/process/process_memory.h"
 #include "ingest/plan/staging.h"
 

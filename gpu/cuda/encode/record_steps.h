@@ -156,7 +156,7 @@ WEIR_HOST_DEVICE void make_record(const Warp& warp, const RecordCall& call, cons
     if (lane == 7) {
       record.squared_error = error;
       record.max_abs = most;
-      record.exact = others == 0 ? 1 : 0;
+      record.kept = others == 0 ? Kept::all : Kept::lossy;
       record.zeros_lost = lost;
     }
   });

@@ -25,12 +25,12 @@ TEST(RecordBatch, WritesWhatEachLeafAloneGives) {
     const Index3 lo{static_cast<std::int64_t>(ordinal) * 8, 0, 8};
     const Box node{lo, lo + Index3{8, 8, 8}};
     const Box inside = ordinal % 5 == 0 ? Box{lo, lo + Index3{3, 8, 5}} : node;
-    const DecodedErrors loss{static_cast<double>(ordinal), 0.5, ordinal % 2 == 0};
+    const DecodedErrors loss{static_cast<double>(ordinal), 0.5, ordinal % 2 == 0 ? Kept::all : Kept::values, 0};
     batch.add(ordinal, values, node, inside, loss);
     LeafRecord record = make_leaf_record(values, node, inside, leaf_statistics(values, node, inside));
     record.squared_error = loss.squared;
     record.max_abs = loss.max_abs;
-    record.exact = loss.exact ? 1 : 0;
+    record.kept = loss.kept;
     expected.emplace_back(ordinal, record);
   }
   batch.flush();
@@ -66,11 +66,11 @@ TEST(RecordBatch, WritesKnownRecordsAmongOthers) {
       LeafValues values;
       values.fill(value);
       const Box node{{0, 0, 0}, {8, 8, 8}};
-      batch.add(ordinal, values, node, node, {1, 0.5, false, 0});
+      batch.add(ordinal, values, node, node, {1, 0.5, Kept::lossy, 0});
       record = make_leaf_record(values, node, node, leaf_statistics(values, node, node));
       record.squared_error = 1;
       record.max_abs = 0.5;
-      record.exact = 0;
+      record.kept = Kept::lossy;
     }
     sum += record_checksum(ordinal, record);
   }

@@ -116,7 +116,7 @@ TEST(LeafRepeats, QuantisedLeaves_AreThoseOfAllValues) {
         ASSERT_EQ(std::memcmp(found.decoded.data(), expected.decoded.data(), sizeof found.decoded), 0);
         ASSERT_EQ(found.squared_error, expected.squared_error);
         ASSERT_EQ(found.max_abs, expected.max_abs);
-        ASSERT_EQ(found.exact, expected.exact);
+        ASSERT_EQ(found.kept, expected.kept);
         ASSERT_EQ(found.zeros_lost, expected.zeros_lost);
       }
     }

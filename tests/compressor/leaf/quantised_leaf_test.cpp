@@ -37,7 +37,7 @@ QuantisedLeaf quantised(const LeafValues& values, unsigned bits_log2) {
 
 void expect_exact(const QuantisedLeaf& leaf, const LeafValues& values) {
   for (std::size_t i = 0; i < values.size(); ++i) ASSERT_EQ(bits_of(leaf.decoded[i]), bits_of(values[i])) << i;
-  EXPECT_TRUE(leaf.exact);
+  EXPECT_EQ(leaf.kept, Kept::all);
   EXPECT_EQ(leaf.squared_error, 0);
   EXPECT_EQ(leaf.max_abs, 0);
 }
@@ -63,14 +63,14 @@ TEST(QuantisedLeaf, WholeNumbersAreExactAtTheFirstWidthThatHoldsTheirRange) {
     values[7] = values[5] + 1;  // one level more than the codes have
     values[9] = values[3] + 1;  // and no coarser lattice
     const QuantisedLeaf lossy = quantised(values, log2);
-    EXPECT_FALSE(lossy.exact);
+    EXPECT_EQ(lossy.kept, Kept::lossy);
     EXPECT_GT(lossy.squared_error, 0);
   }
 }
 
 TEST(QuantisedLeaf, ZerosOfBothSigns_HaveZeroErrorButAreNotExact) {
   const QuantisedLeaf leaf = quantised(filled([](std::size_t i) { return i % 2 == 0 ? -0.0F : 0.0F; }), 4);
-  EXPECT_FALSE(leaf.exact);
+  EXPECT_EQ(leaf.kept, Kept::lossy);
   EXPECT_EQ(leaf.squared_error, 0);
   EXPECT_EQ(leaf.max_abs, 0);
 }
@@ -99,7 +99,7 @@ TEST(QuantisedLeaf, ErrorIsThatOfTheDecodedValuesAndMaxAbsRoundsUp) {
     EXPECT_NEAR(leaf.squared_error, squares, squares * 1e-13);
     EXPECT_GE(static_cast<double>(leaf.max_abs), worst);
     EXPECT_LT(static_cast<double>(std::nextafter(leaf.max_abs, 0.0F)), worst);
-    EXPECT_FALSE(leaf.exact);
+    EXPECT_EQ(leaf.kept, Kept::lossy);
   }
 }
 
@@ -116,6 +116,19 @@ TEST(QuantisedLeaf, ReplacedValuesAreCodedButCountForNoError) {
     if (!std::isnan(source[i])) squares += error * error;
   }
   EXPECT_NEAR(leaf.squared_error, squares, squares * 1e-13);
+}
+
+TEST(QuantisedLeaf, ReplacedValuesThatReadAnotherOne_LoseNoValue) {
+  LeafValues source = filled([](std::size_t i) { return static_cast<float>(i % 2); });
+  source[77] = kNaN;
+  LeafValues values = source;
+  values[77] = 0.3F;
+  EXPECT_EQ(quantise_leaf(values, source, kNode, kNode, 0).kept, Kept::values);
+  values[77] = 1;
+  EXPECT_EQ(quantise_leaf(values, source, kNode, kNode, 0).kept, Kept::all);
+  source[78] = 0.4F;
+  values[78] = 0.4F;
+  EXPECT_EQ(quantise_leaf(values, source, kNode, kNode, 0).kept, Kept::lossy);
 }
 
 TEST(QuantisedLeaf, VoxelsOutsideReadTheNearestInsideAndWidenNoRange) {
@@ -145,7 +158,7 @@ TEST(QuantisedLeaf, ARangeTooSmallForFloat_IsItsMeanAtEveryWidth_OrZeroWhereThat
       EXPECT_EQ(leaf.quantiser.quantum, 0.0F);
       EXPECT_EQ(leaf.decoded[9], least == 0 ? 0.0F : static_cast<float>(0.875 * 0x1p-130));
       EXPECT_EQ(leaf.zeros_lost, 0U);
-      EXPECT_FALSE(leaf.exact);
+      EXPECT_EQ(leaf.kept, Kept::lossy);
     }
   }
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <cmath>
 #include <fstream>
 #include <limits>
 #include <span>
@@ -105,6 +106,37 @@ class Float64 : public testing::Test {
 
   TemporaryDirectory directory_;
 };
+
+TEST(NonFinite, BlocksThatKeepTheirFiniteValues_AreLosslessOverValidVoxels) {
+  MemoryVolume volume({{0, 0, 0}, {16, 16, 16}}, [](const Index3& i) {
+    const auto n = static_cast<std::uint32_t>(i.x + 16 * (i.y + 16 * i.z)) * 2654435761U >> 9U;
+    return n % 50 == 0 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(n % 2);
+  });
+  ConversionOptions options;
+  options.non_finite = NonFinitePolicy::background;
+  options.background = 0.3F;
+  for (const Encoding encoding : {Encoding::fpn, Encoding::packed}) {
+    SCOPED_TRACE(encoding_name(encoding));
+    options.encoding = encoding;
+    options.budget.kind = Budget::Kind::psnr;
+    int without_error = 0;
+    for (const double target : {30, 40, 50, 70, 90, 110, 130}) {
+      options.budget.target = target;
+      const Sidecar::CertifiedError error = test::convert(volume, options).sidecar.error;
+      EXPECT_EQ(error.lossless, error.max_abs == 0) << target;
+      without_error += error.lossless ? 1 : 0;
+    }
+    EXPECT_GT(without_error, 0);
+  }
+  options.encoding = Encoding::automatic;
+  options.budget.kind = Budget::Kind::lossless;
+  const test::Converted exact = test::convert(volume, options);
+  for (std::int64_t n = 0; n < volume.info().domain().voxels(); ++n) {
+    const Index3 i = index_at(n, volume.info().extent);
+    if (!std::isnan(volume.at(i))) continue;
+    ASSERT_EQ(exact.grid().value(i), 0.3F);
+  }
+}
 
 TEST_F(Float64, FiniteBeyondFloat32_IsReportedAsSuch) {
   std::vector<double> values(512, 1.0);

@@ -144,7 +144,7 @@ TEST(StatisticsScale, ABillionVoxelsKeepTwelveDigits) {
     }
   }
   const Certificate certificate =
-      make_certificate(plan.tiles.squared, plan.tiles.max_abs, plan.tiles.exact, sums.finite, 0, 1);
+      make_certificate(plan.tiles.squared, plan.tiles.max_abs, plan.tiles.kept != Kept::lossy, sums.finite, 0, 1);
   const auto mse = static_cast<double>(expected / 0x1p30L);
   EXPECT_NEAR(certificate.mse, mse, mse * 1e-12);
 }
@@ -200,7 +200,7 @@ TEST(StatisticsScale, TheErrorOfTwoMillionQuantisedLeavesKeepsTwelveDigits) {
     }
     records[kind].squared_error = leaf.squared_error;
     records[kind].max_abs = leaf.max_abs;
-    records[kind].exact = leaf.exact ? 1 : 0;
+    records[kind].kept = leaf.kept;
   }
   long double expected = 0;
   for (std::uint64_t ordinal = 0; ordinal < leaves; ++ordinal) expected += errors[ordinal % kKinds];
@@ -211,7 +211,7 @@ TEST(StatisticsScale, TheErrorOfTwoMillionQuantisedLeavesKeepsTwelveDigits) {
   EXPECT_GT(squares, 0);
   EXPECT_NEAR(lost.squared, squares, squares * 1e-12);
   EXPECT_EQ(lost.max_abs, max_abs);
-  EXPECT_FALSE(lost.exact);
+  EXPECT_EQ(lost.kept, Kept::lossy);
 }
 
 }  // namespace

@@ -47,9 +47,9 @@ TEST(ValidVoxels, MissingInAFileThatIsLosslessByChance_MayReadAsTheirBlock) {
   s.budget.kind = "psnr";
   s.background.value = 100;
   EXPECT_EQ(lossless_text(s), "lossless over valid voxels");
-  EXPECT_EQ(
-      missing_text(s),
-      "250 of 1000 voxels (25 %) hold no data; they read as the background, 100, or as the one value of their block");
+  EXPECT_EQ(missing_text(s),
+            "250 of 1000 voxels (25 %) hold no data; they read as the background, 100, or as the nearest value that "
+            "their block holds");
 }
 
 TEST(ValidVoxels, OfALevel_MissingAreTheCellsThatAreNotItsOwn) {
