@@ -1,6 +1,6 @@
-// Seconds of a float conversion at rate 8 as a multiple of two plain reading
-// passes over its input, in one run, and the process's peak memory against the
-// volume's size.
+// Seconds of a conversion at rate 8, to float and to quantised leaves, as a
+// multiple of two plain reading passes over its input, in one run, and the
+// process's peak memory against the volume's size.
 //
 // Environment: WEIR_BENCH_DIR (default: the system's temporary directory) and
 // WEIR_BENCH_DIM (voxels along the timed cube, default 512: 0.5 GB of float32).

@@ -73,10 +73,17 @@ double seconds_of(const auto& action) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-void read_plainly(int flags) {
+/// Bytes read; none where the file system refuses `flags`.
+std::uint64_t read_plainly(int flags) {
   const Descriptor file(::open(noise_file().path().c_str(), O_RDONLY | O_CLOEXEC | flags));
   const PageBuffer buffer(kPlainBytes);
-  while (::read(file.get(), buffer.bytes().data(), kPlainBytes) > 0) benchmark::ClobberMemory();
+  std::uint64_t bytes = 0;
+  while (true) {
+    const ssize_t count = ::read(file.get(), buffer.bytes().data(), kPlainBytes);
+    if (count <= 0) return bytes;
+    bytes += static_cast<std::uint64_t>(count);
+    benchmark::ClobberMemory();
+  }
 }
 
 void read_stream(DirectIo mode) {
@@ -94,6 +101,10 @@ void read_stream(DirectIo mode) {
 void compare(benchmark::State& state, bool cold, DirectIo mode) {
   double plain_s = 0;
   double stream_s = 0;
+  if ((cold || mode == DirectIo::on) && read_plainly(O_DIRECT) != noise_file().bytes()) {
+    state.SkipWithError("the file system refuses direct reads; name a directory on a disk by WEIR_BENCH_DIR");
+    return;
+  }
   if (!cold) read_plainly(0);
   for (auto _ : state) {
     if (cold) noise_file().drop();

@@ -40,8 +40,9 @@ fi
 bin=$(realpath "$bin")
 work=$(mktemp -d "${TMPDIR:-/tmp}/weir-gpu.XXXXXX")
 trap 'rm -rf "$work"' EXIT
-failed=0
 
+# What failed is a file: some of this runs in subshells, whose variables end with them.
+fail() { : >"$work/.failed"; }
 quiet() { "$@" --progress never --log-level error; }
 # volume KIND EDGE ENCODING BUDGET...: KINDEDGE.raw where it is missing, and KINDEDGE.ENCODING.nvdb in the work folder.
 volume() {
@@ -55,7 +56,7 @@ table() {
   local name=$work/$1$2
   echo "== $1 $2"
   "$bin/weir_bench_frames" "$name.raw" "$2,$2,$2" "$name.float.nvdb" "$name.fpn.nvdb" "$name.packed.nvdb" "${@:3}" ||
-    failed=1
+    fail
   rm "$name".*
 }
 # An eighth of the dense size; packed, a twentieth.
@@ -76,34 +77,34 @@ noise() {
 # picture NAME ARGUMENTS: a line with the seconds of a picture of 1024 x 1024 pixels.
 picture() {
   "$bin/weir" render "$work/cloud1024.float.nvdb" -o "$work/p.png" --overwrite --size 1024x1024 --json --progress never \
-    --log-level error "${@:2}" >"$work/p.json" || failed=1
+    --log-level error "${@:2}" >"$work/p.json" || fail
   printf '%-44s %s\n' "$1" "$(grep -E '"(render_s|way)"' "$work/p.json" | tr -d '\n' | tr -s ' ')"
 }
 devices() { nvidia-smi --query-gpu=index --format=csv,noheader | wc -l; }
 
 checks() {
-  timeout 300 "$bin/weir_tests_cuda" --gtest_brief=1 --gtest_filter=-RefusedMemory.*:PagingLeaks.* || failed=1
+  timeout 300 "$bin/weir_tests_cuda" --gtest_brief=1 --gtest_filter=-RefusedMemory.*:PagingLeaks.* || fail
   echo "memory refused at any moment; a thousand loads and evictions"
-  timeout 500 "$bin/weir_tests_cuda" --gtest_brief=1 --gtest_filter=RefusedMemory.*:PagingLeaks.* || failed=1
+  timeout 500 "$bin/weir_tests_cuda" --gtest_brief=1 --gtest_filter=RefusedMemory.*:PagingLeaks.* || fail
   # Threads of a load meet in other ways each time.
   timeout 300 "$bin/weir_tests_cuda" --gtest_brief=1 --gtest_repeat=30 --gtest_break_on_failure \
-    --gtest_filter='GridLoader.Every*:GridLoader.Reuses*:GridLoader.Stops*' >"$work/log" || { tail "$work/log"; failed=1; }
+    --gtest_filter='GridLoader.Every*:GridLoader.Reuses*:GridLoader.Stops*' >"$work/log" || { tail "$work/log"; fail; }
   command -v compute-sanitizer >/dev/null || { echo "compute-sanitizer: not found, skipped"; return 0; }
   for tool in memcheck racecheck synccheck; do
     echo "compute-sanitizer $tool"
     timeout 300 compute-sanitizer --tool "$tool" --error-exitcode 9 "$bin/weir_tests_cuda" --gtest_brief=1 \
       --gtest_filter='*DeviceTable*:DeviceMacrocells.*:CudaBackendTest.MarchedPicturesAreTheCpus:CudaBackendTest.Samples*:BlockDecoderTest.*:DeviceCoder.*:ResidentVolume.*:BrickVolumeTest.ASmall*:BrickVolumeTest.Levels*:ExpandedGridTest.*' |
-      tail -n 3 || failed=1
+      tail -n 3 || fail
   done
   echo "compute-sanitizer memcheck, memory refused"
   timeout 300 compute-sanitizer --tool memcheck --error-exitcode 9 "$bin/weir_tests_cuda" --gtest_brief=1 \
-    --gtest_filter='RefusedMemory.OfAllBricks_AllFromOneOn' | tail -n 3 || failed=1
+    --gtest_filter='RefusedMemory.OfAllBricks_AllFromOneOn' | tail -n 3 || fail
 }
 
 load() {
   volume noise 1024 float --rate 1
   rm "$work/noise1024.raw"
-  "$bin/weir_bench_load" "$work/noise1024.float.nvdb" || failed=1
+  "$bin/weir_bench_load" "$work/noise1024.float.nvdb" || fail
   rm "$work"/noise1024.*
 }
 
@@ -119,18 +120,18 @@ packed() {
 
 # The survey and the encoding of 1024^3 values; then the whole command with either backend, to the same bytes.
 encode() {
-  "$bin/weir_bench_encode" || failed=1
+  "$bin/weir_bench_encode" || fail
   for what in "cloud 20" "cloud 8" "turbulence 8"; do
     local kind=${what% *} name=$work/${what% *}1024
     [ -e "$name.raw" ] || quiet "$bin/weir" sample "$kind" --dims 1024,1024,1024 -o "$name.raw"
     for backend in cpu cuda cpu cuda; do
       "$bin/weir" convert "$name.raw" --dims 1024,1024,1024 --type float32 --memory 6GiB --encoding packed \
         --rate "${what#* }" --backend "$backend" -o "$name.$backend.nvdb" --overwrite --resume off --json --progress never \
-        --log-level error >"$work/c.json" || failed=1
+        --log-level error >"$work/c.json" || fail
       sed -nE "s/.*\"survey_s\": *([0-9.]+).*\"total_s\": *([0-9.]+).*\"peak_rss_bytes\": *([0-9]+).*/\\2 \\1 \\3/p" "$work/c.json" |
         awk -v what="$what, --backend $backend" '{ printf "%-32s %.2f s, survey %.2f, %d MiB\n", what, $1, $2, $3 / 1048576 }'
     done
-    cmp "$name.cpu.nvdb" "$name.cuda.nvdb" || failed=1
+    cmp "$name.cpu.nvdb" "$name.cuda.nvdb" || fail
     rm "$name".c*
     [ "$what" = "cloud 20" ] || rm "$name".*
   done
@@ -140,7 +141,7 @@ encode() {
 converted() {
   "$bin/weir" convert "$work/cloud1024.raw" --dims 1024,1024,1024 --type float32 --memory 32GiB --rate 20 --backend cpu --resume off \
     -o "$work/cloud1024.nvdb" --overwrite --trace "$work/t.json" --json --progress never --log-level error "$@" \
-    >"$work/c.json" || failed=1
+    >"$work/c.json" || fail
   sed -nE 's/.*"survey_s": *([0-9.]+).*"total_s": *([0-9.]+).*/\1 \2/p' "$work/c.json" | tr '\n' ' '
   sed -nE 's/.*"name":"select".*"dur":([0-9.]+).*/\1/p' "$work/t.json" | awk '{ sum += $1 } END { print sum / 1e6 }'
 }
@@ -164,7 +165,7 @@ decode() {
   packed cloud 20 53.3
   packed turbulence 10.667 20 50
   packed noise 2 5.33
-  "$bin/weir_bench_decode" "$work"/*512.*.nvdb || failed=1
+  "$bin/weir_bench_decode" "$work"/*512.*.nvdb || fail
   rm "$work"/*
 }
 
@@ -179,13 +180,13 @@ frames() {
 
 paging() {
   volume cloud 1024 packed --rate 20
-  "$bin/weir_bench_paging" "$work/cloud1024.packed.nvdb" --mode path --frames 12 || failed=1  # 12, since they are long
+  "$bin/weir_bench_paging" "$work/cloud1024.packed.nvdb" --mode path --frames 12 || fail  # 12, since they are long
   for mode in dvr iso mip; do
-    "$bin/weir_bench_paging" "$work/cloud1024.packed.nvdb" --mode "$mode" --frames 36 || failed=1
+    "$bin/weir_bench_paging" "$work/cloud1024.packed.nvdb" --mode "$mode" --frames 36 || fail
   done
-  "$bin/weir_bench_paging" "$work/cloud1024.packed.nvdb" --frames 36 --scattered 3 || failed=1
+  "$bin/weir_bench_paging" "$work/cloud1024.packed.nvdb" --frames 36 --scattered 3 || fail
   for mode in dvr iso mip; do
-    "$bin/weir_bench_paging" "$work/cloud1024.packed.nvdb" --mode "$mode" --frames 36 --lod 2 || failed=1
+    "$bin/weir_bench_paging" "$work/cloud1024.packed.nvdb" --mode "$mode" --frames 36 --lod 2 || fail
   done
   rm "$work"/*
 }
@@ -219,7 +220,7 @@ forget() { sync "$1" && dd if="$1" iflag=nocache count=0 status=none; }
 seconds() {
   local start
   start=$(date +%s.%N)
-  "$@" >"$work/log" 2>&1 || { cat "$work/log"; failed=1; }
+  "$@" >"$work/log" 2>&1 || { cat "$work/log"; fail; }
   awk -v a="$start" -v b="$(date +%s.%N)" 'BEGIN { printf "%.2f s\n", b - a }'
 }
 
@@ -252,7 +253,7 @@ smaller() {
   local mode
   read -ra mode <<<"$2"
   timeout 300 "$bin/weir" render "$1" -o "$work/p.png" --overwrite --mode "${mode[@]}" --size 360x270 --json --progress never \
-    --log-level error "${@:3}" >"$work/p.json" || failed=1
+    --log-level error "${@:3}" >"$work/p.json" || fail
   printf '%9.3f' "$(sed -nE 's/.*"render_s": *([0-9.]+).*/\1/p' "$work/p.json")"
 }
 
@@ -280,7 +281,7 @@ for step; do
     load) load ;;
     decode) decode ;;
     encode) encode ;;
-    save) "$bin/weir_bench_save" || failed=1 ;;
+    save) "$bin/weir_bench_save" || fail ;;
     frames) frames ;;
     paging) paging ;;
     pictures) pictures ;;
@@ -290,4 +291,4 @@ for step; do
     largest) cloud "$edge" ;;
   esac
 done
-exit "$failed"
+[ ! -e "$work/.failed" ]

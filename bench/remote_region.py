@@ -5,8 +5,8 @@
     weir convert t_1024x1024x1024_float32.raw --encoding packed --rate 16 -o t.nvdb
     PYTHONPATH=build/release/python bench/remote_region.py t.nvdb
 
-Once inside one region of 128^3 voxels, once across the corner of eight. The share is the box's part of the file, by voxels.
-Values are compared with those of the file itself.
+Once inside one region of 128^3 voxels, once in its corner, once across the corner of eight. The share is the box's part of
+the file, by voxels. Values are compared with those of the file itself.
 """
 import argparse
 import mmap

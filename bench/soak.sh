@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Soak of the daemon: FILES small volumes, written, renamed, rewritten and deleted while it runs. Prints resident
-# memory, descriptors and threads of the daemon every 500 files, and compares the first with the last.
+# Soak of the daemon: FILES small volumes, written, renamed and rewritten while it runs, and one in ten deleted when it is
+# converted. Prints resident memory, descriptors and threads of the daemon every 500 files, and compares the first with the
+# last.
 #
 #   bench/soak.sh [WEIR] [FILES]     default: build/release/weir, 5000 files
 #
@@ -52,6 +53,7 @@ for ((i = 1; i <= files; ++i)); do
     last=$(figures)
     [ -n "$first" ] || first=$last
     echo "$i files, $(($(date +%s) - begin)) s: RSS KiB, descriptors, threads: $last"
+    rm -f "$work"/in/f*0_16x16x16_float32.raw
   fi
 done
 wrong=0

@@ -95,8 +95,12 @@ class Viewer:
                 return header["view"]
 
     def rest(self, seconds):
-        """Takes the pictures that refine the view."""
+        """Turns, and lets the view be refined."""
         self.turn(moving=False)
+        self.refine(seconds)
+
+    def refine(self, seconds):
+        """Takes the pictures that come in that time."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             if select.select([self.socket], [], [], 0.05)[0]:

@@ -3,7 +3,8 @@
 [--edge N] [--presses N] [--mode MODE]
 
 Makes a cloud of --size^3 voxels (256), serves it, opens its page in headless Chromium with a picture of --edge^2 pixels
-(512), and presses an arrow key --presses times (100), each time when the picture before it is converged or after a second.
+(512), and presses an arrow key --presses times (100), each a second after the one before, or later, when that one's picture
+is there.
 The time is from the key's event in the page to the first picture of the new view on its canvas. Then the key is held, 30
 times a second for 5 s, and pictures are counted. Browser and server share the machine's cores. Prints one JSON object.
 """
@@ -40,6 +41,7 @@ PRESS = """
             last = Math.max(last, detail.view);
         });
         const next = (i) => {
+            if (started !== null) { setTimeout(() => next(i), 50); return; }
             if (i === presses) { done({times, moving}); return; }
             started = performance.now();
             press(i);

@@ -2,12 +2,13 @@
 """Whether a long session of `weir view` keeps its memory and descriptors: bench/view_session.py [--weir PATH] [--minutes N]
 [--size N] [--steps N] [--edge N] [--every SECONDS] [-- MORE OPTIONS OF weir view]
 
-Makes a series of --steps clouds (4) of --size^3 voxels (96), serves it, and repeats for --minutes (20) what people do: three
-come, turn, scrub through the steps, edit colours, opacity and mode, ask for values, rest until the picture is refined, and
-leave: by a close, by a connection that breaks, or in the middle of a picture. In between somebody sends garbage to the socket,
-opens connections that say nothing, and a step is replaced by another file. A thread of its own looks every --every seconds (30)
-at the server's resident bytes, those of no file among them, and its open descriptors. Prints a line a look; at the end one JSON
-object with the medians of the second and of the last quarter of the looks, which are the same where nothing leaks.
+Makes a series of --steps clouds (4) of --size^3 voxels (96), serves it, and repeats for --minutes (20) what people do:
+three come, turn, scrub through the steps, edit colours, opacity and mode, ask for values, let the picture be refined
+for a second, and leave: by a close, by a connection that breaks, or in the middle of a picture. In between somebody
+sends garbage to the socket, opens connections that say nothing, and a step is replaced by another file. A thread of its
+own looks every --every seconds (30) at the server's resident bytes, those of no file among them, and its open
+descriptors. Prints a line a look; at the end one JSON object with the medians of the second and of the last quarter of
+the looks, which are the same where nothing leaks.
 """
 import argparse
 import concurrent.futures
@@ -63,6 +64,7 @@ class Person(Viewer):
             self.show(moving=True)
             self.send({"type": "probe", "id": self.view, "x": 0.5, "y": 0.5})
         self.show(moving=False)
+        self.refine(1)
 
     def leave(self):
         way = self.chance.randrange(3)

@@ -37,7 +37,7 @@ function(weir_install_c)
 endfunction()
 
 # weir_c_tests(): every tests/bindings/c/NAME_test.c as a program of its own, strict C99, that ctest knows as c/NAME_test,
-# and of what the library does not show weir_c_parts_test. All of them are the target weir_tests_c.
+# and every NAME_test.cpp there, of what the library does not show, in weir_c_parts_test. All of them are the target weir_tests_c.
 function(weir_c_tests)
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/bindings/c/*_test.c)
   if(NOT TARGET weir_cuda)
@@ -59,11 +59,12 @@ function(weir_c_tests)
     add_test(NAME c/${name} COMMAND ${target})
     add_dependencies(weir_tests_c ${target})
   endforeach()
-  set(parts ${PROJECT_SOURCE_DIR}/tests/bindings/c/versioned_struct_test.cpp ${PROJECT_SOURCE_DIR}/bindings/c/status.cpp
-            ${PROJECT_SOURCE_DIR}/bindings/c/wording.cpp)
-  add_executable(weir_c_parts_test ${parts})
-  target_compile_definitions(weir_c_parts_test PRIVATE WEIR_VERSION="${PROJECT_VERSION}")
-  target_link_libraries(weir_c_parts_test PRIVATE weir_format GTest::gtest GTest::gtest_main)
+  file(GLOB parts CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/bindings/c/*_test.cpp)
+  add_executable(weir_c_parts_test ${parts} ${PROJECT_SOURCE_DIR}/bindings/c/status.cpp
+                                   ${PROJECT_SOURCE_DIR}/bindings/c/wording.cpp)
+  target_compile_definitions(weir_c_parts_test PRIVATE WEIR_VERSION="${PROJECT_VERSION}"
+                                                       WEIR_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  target_link_libraries(weir_c_parts_test PRIVATE weir_compressor GTest::gtest GTest::gtest_main)
   gtest_discover_tests(weir_c_parts_test)
   add_dependencies(weir_tests_c weir_c_parts_test)
   if(TARGET weir_cuda)

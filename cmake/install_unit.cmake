@@ -7,7 +7,8 @@ file(READ ${WEIR_UNIT} unit)
 string(REPLACE "/usr/" "${CMAKE_INSTALL_PREFIX}/" unit "${unit}")
 file(WRITE $ENV{DESTDIR}${folder}/${name} "${unit}")
 
-# The configuration to start from, where the unit looks for them: /etc/weir beside /usr, PREFIX/etc/weir elsewhere.
+# The configuration to start from: in /etc/weir, where the unit looks for configurations, beside /usr; elsewhere below the
+# prefix, in PREFIX/etc/weir, from where it is to be copied.
 get_filename_component(etc ${CMAKE_INSTALL_PREFIX}/etc ABSOLUTE)
 if(CMAKE_INSTALL_PREFIX MATCHES "/usr$")
   get_filename_component(etc ${CMAKE_INSTALL_PREFIX}/../etc ABSOLUTE)

@@ -26,9 +26,10 @@ set(CPACK_PACKAGE_CONTACT ${WEIR_MAINTAINER})
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "converter of dense volumes to NanoVDB files of exactly the size asked")
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "\
 weir stands between a simulation and a renderer: volumes of any size (HDF5,
-NetCDF-4, Zarr, OpenVDB, NRRD, MetaImage, NIfTI, VTK, raw) stream through bounded
-memory into standard NanoVDB files that meet a byte budget to the byte, or an
-error with as few bytes as meet it, each with a certificate of what it lost.
+NetCDF-4, AMReX, Zarr, OpenVDB, NanoVDB, NRRD, MetaImage, NIfTI, VTK, raw) stream
+through bounded memory into standard NanoVDB files that meet a byte budget to the
+byte, or an error with as few bytes as meet it, each with a certificate of what it
+lost.
 It renders them, watches directories beside a running simulation, and has the
 libraries that a renderer or a simulation embeds, in C++, C and Fortran.")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)

@@ -40,11 +40,6 @@ std::string states_of(std::span<const FileState> files) {
 
 std::string position(const Index3& i) { return cat(i.x, ',', i.y, ',', i.z); }
 
-std::string budget_text(const Budget& budget) {
-  return cat(static_cast<int>(budget.kind), ' ', exact(budget.rate), ' ', budget.bytes, ' ', exact(budget.target),
-             budget.at_most ? " at most" : "");
-}
-
 std::string mapping_text(const ValueMapping& mapping) {
   std::string text = cat(exact(mapping.scale), ' ', exact(mapping.offset));
   for (const StoredValue& value : mapping.missing) text += cat(' ', stored_value_text(value));

@@ -269,8 +269,11 @@ std::vector<DiskView> ServiceControl::disks() const {
 }
 
 MetricsView ServiceControl::metrics() {
-  return {runner_.figures().totals().seconds, runner_.figures().totals().errors, state_.reloads,
-          state_.rejected_reloads, log_.lines_lost()};
+  return {.conversion_seconds = runner_.figures().totals().seconds,
+          .errors = runner_.figures().totals().errors,
+          .reloads = state_.reloads,
+          .rejected_reloads = state_.rejected_reloads,
+          .log_lines_lost = log_.lines_lost()};
 }
 
 Readiness ServiceControl::readiness() {

@@ -1,4 +1,4 @@
-// All formats there are. A new one is a file of its own and one line in
+// All formats there are. A new one is a folder of its own and an entry in
 // source_registry.cpp.
 #pragma once
 

@@ -1,14 +1,12 @@
 // The `weir` command: options to subcommands, errors to one line and an exit code.
 #include <CLI/CLI.hpp>
 
-#include <algorithm>
 #include <csignal>
 #include <exception>
 #include <new>
 #include <string>
 #include <string_view>
 #include <system_error>
-#include <vector>
 
 #include "compressor/plan/startable_threads.h"
 #include "format/base/error.h"
@@ -16,8 +14,7 @@
 #include "tools/command.h"
 #include "tools/interrupt.h"
 #include "tools/options/command_message.h"
-#include "tools/options/empty_names.h"
-#include "tools/options/help_words.h"
+#include "tools/options/parse_command_line.h"
 #include "tools/options/parse_message.h"
 #include "tools/report/error_line.h"
 #include "tools/report/standard_output.h"
@@ -41,7 +38,6 @@ int run(int argc, char** argv) {
   std::signal(SIGCHLD, SIG_DFL);  // were it ignored, as who starts weir may have it, no worker would tell how it ended
 
   CLI::App app("Streams volumes of any size into NanoVDB files of exactly the size you ask for.", "weir");
-  app.require_subcommand(0, 1);  // none is refused below, after an unknown one was named
   app.set_version_flag("--version", WEIR_VERSION);
   try {
     weir::add_verify(app);
@@ -64,14 +60,7 @@ int run(int argc, char** argv) {
     weir::add_resume(app);
     weir::add_completion(app);
     weir::add_man(app);
-    weir::refuse_empty_names(app);
-    std::vector<std::string> words = weir::with_help_option(app, {argv + std::min(argc, 1), argv + argc});
-    weir::refuse_empty_values(app, words);
-    std::ranges::reverse(words);  // as parse takes them
-    app.parse(std::move(words));
-    if (app.get_subcommands().empty()) {
-      return fail("no command given; see weir --help", static_cast<int>(weir::ErrorKind::usage));
-    }
+    weir::parse_command_line(app, argc, argv);
     return 0;
   } catch (const CLI::CallForHelp& help) {
     return app.exit(help);

@@ -10,8 +10,10 @@ namespace weir::c {
 namespace {
 
 constexpr std::array<std::string_view, 5> kBudgets{"rate", "size", "psnr", "max-error", "lossless"};
-constexpr std::array<std::string_view, 8> kChoices{"encoding",  "preview",        "metric", "fill",
-                                                   "nonfinite", "missing-policy", "levels", "backend"};
+/// Whose values weir.h has as WEIR_KEY_VALUE.
+constexpr std::array<std::string_view, 12> kChoices{"encoding",  "preview",        "metric",  "fill",
+                                                    "nonfinite", "missing-policy", "certify", "levels",
+                                                    "upsample",  "missing-chunks", "endian",  "backend"};
 
 bool holds(const auto& keys, const std::string& key) { return std::find(keys.begin(), keys.end(), key) != keys.end(); }
 

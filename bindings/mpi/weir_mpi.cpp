@@ -18,9 +18,12 @@
 #include "format/output/output_files.h"
 #include "ingest/source_registry.h"
 #include "tools/command.h"
+#include "tools/command_request.h"
 #include "tools/interrupt.h"
-#include "tools/options/empty_names.h"
+#include "tools/options/command_message.h"
 #include "tools/options/given_options.h"
+#include "tools/options/parse_command_line.h"
+#include "tools/options/parse_message.h"
 #include "tools/options/run_options.h"
 #include "tools/options/table_options.h"
 #include "tools/report/error_line.h"
@@ -54,21 +57,18 @@ void add_convert(CLI::App& app, Arguments& a) {
   weir::add_log_level(command);
 }
 
-void say(const weir::Message& line) { spdlog::warn("{}", line.text()); }
-
 void convert(const CLI::App& command, const Arguments& a, weir::MpiTeam& team) {
   const std::size_t processors = team.own_cores();
   weir::ConversionOptions options;
   std::unique_ptr<weir::VolumeSource> source;
   team.run([&] {
-    weir::ConversionRequest request = weir::read_conversion_request(a.options);
+    weir::ConversionRequest request = weir::command_request(a.options);
     options = std::move(request.conversion);
     options.output = a.output;
     options.resume = weir::Resume::off;  // what is interrupted is lost, by one process as by many
     options.processors = processors;
     options.provenance = {WEIR_VERSION, weir::build_commit(), weir::given_options(command, a.options)};
-    request.source.cancel = &weir::interrupt_flag();
-    if (team.leads()) request.source.notice = say;
+    if (!team.leads()) request.source.notice = {};
     request.source.spool_directory = options.work_dir.empty() ? weir::directory_of(a.output) : options.work_dir;
     source = weir::open_source(a.input, request.source);
   });
@@ -80,7 +80,7 @@ void convert(const CLI::App& command, const Arguments& a, weir::MpiTeam& team) {
       progress.start(pass, bytes / static_cast<std::uint64_t>(team.size()));  // of this process's share
     };
     control.pass_advanced = [&](std::uint64_t done) { progress.update(done); };
-    control.notice = say;
+    control.notice = weir::log_notice;
   }
   const std::unique_ptr<weir::FileSystem> local = weir::make_posix_file_system();
   const std::unique_ptr<weir::FileSystem> shared = weir::make_mpi_file_system(team, *local);
@@ -101,23 +101,19 @@ int fail(const std::string& message, int code, bool says) {
 int run(int argc, char** argv, int rank) {
   const bool says = rank == 0;
   CLI::App app("Converts one volume with all processes of an MPI job.", kProgram);
-  app.require_subcommand(1);
   app.set_version_flag("--version", WEIR_VERSION);
   Arguments arguments;
   add_convert(app, arguments);
-  weir::refuse_empty_names(app);
   try {
-    app.parse(argc, argv);
+    weir::parse_command_line(app, argc, argv);
     weir::MpiTeam team(MPI_COMM_WORLD);
     convert(*app.get_subcommands().front(), arguments, team);
     return 0;
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return says ? app.exit(error) : 0;
-    const std::string text = error.what();
-    return fail(text.substr(0, text.find('\n')) + "; see weir-mpi --help", static_cast<int>(weir::ErrorKind::usage),
-                says);
+    return fail(weir::parse_message(app, error), static_cast<int>(weir::ErrorKind::usage), says);
   } catch (const weir::Error& error) {
-    return fail(error.what(), error.exit_code(), says);
+    return fail(weir::command_message(app, error), error.exit_code(), says);
   }
 }
 

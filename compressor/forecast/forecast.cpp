@@ -29,10 +29,13 @@
 #include "compressor/survey/visibility.h"
 #include "compressor/surveyed_conversion.h"
 #include "format/base/error.h"
+#include "format/base/text.h"
 #include "format/process/process_memory.h"
 
 namespace weir {
 namespace {
+
+constexpr double kRateOfNoByte = 1e18;  // no volume has a byte left
 
 double range_db(const Sidecar& s) { return 20 * std::log10(s.value_range[1] - s.value_range[0]); }
 
@@ -97,12 +100,18 @@ class Forecaster {
   }
 
   // The default is a rate for all volumes that are not small.
-  void expect_asked_bytes() {
+  bool asks_bytes() const {
     const Budget& budget = options_.budget;
-    const bool asked = budget.by_size() || (budget.kind == Budget::Kind::automatic && !plan_.whole());
-    if (!asked || budget.at_most) return;
-    const auto dense = static_cast<std::uint64_t>(domain_.voxels()) * sizeof(float);
-    const auto bytes = static_cast<double>(asked_bytes(budget, dense));
+    return budget.by_size() || (budget.kind == Budget::Kind::automatic && !plan_.whole());
+  }
+
+  std::uint64_t bytes_asked() const {
+    return asked_bytes(options_.budget, static_cast<std::uint64_t>(domain_.voxels()) * sizeof(float));
+  }
+
+  void expect_asked_bytes() {
+    if (!asks_bytes() || options_.budget.at_most) return;
+    const auto bytes = static_cast<double>(bytes_asked());
     forecast_.exact_bytes = true;
     forecast_.file_bytes = {bytes, bytes, bytes};
   }
@@ -157,15 +166,9 @@ class Forecaster {
     if (seen_) sampled.find_reaches(control_.cancel);
     const SampleScale scale(domain_, plan_.domain(), options_, nodes);
     const std::vector<Part> parts = try_parts(copy, nodes);
-    Trial trial;
-    try {
-      trial = run_trial(copy, sample_options(scale), trial_control(), files_);
-    } catch (const Error& error) {
-      if (error.kind() != ErrorKind::budget || !forecast_.exact_bytes) throw;
-      refuse_hopeless_size(options_, domain_, static_cast<std::uint64_t>(forecast_.file_bytes.value));
-      forecast_.not_sampled = "a sample is too small for a file of this rate";
-      return;
-    }
+    const std::optional<Trial> all = try_all(copy, scale);
+    if (!all) return;
+    const Trial& trial = *all;
     forecast_.sampled_voxels = static_cast<std::uint64_t>(plan_.domain().voxels());
     forecast_.places = plan_.places();
     refuse_sampled_values(options_, trial.sidecar);
@@ -178,6 +181,34 @@ class Forecaster {
       forecast_.file_bytes = {bytes, bytes, bytes};
     }
     add_spread(trial.sidecar, parts, scale.share());
+  }
+
+  // None where the sample has no file of its share of the bytes asked for, and says no more.
+  std::optional<Trial> try_all(SampleCopy& copy, const SampleScale& scale) {
+    ConversionOptions options = sample_options(scale);
+    try {
+      return run_trial(copy, options, trial_control(), files_);
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::budget || !asks_bytes()) throw;
+    }
+    const std::uint64_t asked = bytes_asked();
+    refuse_hopeless_size(options_, domain_, asked);
+    options.budget = {.kind = Budget::Kind::automatic, .rate = kRateOfNoByte};
+    std::optional<Trial> smallest = run_trial(copy, options, trial_control(), files_);
+    refuse_sampled_values(options_, smallest->sidecar);
+    const auto least = static_cast<std::uint64_t>(std::llround(scale.file_bytes(smallest->sidecar)));
+    if (least <= asked) {
+      forecast_.not_sampled = "a sample is too small for a file of this rate";
+      return std::nullopt;
+    }
+    if (options_.budget.kind == Budget::Kind::automatic) {
+      forecast_.exact_bytes = false;
+      return smallest;
+    }
+    // The volume has all the blocks that its sample has.
+    if (smallest->sidecar.file.bytes > asked) refuse_size(options_, asked, least);
+    forecast_.not_sampled = cat("by one, the smallest tree for this volume takes about ", least, " bytes");
+    return std::nullopt;
   }
 
   // A sample has its own budget.
@@ -243,7 +274,9 @@ class Forecaster {
   void describe_file(const Sidecar& s) {
     Forecast& f = forecast_;
     const bool plain = s.grid.type == grid_type_name(GridType::float32);
-    f.budget = s.budget.kind;
+    // A sample's share of a rate is a size.
+    const bool of_rate = s.budget.kind == "size" && options_.budget.kind != Budget::Kind::size;
+    f.budget = of_rate ? "rate" : s.budget.kind;
     f.encoding = s.packed ? encoding_name(Encoding::packed) : plain ? encoding_name(Encoding::float32) : s.grid.type;
     f.error = without_spread(s.error);
     f.value_low = s.value_range[0];
@@ -274,7 +307,10 @@ class Forecaster {
       if (of_part.visible && of_part.visible->error.psnr_db) shown_db.push_back(*of_part.visible->error.psnr_db);
       wider_db += (range_db(s) - range_db(of_part)) / static_cast<double>(parts.size());
     }
-    if (!forecast_.exact_bytes) forecast_.file_bytes = spread_of(forecast_.file_bytes.value, bytes, share);
+    if (!forecast_.exact_bytes) {
+      forecast_.file_bytes = spread_of(forecast_.file_bytes.value, bytes, share);
+      forecast_.file_bytes.low = std::max(0.0, forecast_.file_bytes.low);
+    }
     // The volume's range is at least the sample's. If it grows with each doubling as it did from the parts to the
     // sample, the PSNR is higher by as much.
     const double doublings = std::log2(static_cast<double>(parts.size()));

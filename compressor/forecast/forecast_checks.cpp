@@ -50,6 +50,12 @@ void refuse_sampled_values(const ConversionOptions& options, const Sidecar& side
   }
 }
 
+void refuse_size(const ConversionOptions& options, std::uint64_t bytes, std::uint64_t least) {
+  throw Error(ErrorKind::budget,
+              compose(options.output, ": ", bytes, " bytes asked, the smallest tree for this volume takes about ",
+                      least, "; ask for ", option("size", least), " or more"));
+}
+
 void refuse_hopeless_size(const ConversionOptions& options, const Box& domain, std::uint64_t bytes) {
   NodeCounts counts;
   counts.root_tiles = 1;

@@ -32,6 +32,9 @@ class OutputPlaces {
 /// Throws Error(input) where the sample that `sidecar` is of has values that `options` refuse (refused_values.h).
 void refuse_sampled_values(const ConversionOptions& options, const Sidecar& sidecar);
 
+/// Throws Error(budget): `bytes` are less than the smallest tree takes, which are about `least`.
+[[noreturn]] void refuse_size(const ConversionOptions& options, std::uint64_t bytes, std::uint64_t least);
+
 /// Throws Error(budget) where no file of a volume over `domain` has as few bytes.
 void refuse_hopeless_size(const ConversionOptions& options, const Box& domain, std::uint64_t bytes);
 

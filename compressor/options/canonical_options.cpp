@@ -43,11 +43,6 @@ std::string index_text(const SourceOptions& source) {
   return text;
 }
 
-std::string text_of(const Budget& budget) {
-  return cat(static_cast<int>(budget.kind), ' ', all_digits(budget.rate), ' ', budget.bytes, ' ',
-             all_digits(budget.target), budget.at_most ? " at most" : "");
-}
-
 void add_source(const SourceOptions& source, Texts& texts) {
   if (source.extent) texts["dims"] = cat(source.extent->x, ',', source.extent->y, ',', source.extent->z);
   if (source.type) texts["type"] = std::string(scalar_name(*source.type));
@@ -81,7 +76,8 @@ MissingPolicy meant_policy(const ConversionOptions& options) {
 }
 
 void add_method(const ConversionOptions& options, const ConversionOptions& standard, Texts& texts) {
-  if (text_of(options.budget) != text_of(standard.budget)) texts["budget"] = text_of(options.budget);
+  const std::string budget = budget_text(options.budget);
+  if (budget != budget_text(standard.budget)) texts["budget"] = budget;
   const auto add = [&](const char* key, const auto& value, const auto& usual) {
     if (value != usual) texts[key] = cat(static_cast<int>(value));
   };

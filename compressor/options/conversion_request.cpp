@@ -45,8 +45,10 @@ void check_method(const GivenOptions& given, const ConversionOptions& options) {
     throw usage_error(compose(option("preset", "paper"), " sets ", option("encoding"), "; leave one of them out"));
   }
   if (options.metric != Metric::sse && options.budget.by_error()) {
-    throw usage_error(compose(option("metric", metric_name(options.metric)), " has no error target; ", option("psnr"),
-                              " and ", option("max-error"), " select by sse"));
+    const Message by =
+        given.contains("preset") ? option("preset", "paper") : option("metric", metric_name(options.metric));
+    throw usage_error(
+        compose(by, " has no error target; ", option("psnr"), " and ", option("max-error"), " select by sse"));
   }
   check_encoding(options);
   if (options.budget.at_most && !options.budget.by_size()) {
@@ -107,7 +109,8 @@ std::vector<OptionRow> watch_options() {
   return rows;
 }
 
-ConversionRequest read_conversion_request(const GivenOptions& given) {
+ConversionRequest read_conversion_request(const GivenOptions& options) {
+  const GivenOptions given = without_empty(options);
   ConversionRequest request;
   request.conversion.encoding = Encoding::automatic;
   for (const auto table : tables()) read_options(table, given, request);

@@ -41,10 +41,10 @@ const OptionRow& conversion_option(std::string_view key);
 /// files, the job of a watch is one.
 std::vector<OptionRow> watch_options();
 
-/// What `given`, with keys of the three tables, asks for; what is not given has its standard value. Throws Error(usage)
-/// naming option, text and form where one cannot be read or two contradict each other; what load_scene throws. Whether
-/// the values make sense for a file is for open_source to say.
-ConversionRequest read_conversion_request(const GivenOptions& given);
+/// What `options`, with keys of the three tables, ask for; what is not given has its standard value. Throws
+/// Error(usage) naming option, text and form where one cannot be read or two contradict each other; what load_scene
+/// throws. Whether the values make sense for a file is for open_source to say.
+ConversionRequest read_conversion_request(const GivenOptions& options);
 
 /// Of Levels::separate, whose volumes have voxels without a value: these become the background. Throws Error(usage)
 /// where `options` say something else of voxels that hold no data. What read_conversion_request returns is settled.

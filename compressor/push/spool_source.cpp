@@ -135,13 +135,10 @@ class SpoolSource final : public VolumeSource {
     }
     const Box part = intersect(spool_.leaves().voxels(leaf), box);
     float value = 0;
-    ConversionLoss loss = decode_values(std::span(state.value).first(scalar_bytes(info_.type)), info_.type,
-                                        kNativeIsBig, info_.mapping, std::span(&value, 1));
-    loss.inexact *= static_cast<std::uint64_t>(part.voxels());
-    loss.overflow *= static_cast<std::uint64_t>(part.voxels());
-    loss.unmarked *= static_cast<std::uint64_t>(part.voxels());
+    const ConversionLoss loss = decode_values(std::span(state.value).first(scalar_bytes(info_.type)), info_.type,
+                                              kNativeIsBig, info_.mapping, std::span(&value, 1));
     for_each_row(part, box, values, [&](std::span<float> row) { std::ranges::fill(row, value); });
-    return loss;
+    return loss.times(static_cast<std::uint64_t>(part.voxels()));
   }
 
   // Calls visit(row) for every row along x of `part` in the values of `box`.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 namespace weir {
 
@@ -11,8 +12,8 @@ inline constexpr double kDefaultLeastDb = 40;
 struct Budget {
   enum class Kind {
     automatic,  ///< --rate 8, or the minimum tree where that is larger; where that keeps less than `target`, see there
-    size,       ///< `value` bytes
-    rate,       ///< ceil(float32 bytes of the volume / `value`)
+    size,       ///< `bytes`
+    rate,       ///< ceil(float32 bytes of the volume / `rate`)
     psnr,       ///< as few bytes as keep the PSNR at `target` dB or above
     max_error,  ///< as few bytes as keep every voxel within `target` of its value
     lossless    ///< as many bytes as every bit needs
@@ -30,5 +31,8 @@ struct Budget {
   /// The size follows from the error, not the error from the size.
   bool by_error() const { return kind == Kind::psnr || kind == Kind::max_error; }
 };
+
+/// All of it, to be compared: what differs in the last digit is another budget.
+std::string budget_text(const Budget& budget);
 
 }  // namespace weir

@@ -19,6 +19,7 @@ std::string read_token_file(const std::string& path) {
   if (stat(path.c_str(), &status) != 0) {
     throw Error(ErrorKind::input, io_error(path, "read the token", errno).message());
   }
+  if (S_ISDIR(status.st_mode)) throw input_error(path, "is a directory; name a file with the token");
   if ((status.st_mode & S_IROTH) != 0) throw input_error(path, "can be read by everybody; chmod o-r it");
   std::ifstream in(path, std::ios::binary);
   const std::string text(std::istreambuf_iterator<char>(in), {});

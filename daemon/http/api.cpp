@@ -31,6 +31,7 @@ struct Route {
   std::string_view path;  ///< "*" stands for any one segment
   bool open;              ///< needs no token
   HttpResponse (*answer)(const Call&);
+  const char* parameters = nullptr;  ///< all that it takes, between commas; null: others are ignored
 };
 
 HttpResponse ok(const OrderedJson& json) {
@@ -116,9 +117,6 @@ HttpResponse jobs(const Call& call) {
                                        ": jobs are discovered, waiting, running, done, failed, "
                                        "quarantined or cancelled"));
       }
-    } else if (name != "sort" && name != "order" && name != "limit" && name != "offset") {
-      return error_response(400, cat("unknown parameter ", name,
-                                     "; there are state, watch, text, problem, sort, order, limit and offset"));
     }
   }
   if (!read_order(call.target, query.order)) {
@@ -227,14 +225,12 @@ HttpResponse cancel(const Call& call) {
 }
 
 HttpResponse retry_failed(const Call& call) {
-  std::string key;
-  for (const auto& [name, value] : call.target.query) {
-    if (name != "problem" || value.empty()) {
-      return error_response(400, cat(name, "=", value, ": give problem=KEY as /api/problems says it, or nothing"));
-    }
-    key = value;
+  const auto problem = call.target.query.find("problem");
+  if (problem == call.target.query.end()) return ok({{"retried", call.control.retry_all_failed("")}});
+  if (problem->second.empty()) {
+    return error_response(400, "problem=: give problem=KEY as /api/problems says it, or leave it out");
   }
-  return ok({{"retried", call.control.retry_all_failed(key)}});
+  return ok({{"retried", call.control.retry_all_failed(problem->second)}});
 }
 
 HttpResponse pause(const Call& call) {
@@ -254,17 +250,17 @@ constexpr std::array kRoutes = {
     Route{"GET", "/readyz", true, ready},
     Route{"GET", "/metrics", false, metrics},
     Route{"GET", "/api/status", false, status},
-    Route{"GET", "/api/jobs", false, jobs},
+    Route{"GET", "/api/jobs", false, jobs, "state,watch,text,problem,sort,order,limit,offset"},
     Route{"GET", "/api/problems", false, problems},
     Route{"GET", "/api/jobs/*", false, job},
     Route{"GET", "/api/jobs/*/thumbnails/*", false, thumbnail},
     Route{"GET", "/api/viewer", false, viewer},
-    Route{"POST", "/api/jobs/*/view", false, view},
-    Route{"POST", "/api/jobs/*/retry", false, retry},
-    Route{"POST", "/api/jobs/*/cancel", false, cancel},
-    Route{"POST", "/api/retry-failed", false, retry_failed},
-    Route{"POST", "/api/pause", false, pause},
-    Route{"POST", "/api/resume", false, resume},
+    Route{"POST", "/api/jobs/*/view", false, view, "output,force"},
+    Route{"POST", "/api/jobs/*/retry", false, retry, "force"},
+    Route{"POST", "/api/jobs/*/cancel", false, cancel, ""},
+    Route{"POST", "/api/retry-failed", false, retry_failed, "problem"},
+    Route{"POST", "/api/pause", false, pause, ""},
+    Route{"POST", "/api/resume", false, resume, ""},
 };
 
 bool matches(std::string_view pattern, const std::vector<std::string>& path) {
@@ -272,6 +268,26 @@ bool matches(std::string_view pattern, const std::vector<std::string>& path) {
   const std::vector<std::string> wanted = split(pattern.substr(1), '/');
   return std::equal(wanted.begin(), wanted.end(), path.begin(), path.end(),
                     [](const std::string& w, const std::string& p) { return w == "*" ? !p.empty() : w == p; });
+}
+
+// "there are sort, order and limit", "there is force", "there is none".
+std::string names_text(const std::vector<std::string>& names) {
+  if (names.empty()) return "there is none";
+  std::string text = cat(names.size() == 1 ? "there is " : "there are ", names.front());
+  for (std::size_t i = 1; i < names.size(); ++i) text += cat(i + 1 == names.size() ? " and " : ", ", names[i]);
+  return text;
+}
+
+// A misspelt parameter would ask for something else than was meant.
+std::optional<HttpResponse> refuse_parameters(const Route& route, const RequestTarget& target) {
+  if (route.parameters == nullptr) return std::nullopt;
+  std::vector<std::string> known = split(route.parameters, ',');
+  std::erase(known, "");
+  for (const auto& [name, value] : target.query) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    return error_response(400, cat("unknown parameter ", name, "; ", names_text(known)));
+  }
+  return std::nullopt;
 }
 
 HttpResponse answer_routed(Control& control, const AccessRules& rules, const HttpRequest& request) {
@@ -288,7 +304,10 @@ HttpResponse answer_routed(Control& control, const AccessRules& rules, const Htt
   }
   if (auto refused = refuse(rules, request, chosen != nullptr && chosen->open)) return *std::move(refused);
   if (!target) return error_response(400, "the request's target is no path with parameters, each given once");
-  if (chosen != nullptr) return chosen->answer({control, *target, !refuse(rules, request, false), rules.control_at});
+  if (chosen != nullptr) {
+    if (auto refused = refuse_parameters(*chosen, *target)) return *std::move(refused);
+    return chosen->answer({control, *target, !refuse(rules, request, false), rules.control_at});
+  }
   if (allowed.empty()) return error_response(404, cat("there is nothing at ", request.target));
   HttpResponse response = error_response(405, cat(request.method, " is not for ", request.target, "; use ", allowed));
   response.headers.emplace_back("Allow", allowed);

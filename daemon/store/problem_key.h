@@ -7,8 +7,8 @@
 
 namespace weir {
 
-/// `reason`, that of the job of `source`, without the source's path and with every number as "#"; in ASCII,
-/// so that it comes back from a client as it went, and never empty.
+/// `reason`, that of the job of `source`, without the source's path, with the names of its outputs as "*" and every
+/// number as "#"; in ASCII, so that it comes back from a client as it went, and never empty.
 std::string problem_key(std::string_view source, std::string_view reason);
 
 /// `reason` without the source's path in front.

@@ -15,9 +15,9 @@ namespace weir {
 /// A pattern of include or exclude without a slash is for the last component ("*.raw"), one with a slash for the
 /// whole path ("run*/out/*.h5"): see glob.h. Hidden directories are never entered; hidden files are for
 /// patterns whose last component begins with a dot. Without include, sources are the names of formats weir
-/// reads: NAME_XxYxZ_TYPE.raw (any .raw where the watch's options say dims and type), .nrrd .nhdr .mhd .mha
-/// .nii .nii.gz .h5 .hdf5 .he5 .nc .nc4 .cdf .vti .vtk .vdb .zarr.zip .ozx, the Header of a plotfile of AMReX, and the
-/// zarr.json, .zgroup or .zarray of a directory NAME.zarr.
+/// reads: NAME_XxYxZ_TYPE.raw (any .raw where the watch's options say dims and type), what ends with one of
+/// SourceFormat::watched_endings, the Header of a plotfile of AMReX, and the zarr.json, .zgroup or .zarray of a
+/// directory NAME.zarr.
 ///
 /// A plotfile is the directory that its Header lies in, and patterns are for that: "plt*" for plt00042/Header. What
 /// AMReX has not finished (plt00042.temp) or set aside (plt00042.old.1234) is no source.

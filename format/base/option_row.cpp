@@ -45,6 +45,11 @@ std::size_t read_choice(const OptionRow& row, const std::string& text) {
   return static_cast<std::size_t>(found - choices.begin());
 }
 
+GivenOptions without_empty(GivenOptions given) {
+  std::erase_if(given, [](const auto& option) { return option.second.empty(); });
+  return given;
+}
+
 void check_exclusions(const std::vector<OptionRow>& table, const GivenOptions& given) {
   for (const OptionRow& row : table) {
     if (!given.contains(row.key)) continue;

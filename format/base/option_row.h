@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "format/base/error.h"
@@ -55,11 +56,13 @@ std::size_t read_choice(const OptionRow& row, const std::string& text);
 /// Throws Error(usage) where two of the given options exclude each other.
 void check_exclusions(const std::vector<OptionRow>& table, const GivenOptions& given);
 
-/// Reads what is given of `options` into `request`, in the order of the table. An empty text is not given: a script may
-/// pass --roi "$ROI".
+/// Without those of an empty text, which are not given: a script may pass --roi "$ROI".
+GivenOptions without_empty(GivenOptions given);
+
+/// Reads what is given of `options`, without_empty(), into `request`, in the order of the table.
 template <typename Request>
 void read_options(std::span<const ReadableOption<Request>> options, GivenOptions given, Request& request) {
-  std::erase_if(given, [](const auto& option) { return option.second.empty(); });
+  given = without_empty(std::move(given));
   std::vector<OptionRow> table;
   for (const auto& option : options) table.push_back(option.row);
   check_exclusions(table, given);

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <limits>
 #include <optional>
 
@@ -233,12 +232,16 @@ Scene parse_scene(std::string_view text, const std::string& path) {
 Scene load_scene(const std::string& path) {
   errno = 0;
   std::ifstream file(path, std::ios::binary);
-  std::string text;
-  if (file) text.assign(std::istreambuf_iterator<char>(file), {});
-  if (!file || file.bad()) {
+  std::string text(kMostSceneBytes + 1, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (!file.is_open() || file.bad()) {
     const int reason = errno;
     throw Error(ErrorKind::input, cat(path, ": cannot read the scene; it must be an existing TOML file"),
                 reason != 0 ? std::optional(SystemFailure{reason, path}) : std::nullopt);
+  }
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  if (text.size() > kMostSceneBytes) {
+    throw Error(ErrorKind::input, cat(path, ": more than ", kMostSceneBytes, " bytes, no scene has; give a TOML file"));
   }
   return parse_scene(text, path);
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -98,7 +99,10 @@ inline constexpr std::size_t kMaxSceneLights = 4;
 /// Parses a scene; paths in it are relative to `path`'s directory. Throws Error(input) "PATH:LINE:COLUMN: ..." for
 /// broken TOML, an unknown key, a wrong type or a value out of range.
 Scene parse_scene(std::string_view text, const std::string& path);
-/// parse_scene of a file; Error(input) where it is missing or unreadable.
+/// A longer text is no scene: a transfer function of a thousand points takes some 30 KB.
+inline constexpr std::size_t kMostSceneBytes = std::size_t{1} << 20U;
+
+/// parse_scene of a file; Error(input) where it is missing, unreadable or longer than kMostSceneBytes.
 Scene load_scene(const std::string& path);
 
 }  // namespace weir

@@ -11,6 +11,9 @@
 
 namespace weir {
 
+/// A filtered value may round past the voxels it came from by this share of the larger of them.
+inline constexpr float kBlendRounding = 4 * FLT_EPSILON;
+
 /// Linear RGB and opacity in [0, 1].
 struct Rgba {
   float r = 0;
@@ -29,10 +32,14 @@ struct TransferFunctionView {
   float width = 0;  ///< range's width times scale; 0 for a single value
   float scale = 1;  ///< keeps the width finite for ranges that overflow float32
 
-  /// Position of a finite value in the table, in [0, last]; the middle where the range is one value.
+  /// Position of a finite value in the table, in [0, last]; the middle where the range is that one value, which a blend
+  /// of voxels that all have it may miss by a few ulp.
   WEIR_HOST_DEVICE float position(float value) const {
     const float offset = value * scale - low;
-    if (width == 0.0F) return offset < 0.0F ? 0.0F : (offset > 0.0F ? last : 0.5F * last);
+    if (width == 0.0F) {
+      if (std::abs(offset) <= kBlendRounding * std::abs(low)) return 0.5F * last;
+      return offset < 0.0F ? 0.0F : last;
+    }
     return clamped(offset / width, 0.0F, 1.0F) * last;
   }
 
@@ -56,8 +63,7 @@ struct OpacityBounds {
   /// interval is empty, the largest opacity of all.
   WEIR_HOST_DEVICE float max_opacity(float low, float high) const {
     if (!(low <= high) || !is_finite(low) || !is_finite(high)) return opacities.between(0, opacities.size - 1);
-    // A filtered value may round past the voxels it came from, by a few ulp of the larger of them.
-    const float slack = 4 * FLT_EPSILON * greater(std::abs(low), std::abs(high));
+    const float slack = kBlendRounding * greater(std::abs(low), std::abs(high));
     const float first = transfer.position(greater(low - slack, -FLT_MAX));
     const float last = transfer.position(lesser(high + slack, FLT_MAX));
     // Positions grow with values and the opacity is linear between entries: its largest value is at an

@@ -32,7 +32,7 @@ WEIR_HOST_DEVICE float find_iso(const Medium<Volume>& medium, const Ray& ray, fl
     if (iso < bounds.min || iso > bounds.max) continue;
     float a = span.t0;
     float at_a = medium.volume.smooth(ray.at(a));
-    const float step = voxel_step * medium.sample_distance(ray.at(a), length);
+    const float step = medium.sample_step(voxel_step, ray.at(a), length);
     while (a < span.t1) {
       float b = lesser(a + step, span.t1);
       if (!(b > a)) break;  // a step below the precision of t

@@ -20,7 +20,7 @@ WEIR_HOST_DEVICE float max_along(const Medium<Volume>& medium, const Ray& ray, f
   CellSpan span;
   while (walk.next(medium.cells, ray, span)) {
     if (medium.cell_values[span.cell].max <= best) continue;  // false where the bound is NaN, unknown
-    const float step = voxel_step * medium.sample_distance(ray.at(span.t0), length);
+    const float step = medium.sample_step(voxel_step, ray.at(span.t0), length);
     float k = std::ceil(span.t0 / step - jitter);
     for (float t = (k + jitter) * step; t < span.t1; k += 1.0F, t = (k + jitter) * step) {
       const float value = medium.volume.smooth(ray.at(t));

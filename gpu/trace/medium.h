@@ -13,8 +13,9 @@
 
 namespace weir {
 
-/// An extinction above this is as good as a wall; it keeps products of lengths finite.
-inline constexpr float kMaxExtinction = 1e30F;
+/// Per shortest voxel edge: an extinction above this is as good as a wall, since a voxel of it lets exp(-64) through.
+/// It bounds the tentative collisions of a flight past a wall, whose majorant holds in all of the cell.
+inline constexpr float kMaxExtinction = 64.0F;
 
 /// All of a medium but its volume.
 struct MediumProperties {
@@ -42,10 +43,11 @@ template <class Volume>
 struct Medium : MediumProperties {
   Volume volume;
 
-  /// Voxels between two samples of a ray of `length`, in shortest edges, at a position of it: those along the cubes
-  /// that look-ups read there, but no more than a cell has, nor than the ray, else rays would miss what is thin.
-  WEIR_HOST_DEVICE float sample_distance(const Float3& p, float length) const {
-    return lesser(lesser(spacing(volume, p), cells.edge), greater(length, 1.0F));
+  /// Distance of the samples of a ray of `length`, in shortest edges, at a position of it: `voxel_step` times the edge
+  /// of the cubes that look-ups read there, which counts as no longer than a cell, nor than the ray, else rays would
+  /// miss what is thin. At most `length`: the shortest ray has a sample.
+  WEIR_HOST_DEVICE float sample_step(float voxel_step, const Float3& p, float length) const {
+    return lesser(voxel_step * lesser(lesser(spacing(volume, p), cells.edge), greater(length, 1.0F)), length);
   }
 
   /// At a position inside the domain, as a ray of that kind sees it; filters may draw numbers.

@@ -33,7 +33,7 @@ WEIR_HOST_DEVICE Float3 march(const Medium<Volume>& medium, const Lighting& ligh
   CellSpan span;
   while (walk.next(medium.cells, ray, span)) {
     if (!(medium.majorant(span.cell) > 0.0F)) continue;
-    const float step = voxel_step * medium.sample_distance(ray.at(span.t0), length);
+    const float step = medium.sample_step(voxel_step, ray.at(span.t0), length);
     float k = std::ceil(span.t0 / step - jitter);
     for (float t = (k + jitter) * step; t < span.t1; k += 1.0F, t = (k + jitter) * step) {
       const Float3 p = ray.at(t);

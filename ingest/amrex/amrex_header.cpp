@@ -152,7 +152,8 @@ std::string inner_path(const PlotfileText& text, const std::string& path) {
   throw text.error(cat(in_quotes(path), " should be the path of a level's cells, Level_0/Cell; the header is damaged"));
 }
 
-void read_level(PlotfileText& text, std::size_t number, AmrexLevelHeader& level) {
+void read_level(PlotfileText& text, std::size_t number, AmrexHeader& header) {
+  AmrexLevelHeader& level = header.levels[number];
   const auto last = static_cast<std::int64_t>(number);
   text.integer_in("a level's number", last, last);
   level.boxes = text.integer_in("a level's number of boxes", 1, std::numeric_limits<std::int32_t>::max());
@@ -162,6 +163,11 @@ void read_level(PlotfileText& text, std::size_t number, AmrexLevelHeader& level)
   for (std::int64_t i = 0; i < level.boxes * 6; ++i) text.skip_word("an edge of a box");
   text.next_byte();
   level.cells = inner_path(text, text.rest_of_line());
+  for (std::size_t i = 0; i < number; ++i) {
+    if (header.levels[i].cells != level.cells) continue;
+    throw text.error(cat(in_quotes(level.cells), " is the path of the cells of level ", number, " and of level ", i,
+                         "; the header is damaged"));
+  }
 }
 
 }  // namespace
@@ -201,7 +207,7 @@ AmrexHeader parse_amrex_header(PlotfileText& text) {
                                "; only Cartesian ones can be read"));
   }
   text.skip_word("the width of the boundary");
-  for (std::size_t i = 0; i < header.levels.size(); ++i) read_level(text, i, header.levels[i]);
+  for (std::size_t i = 0; i < header.levels.size(); ++i) read_level(text, i, header);
   return header;
 }
 

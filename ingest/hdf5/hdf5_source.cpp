@@ -15,6 +15,7 @@
 #include "ingest/hdf5/meaning/field_meaning.h"
 #include "ingest/hdf5/meaning/hdf5_lookup.h"
 #include "ingest/hdf5/meaning/volume_slice.h"
+#include "ingest/hdf5/storage/absent_values.h"
 #include "ingest/hdf5/storage/chunk_reader.h"
 #include "ingest/hdf5/storage/constant_source.h"
 #include "ingest/hdf5/storage/external_files.h"
@@ -161,26 +162,18 @@ std::unique_ptr<VolumeSource> open_chunked(Opening opening) {
                                          opening.options.memory);
 }
 
-/// Values that a file does not have: "4 of its 8 chunks" " were never written".
-struct Absent {
-  std::string what;
-  bool one = false;
-  std::string first = {};  ///< " (the first at 0, 0, 16)", where that is known
-  bool no_source = false;  ///< of a virtual dataset; else never written
-};
+void refuse_where_all_must_be(const Opening& opening, const AbsentValues& absent) {
+  if (opening.options.missing_chunks != MissingChunks::error) return;
+  throw input_error(
+      opening.object.where(),
+      compose(absent.text(), absent.first, ", and with ", option("missing-chunks", "error"),
+              absent.no_source ? " all must have one; map one to them, or use " : " all must be; write them, or use ",
+              option("missing-chunks", "fill")));
+}
 
 // Refuses them, or notes the fill value that they read as.
-void note_filled(Opening& opening, const Absent& absent) {
-  const bool one = absent.one;
-  const std::string are = absent.no_source ? (one ? " has no source" : " have no source")
-                                           : (one ? " was never written" : " were never written");
-  if (opening.options.missing_chunks == MissingChunks::error) {
-    throw input_error(
-        opening.object.where(),
-        compose(absent.what, are, absent.first, ", and with ", option("missing-chunks", "error"),
-                absent.no_source ? " all must have one; map one to them, or use " : " all must be; write them, or use ",
-                option("missing-chunks", "fill")));
-  }
+void note_filled(Opening& opening, const AbsentValues& absent) {
+  refuse_where_all_must_be(opening, absent);
   std::array<float, 1> fill{};
   const StoredType& type = *opening.facts.type;
   const auto decode = [&](const ValueMapping& mapping) {
@@ -189,7 +182,7 @@ void note_filled(Opening& opening, const Absent& absent) {
   decode(opening.facts.meaning.mapping);
   if (!std::isfinite(fill[0])) decode({});  // it stands for no data: as it is stored
   opening.info.details.chunks_note =
-      cat(absent.what, are, " and ", one ? "reads" : "read", " as its fill value, ", fill[0]);
+      cat(absent.text(), " and ", absent.one ? "reads" : "read", " as its fill value, ", fill[0]);
 }
 
 // Says, or refuses, chunks that read as the fill value. Of a volume whose axes are not the array's last three it counts
@@ -218,11 +211,23 @@ void note_unmapped(Opening& opening, const Uncovered& unmapped) {
                         cat(" (the first at ", corner_text(unmapped.first), ")"), true});
 }
 
+// The same of chunks of its sources, each of which has a fill value of its own.
+void note_unwritten_in_sources(Opening& opening, const UnwrittenInSources& unwritten) {
+  if (unwritten.count == 0) return;
+  const bool one = unwritten.count == 1;
+  const AbsentValues absent{cat(unwritten.count, one ? " chunk of its sources" : " chunks of its sources"), one,
+                            unwritten.first.empty() ? "" : cat(" (the first at ", unwritten.first, ")")};
+  refuse_where_all_must_be(opening, absent);
+  add_note(cat(absent.text(), one ? " and reads as a fill value" : " and read as fill values"),
+           opening.info.details.chunks_note);
+}
+
 std::unique_ptr<StoredBoxes> open_mapped(Opening& opening, const std::string& parent) {
   VirtualVolume mapped =
       make_virtual_boxes(std::move(opening.object.handle), opening.slice.positions, opening.slice.extent,
                          opening.slice.components.count, parent, opening.object.where());
   note_unmapped(opening, mapped.unmapped);
+  note_unwritten_in_sources(opening, mapped.unwritten);
   return std::move(mapped.boxes);
 }
 
@@ -233,6 +238,7 @@ std::unique_ptr<VolumeSource> open_planar(Opening opening) {
   const std::string where = opening.object.where();
   std::vector<std::unique_ptr<StoredBoxes>> parts;
   Uncovered unmapped;
+  UnwrittenInSources unwritten;
   if (kind == StorageKind::external) {
     throw Error(ErrorKind::input, compose(where, ": its components lie behind each other in files of their own; ",
                                           "convert them one by one, with ", option("component", 0)));
@@ -246,12 +252,14 @@ std::unique_ptr<VolumeSource> open_planar(Opening opening) {
       VirtualVolume part = make_virtual_boxes(std::move(dataset), index, opening.slice.extent, 1, parent, where);
       unmapped.count += part.unmapped.count;
       if (unmapped.first.empty()) unmapped.first = part.unmapped.first;
+      unwritten.add(part.unwritten);
       parts.push_back(std::move(part.boxes));
     } else {
       parts.push_back(make_library_boxes(std::move(dataset), *opening.facts.storage, ArrayPlace::behind(index), where));
     }
   }
   note_unmapped(opening, unmapped);
+  note_unwritten_in_sources(opening, unwritten);
   auto boxes = make_planar_boxes(std::move(parts), scalar_bytes(opening.facts.type->scalar));
   std::vector<std::string> files = boxes->files();
   files.push_back(parent);

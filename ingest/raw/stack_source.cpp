@@ -120,9 +120,11 @@ class StackSource final : public VolumeSource {
       info_.index_origin = {};
       info_.extent.z = 0;
       info_.file_bytes = 0;
+      info_.details.chunks_note.clear();
       info_.files.clear();
       access_ = source->access();
     }
+    if (const std::string& note = info.details.chunks_note; !note.empty()) note_chunks(path, note);
     check_alike(path, info, first_);
     if (!as_they_are_) {
       check_placed_alike(path, info, first_);
@@ -136,6 +138,16 @@ class StackSource final : public VolumeSource {
     info_.file_bytes += info.file_bytes;
     info_.mtime_ns = std::max(info_.mtime_ns, info.mtime_ns);
     working_bytes_ = std::max(working_bytes_, source->working_bytes());
+  }
+
+  // What the first one of those files says that lack chunks, and how many further ones there are.
+  void note_chunks(const std::string& path, const std::string& note) {
+    if (lacking_++ == 0) chunks_note_ = cat(path, ": ", note);
+    info_.details.chunks_note = chunks_note_;
+    if (lacking_ > 1) {
+      info_.details.chunks_note +=
+          cat("; ", lacking_ - 1, lacking_ == 2 ? " further file lacks" : " further files lack", " chunks, too");
+    }
   }
 
   // By what the files say, but where the user places the stack.
@@ -213,6 +225,8 @@ class StackSource final : public VolumeSource {
   AccessShape access_;
   std::vector<FileSlab> slabs_;
   std::vector<StackedPlanes> planes_;  ///< of the slabs, until they are placed
+  std::size_t lacking_ = 0;            ///< files without some of their chunks
+  std::string chunks_note_;            ///< of the first of them
   FileStates files_;
   std::uint64_t working_bytes_ = 0;  ///< of one file
   mutable std::mutex mutex_;

@@ -14,6 +14,7 @@
 #include "format/base/text.h"
 #include "format/io/digest.h"
 #include "ingest/headers/header_text.h"
+#include "ingest/values/value_notes.h"
 #include "ingest/values/vector_lengths.h"
 
 namespace weir {
@@ -70,6 +71,17 @@ void add_files(const SourceInfo& other, SourceInfo& info) {
     if (std::ranges::none_of(info.files, same)) info.files.push_back(file);
   }
   info.mtime_ns = std::max(info.mtime_ns, other.mtime_ns);
+}
+
+// "/v: 1 of its 2 chunks was never written ...", of each component that lacks some.
+std::string lacking_chunks(const std::vector<std::unique_ptr<VolumeSource>>& components) {
+  std::string all;
+  for (const auto& component : components) {
+    const SourceInfo& info = component->info();
+    const std::string& note = info.details.chunks_note;
+    add_note(note.empty() ? "" : cat(info.dataset, ": ", note), all);
+  }
+  return all;
 }
 
 bool same_chunks(const AccessShape& a, const AccessShape& b) {
@@ -234,6 +246,7 @@ std::unique_ptr<VolumeSource> magnitude_of(std::vector<std::unique_ptr<VolumeSou
   info.lengths = true;
   info.details.component = "magnitude";
   info.details.long_name.clear();
+  info.details.chunks_note = lacking_chunks(components);
   std::string digests = info.files_digest;
   bool several = !digests.empty();
   for (std::size_t i = 1; i < components.size(); ++i) {

@@ -20,7 +20,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (const auto& [name, entry] : weir::read_zip_directory(file, 1 << 20U, "fuzz")) {
       if (name.empty() || name.back() == '/') std::abort();
       try {
-        const std::uint64_t begin = weir::zip_entry_begin(file, entry, "fuzz");
+        const std::uint64_t begin = weir::zip_entry_begin(file, name, entry, "fuzz");
         if (begin > size || entry.packed > size - begin) std::abort();
       } catch (const weir::Error& error) {
         check_line(error);

@@ -1,16 +1,14 @@
 // weir cancel: has a running `weir watch` give jobs up.
 #include <CLI/CLI.hpp>
-#include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "format/base/error.h"
 #include "format/base/printable.h"
 #include "format/base/text.h"
 #include "tools/command.h"
+#include "tools/service/job_requests.h"
 #include "tools/service/service_client.h"
 
 namespace weir {
@@ -30,20 +28,7 @@ std::string cancelled_text(const ServiceClient::Json& job) {
 }
 
 void run(const CancelArguments& a) {
-  const ServiceClient client(a.service);
-  ServiceClient::Json jobs = ServiceClient::Json::array();
-  std::optional<Error> refused;  // the others are cancelled all the same
-  for (const std::int64_t id : a.ids) {
-    try {
-      jobs.push_back(client.post(cat("/api/jobs/", id, "/cancel")));
-    } catch (const Error& error) {
-      refused = refused ? Error(refused->kind(), cat(refused->what(), "; ", error.what())) : error;
-      continue;
-    }
-    if (!a.json) std::cout << client.read(jobs.back(), cancelled_text);
-  }
-  if (a.json) std::cout << ServiceClient::Json{{"jobs", jobs}}.dump() << '\n';
-  if (refused) throw *refused;
+  ask_of_jobs(ServiceClient(a.service), {.ids = a.ids, .action = "cancel", .text = cancelled_text, .json = a.json});
 }
 
 }  // namespace

@@ -123,6 +123,9 @@ std::optional<Sidecar> skip_or_replace(const SourceInfo& info, const ConvertArgu
       if (options.overwrite) return std::nullopt;
       throw usage_error(cat(options.output, ": exists and is not of ", info.path, " (", found.reason,
                             "); choose another output or pass --overwrite"));
+    case FinishedOutput::State::unreadable:
+      if (options.overwrite) return std::nullopt;
+      throw Error(ErrorKind::io, found.reason);
   }
   throw Error(ErrorKind::internal, "unknown state of an output");
 }
@@ -285,9 +288,9 @@ void convert(const CLI::App& command, const ConvertArguments& a) {
     try {
       sidecars.push_back(convert_step(steps[i], source_options, options, work));
     } catch (const std::exception&) {
-      if (steps.size() > 1) {
-        spdlog::warn("{} of {} volumes were converted, and none after {}; --skip-done leaves out what is done", i,
-                     steps.size(), steps[i].path);
+      if (steps.size() > 1) {  // by its output: several may be of one file
+        spdlog::warn("{} of {} volumes were converted, and none from {} on; --skip-done leaves out what is done", i,
+                     steps.size(), outputs[i]);
       }
       throw;
     }

@@ -153,14 +153,14 @@ void export_volume(const ExportArguments& arguments) {
     progress.update(done);
     if (interrupt_flag()) throw Error(ErrorKind::interrupted, "interrupted");
   };
-  refuse_damaged(arguments.volume, {{}, [&](std::uint64_t bytes) { progress.start("check", bytes); }, advance});
   const std::uint64_t total = file.grid().data_bytes();
   options.progress = [&](double share) { advance(static_cast<std::uint64_t>(share * static_cast<double>(total))); };
   options.release_pages = [&] { file.mapping().release_pages(); };
 
   const OpenVdbLibrary& library = openvdb_library(arguments.output + ": is to be an OpenVDB file");
   const std::unique_ptr<FileSystem> files = make_posix_file_system();
-  PartialFile output(*files, arguments.output, arguments.overwrite);
+  PartialFile output(*files, arguments.output, arguments.overwrite);  // refuses a name before all is read
+  refuse_damaged(arguments.volume, {{}, [&](std::uint64_t bytes) { progress.start("check", bytes); }, advance});
   progress.start("export", total);
   const VdbWritten written = write_vdb(file.grid(), arguments.volume, options, output.file());
   progress.finish();

@@ -73,8 +73,8 @@ struct InspectArguments {
 struct Inspection {
   const NvdbGrid& grid;
   std::optional<Sidecar> sidecar;
-  bool sidecar_matches = false;  ///< size and head checksum are those of the volume
-  std::string sidecar_error{};   ///< why that which is there cannot be read; empty: it can, or there is none
+  bool sidecar_matches = false;          ///< size and head checksum are those of the volume
+  std::optional<Error> sidecar_error{};  ///< why that which is there cannot be read; none: it can, or there is none
   Sidecar::Histogram histogram;
   std::optional<PackedCensus> packed;  ///< where the grid is packed
   MinMax values{};                     ///< least and largest; NaN where none is finite
@@ -119,7 +119,7 @@ Sidecar::Histogram counted_histogram(const NvdbGrid& grid, const MinMax& range, 
 }
 
 Inspection look_at(const NvdbFile& file, const ProgressOptions& progress) {
-  Inspection result{file.grid(), std::nullopt, false, {}, {}, std::nullopt, {}};
+  Inspection result{file.grid(), std::nullopt, false, std::nullopt, {}, std::nullopt, {}};
   if (const PackedData* packed = file.grid().packed()) result.packed = take_packed_census(*packed);
   const std::string path = find_sidecar(file.path());
   if (is_there(path)) {
@@ -127,7 +127,7 @@ Inspection look_at(const NvdbFile& file, const ProgressOptions& progress) {
       result.sidecar = read_sidecar(path);
       result.sidecar_matches = is_of(*result.sidecar, file.grid());
     } catch (const Error& error) {  // the volume may be sound all the same
-      result.sidecar_error = error.what();
+      result.sidecar_error = error;
     }
   }
   result.values = range_of_values(file.grid());
@@ -220,8 +220,8 @@ void print_sidecar(const Sidecar& s) {
 void print_text(const NvdbFile& file, const Inspection& found) {
   print_grid(file, found.values);
   if (found.packed) std::cout << packed_text(*file.grid().packed(), *found.packed);
-  if (!found.sidecar_error.empty()) {
-    line("sidecar     ", cat("unreadable: ", found.sidecar_error));
+  if (found.sidecar_error) {
+    line("sidecar     ", cat("unreadable: ", found.sidecar_error->what()));
   } else if (!found.sidecar) {
     std::cout << "sidecar     none\n";
   } else if (!found.sidecar_matches) {
@@ -266,14 +266,14 @@ Json to_json(const NvdbFile& file, const Inspection& found) {
                          : Json{{"cell", cells.cell}, {"dims", json_of(cells.lattice.count)}, {"apron", cells.apron}}},
       {"histogram", {{"min", found.histogram.min}, {"max", found.histogram.max}, {"counts", found.histogram.counts}}},
       {"sidecar_matches", found.sidecar ? Json(found.sidecar_matches) : Json()},
-      {"sidecar_error", found.sidecar_error.empty() ? Json() : Json(found.sidecar_error)},
+      {"sidecar_error", found.sidecar_error ? Json(found.sidecar_error->what()) : Json()},
       {"sidecar", found.sidecar ? Json::parse(to_json_text(*found.sidecar)) : Json()}};
 }
 
 /// What came of one file.
 struct Inspected {
-  Json report{};          ///< with --json
-  std::string problem{};  ///< what is wrong beside a volume that could be read; empty: nothing
+  Json report{};                   ///< with --json
+  std::optional<Error> problem{};  ///< what is wrong beside a volume that could be read; none: nothing
 };
 
 // A damaged .nvdb without its magic is still no raw file.
@@ -335,21 +335,21 @@ void run(const InspectArguments& arguments) {
   Json reports = Json::array();
   bool printed = false;
   int status = 0;
-  const auto say = [&](const std::string& problem, ErrorKind kind) {
+  const auto say = [&](const Error& problem) {
     std::cout.flush();
-    print_error_line(problem);
-    if (status == 0) status = static_cast<int>(kind);
+    print_error_line(problem.what());
+    if (status == 0) status = problem.exit_code();
   };
   for (const std::string& path : paths) {
     try {
       Inspected found = inspect(path, arguments, options, printed);
       printed = true;
       reports.push_back(std::move(found.report));
-      if (!found.problem.empty()) say(found.problem, ErrorKind::input);
+      if (found.problem) say(*found.problem);
     } catch (const Error& error) {
       const bool of_file = error.kind() == ErrorKind::input || error.kind() == ErrorKind::io;
       if (!several || !of_file) throw;
-      say(error.what(), error.kind());
+      say(error);
       reports.push_back({{"path", path}, {"error", error.what()}});
     }
   }

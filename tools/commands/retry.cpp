@@ -9,6 +9,7 @@
 #include "format/base/printable.h"
 #include "format/base/text.h"
 #include "tools/command.h"
+#include "tools/service/job_requests.h"
 #include "tools/service/service_client.h"
 
 namespace weir {
@@ -32,6 +33,10 @@ void retry_all(const RetryArguments& a) {
   });
 }
 
+std::string retried_text(const Json& job) {
+  return cat("job ", job.at("id").get<std::int64_t>(), " is tried again: ", printable(job.at("source")), '\n');
+}
+
 void run(const RetryArguments& a) {
   if (!a.ids.empty() && a.all_failed) throw usage_error("give IDs or --all-failed, not both");
   if (a.ids.empty() && !a.all_failed) {
@@ -39,15 +44,8 @@ void run(const RetryArguments& a) {
   }
   if (a.all_failed && a.force) throw Error(ErrorKind::usage, "--force is for jobs given by their IDs");
   if (a.all_failed) return retry_all(a);
-  const ServiceClient client(a.service);
-  Json jobs = Json::array();
-  for (const std::int64_t id : a.ids) {
-    jobs.push_back(client.post(cat("/api/jobs/", id, a.force ? "/retry?force=1" : "/retry")));
-    if (a.json) continue;
-    std::cout << cat("job ", id, " is tried again: ",
-                     client.read(jobs.back(), [](const Json& job) { return printable(job.at("source")); }), '\n');
-  }
-  if (a.json) std::cout << Json{{"jobs", jobs}}.dump() << '\n';
+  ask_of_jobs(ServiceClient(a.service),
+              {.ids = a.ids, .action = a.force ? "retry?force=1" : "retry", .text = retried_text, .json = a.json});
 }
 
 }  // namespace

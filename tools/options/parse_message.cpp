@@ -37,7 +37,7 @@ std::string wrong_name(std::string_view what, const std::string& word, const std
 std::string parse_message(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<CLI::App*> parsed = app.get_subcommands();
   const CLI::App& command = parsed.empty() ? app : *parsed.front();
-  const std::string help = cat(parsed.empty() ? "" : "weir ", command.get_name(), " --help");
+  const std::string help = cat(parsed.empty() ? "" : app.get_name() + ' ', command.get_name(), " --help");
   const std::vector<std::string> left = app.remaining(true);
   if (error.get_exit_code() != static_cast<int>(CLI::ExitCodes::ExtrasError) || left.empty()) {
     const std::string text = error.what();

@@ -70,12 +70,8 @@ void read_camera(const OptionRow& row, const std::string& text, Request& request
 
 // --iso without --mode asks for the surface.
 void choose_iso_mode(const GivenOptions& given, Request& request) {
-  const auto is_given = [&](std::string_view key) {
-    const auto found = given.find(key);
-    return found != given.end() && !found->second.empty();
-  };
-  if (!is_given("iso") || request.scene.mode == RenderMode::iso) return;
-  if (is_given("mode")) {
+  if (!given.contains("iso") || request.scene.mode == RenderMode::iso) return;
+  if (given.contains("mode")) {
     throw Error(ErrorKind::usage, compose(option("iso"), " is of the surface that ", option("mode", "iso"),
                                           " draws; not ", option("mode", render_mode_name(request.scene.mode))));
   }
@@ -304,7 +300,8 @@ std::string filter_name(Filter filter) {
   return filter == Filter::trilinear ? "trilinear" : "stochastic";
 }
 
-PictureRequest read_picture_request(const GivenOptions& given) {
+PictureRequest read_picture_request(const GivenOptions& options) {
+  const GivenOptions given = without_empty(options);
   PictureRequest request;
   request.sampling.samples = 0;
   read_options<Request>(kPictureOptions, given, request);

@@ -44,7 +44,7 @@ std::string filter_name(Filter filter);
 
 /// The scene file first, the command line over it. Throws Error(usage) naming option, text and form where one cannot be
 /// read, and as load_scene and load_environment.
-PictureRequest read_picture_request(const GivenOptions& given);
+PictureRequest read_picture_request(const GivenOptions& options);
 
 /// The files that a picture is made from besides its volume: a scene, and the environment that this names.
 std::vector<std::string> picture_inputs(const GivenOptions& given, const PictureRequest& request);

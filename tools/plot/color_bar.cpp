@@ -27,9 +27,10 @@ struct ColorBarTick {
   std::string label;
 };
 
-// Round numbers inside the range, about as many as there is room for; of a single value that one.
+// Round numbers inside the range, about as many as there is room for, or its ends, a hundredth of it exactly; of a
+// single value that one.
 std::vector<ColorBarTick> color_bar_ticks(double low, double high, int most) {
-  if (!(high > low)) return {{low, tick_text(low, std::abs(low))}};
+  if (!(high > low)) return {{low, short_number(low)}};
   const double step = tick_step(high - low, most);
   const double slack = 1e-6 * step;  // that float32 ends are off round numbers by
   std::vector<ColorBarTick> ticks;
@@ -37,7 +38,8 @@ std::vector<ColorBarTick> color_bar_ticks(double low, double high, int most) {
     ticks.push_back({i * step, tick_text(i * step, step)});
   }
   if (ticks.size() >= 2) return ticks;
-  return {{low, tick_text(low, high - low)}, {high, tick_text(high, high - low)}};
+  const double hundredth = (high - low) / 100;
+  return {{low, tick_text(low, hundredth)}, {high, tick_text(high, hundredth)}};
 }
 
 Float3 display_color(const Rgba& color) {

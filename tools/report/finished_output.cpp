@@ -128,7 +128,8 @@ FinishedOutput find_output(const SourceInfo& source, const ConversionOptions& op
   try {
     found = read_sidecar(record_path);
   } catch (const Error& error) {
-    return {FinishedOutput::State::foreign, {}, error.what()};
+    const bool unreadable = error.kind() == ErrorKind::io;
+    return {unreadable ? FinishedOutput::State::unreadable : FinishedOutput::State::foreign, {}, error.what()};
   }
   const Sidecar expected = expected_record(source, options);
   if (!same_file(found.source.path, expected.source.path)) {

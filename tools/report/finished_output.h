@@ -13,10 +13,11 @@ namespace weir {
 
 struct FinishedOutput {
   enum class State {
-    absent,  ///< neither volume nor sidecar
-    done,    ///< the result of this very conversion: `sidecar` is its record
-    stale,   ///< weir made it of the same source, which has changed since, or with other options, or not to the end
-    foreign  ///< weir did not make it of this source; `reason` says what it is
+    absent,      ///< neither volume nor sidecar
+    done,        ///< the result of this very conversion: `sidecar` is its record
+    stale,       ///< weir made it of the same source, which has changed since, or with other options, or not to the end
+    foreign,     ///< weir did not make it of this source; `reason` says what it is
+    unreadable,  ///< the system does not give its sidecar now, so that nobody knows: `reason` is the error's line
   };
   State state = State::absent;
   std::optional<Sidecar> sidecar;

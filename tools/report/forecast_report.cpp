@@ -1,6 +1,5 @@
 #include "tools/report/forecast_report.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -41,7 +40,7 @@ std::string file_text(const Forecast& f, const std::string& output) {
   if (f.file_bytes.value == 0) return cat(output, ": as long as it needs");
   std::string text = cat(output, ": ", f.exact_bytes ? "" : "about ", whole_number(f.file_bytes.value), " bytes");
   if (!f.exact_bytes && has_spread(f.file_bytes)) {
-    text += cat(" (", whole_number(std::max(0.0, f.file_bytes.low)), " to ", whole_number(f.file_bytes.high), ")");
+    text += cat(" (", whole_number(f.file_bytes.low), " to ", whole_number(f.file_bytes.high), ")");
   }
   if (f.scratch_bytes > 0) text += cat(", and ", format_bytes(f.scratch_bytes), " until it is done");
   return text;

@@ -22,9 +22,10 @@ HistogramCounts::~HistogramCounts() {
 }
 
 void HistogramCounts::ask(ViewerId viewer, HistogramQuestion question) {
-  leave(viewer, question.side);
   const std::string key = cat(question.step, ' ', question.side, ' ', file_identity(question.path));
   const auto found = std::find_if(jobs_.begin(), jobs_.end(), [&](const Job& job) { return job.key == key; });
+  if (found != jobs_.end() && found->viewers.contains(viewer)) return;
+  leave(viewer, question.side);
   if (found != jobs_.end()) {
     found->viewers.insert(viewer);
   } else {

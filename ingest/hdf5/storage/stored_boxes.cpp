@@ -79,6 +79,15 @@ class StoredBoxSource final : public VolumeSource {
 
 }  // namespace
 
+void repeat_value(std::span<const std::byte> value, std::span<std::byte> stored) {
+  std::size_t done = std::min(value.size(), stored.size());
+  std::copy_n(value.begin(), done, stored.begin());
+  for (std::size_t more = 0; done > 0 && done < stored.size(); done += more) {
+    more = std::min(done, stored.size() - done);
+    std::copy_n(stored.begin(), more, stored.begin() + static_cast<std::ptrdiff_t>(done));
+  }
+}
+
 std::unique_ptr<VolumeSource> make_stored_box_source(std::unique_ptr<StoredBoxes> boxes, SourceInfo info,
                                                      bool big_endian, std::uint64_t memory, const std::string& where,
                                                      const VoxelComponents& components) {

@@ -36,6 +36,9 @@ class StoredBoxes {
   virtual std::uint64_t working_bytes() const = 0;
 };
 
+/// Fills `stored` with copies of `value`, whose bytes divide its own.
+void repeat_value(std::span<const std::byte> value, std::span<std::byte> stored);
+
 /// A source of `info`, whose domain begins at index 0, with `components` of info.type each voxel. Reads in pieces of
 /// whole chunks, through one buffer that takes at most a sixteenth of `memory` bytes or one chunk. Throws Error(usage),
 /// naming `where` and a sufficient --memory, where chunks need more than half of it.

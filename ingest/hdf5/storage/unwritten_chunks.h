@@ -24,4 +24,9 @@ struct UnwrittenChunks {
 UnwrittenChunks unwritten_chunks(hid_t dataset, const Storage& storage, std::span<const std::int64_t> leading,
                                  const std::string& where);
 
+/// The same of the chunks, of `chunk` elements, in which `selected` has elements: a selection in the dataset's space
+/// that is not empty.
+UnwrittenChunks unwritten_chunks(hid_t dataset, const std::vector<hsize_t>& chunk, hid_t selected,
+                                 const std::string& where);
+
 }  // namespace weir

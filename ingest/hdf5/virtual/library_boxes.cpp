@@ -24,6 +24,7 @@ class LibraryBoxes final : public StoredBoxes {
     const Hdf5Lock lock;
     type_ = Hdf5Handle(H5Dget_type(dataset_.get()));
     space_ = Hdf5Handle(H5Dget_space(dataset_.get()));
+    if (storage.kind == StorageKind::chunked) fill_ = storage.fill;
     if (storage.chunk.size() < place_.index.size() + place_.axes.size()) return;
     const auto at = [&](std::size_t i) { return static_cast<std::int64_t>(storage.chunk[place_.axes.at(i)]); };
     chunk_ = {at(2), at(1), at(0)};
@@ -39,6 +40,7 @@ class LibraryBoxes final : public StoredBoxes {
     const Hdf5Handle in_file = select_box(space_.get(), place_, box);
     const auto values = static_cast<hsize_t>(H5Sget_select_npoints(in_file.get()));
     const Hdf5Handle in_memory(H5Screate_simple(1, &values, nullptr));
+    if (!fill_.empty()) repeat_value(fill_, stored);
     // The file's own type in memory: conversion is ours.
     if (H5Dread(dataset_.get(), type_.get(), in_memory.get(), in_file.get(), H5P_DEFAULT, stored.data()) < 0) {
       throw hdf5_error(where_, cat("cannot be read at ", box_text(box), ", the file is cut short or damaged"));
@@ -52,6 +54,7 @@ class LibraryBoxes final : public StoredBoxes {
   std::string crash_line_;
   Hdf5Handle type_;
   Hdf5Handle space_;
+  std::vector<std::byte> fill_;  ///< a stored value; of chunks, which the library may leave as they are in memory
   Index3 chunk_{0, 0, 0};
   std::uint64_t library_bytes_ = 0;
 };

@@ -9,7 +9,6 @@
 #include "ingest/hdf5/file/hdf5_file.h"
 #include "ingest/hdf5/storage/storage.h"
 #include "ingest/hdf5/virtual/library_boxes.h"
-#include "ingest/hdf5/virtual/virtual_mappings.h"
 #include "ingest/source/extent.h"
 
 namespace weir {
@@ -54,7 +53,8 @@ class VirtualBoxes final : public StoredBoxes {
         type_(H5Dget_type(dataset_.get())),
         space_(H5Dget_space(dataset_.get())),
         mapped_(virtual_mappings(dataset_.get(), axis_box(index_, {{0, 0, 0}, extent}, components_), parent, where_)) {
-    if (mapped_.unmapped.count > 0) fill_ = storage_of(dataset_.get()).fill;
+    // A source that is never to be filled leaves what is in memory.
+    if (mapped_.unmapped.count > 0 || mapped_.unwritten.count > 0) fill_ = storage_of(dataset_.get()).fill;
     for (const VirtualMapping& mapping : mapped_.mappings) {
       if (mapping.chunk.empty()) continue;
       std::uint64_t bytes = kSourceChunkCopies * mapping.value_bytes;
@@ -78,6 +78,7 @@ class VirtualBoxes final : public StoredBoxes {
   }
 
   const Uncovered& unmapped() const { return mapped_.unmapped; }
+  const UnwrittenInSources& unwritten() const { return mapped_.unwritten; }
   Index3 chunk() const override { return chunk_; }
   Index3 chunk_origin() const override { return chunk_origin_; }
   std::vector<std::string> files() const override {
@@ -95,7 +96,7 @@ class VirtualBoxes final : public StoredBoxes {
     const AxisBox placed = axis_box(index_, box, components_);
     std::vector<hsize_t> dims;
     for (std::size_t i = 0; i < placed.lo.size(); ++i) dims.push_back(placed.hi[i] - placed.lo[i]);
-    fill(stored);
+    if (!fill_.empty()) repeat_value(fill_, stored);  // what no source gives a value for keeps it
     const std::vector<hssize_t> corner(placed.lo.begin(), placed.lo.end());
     for (const VirtualMapping& mapping : mapped_.mappings) {
       if (!overlap(mapping.bounds, placed)) continue;
@@ -120,12 +121,6 @@ class VirtualBoxes final : public StoredBoxes {
     Hdf5Handle dataset;
   };
 
-  // What no source is mapped to keeps it.
-  void fill(std::span<std::byte> stored) const {
-    if (fill_.empty()) return;
-    for (std::size_t at = 0; at < stored.size(); at += fill_.size()) std::ranges::copy(fill_, &stored[at]);
-  }
-
   hid_t source_of(const VirtualMapping& mapping) {
     const auto found = std::ranges::find(open_, &mapping, &OpenSource::mapping);
     if (found != open_.end()) {
@@ -145,7 +140,7 @@ class VirtualBoxes final : public StoredBoxes {
   Hdf5Handle type_;
   Hdf5Handle space_;
   VirtualMappings mapped_;
-  std::vector<std::byte> fill_;  ///< a stored value; empty where every element has a source
+  std::vector<std::byte> fill_;  ///< a stored value; empty where a source gives every element
   std::list<OpenSource> open_;   ///< the last one used first
   Index3 chunk_{0, 0, 0};
   Index3 chunk_origin_{0, 0, 0};
@@ -158,7 +153,8 @@ VirtualVolume make_virtual_boxes(Hdf5Handle dataset, std::vector<std::int64_t> i
                                  std::int64_t components, const std::string& parent, const std::string& where) {
   auto boxes = std::make_unique<VirtualBoxes>(std::move(dataset), std::move(index), extent, components, parent, where);
   Uncovered unmapped = boxes->unmapped();
-  return {std::move(boxes), std::move(unmapped)};
+  UnwrittenInSources unwritten = boxes->unwritten();
+  return {std::move(boxes), std::move(unmapped), std::move(unwritten)};
 }
 
 }  // namespace weir

@@ -9,12 +9,14 @@
 #include "ingest/hdf5/file/hdf5_handle.h"
 #include "ingest/hdf5/storage/stored_boxes.h"
 #include "ingest/hdf5/virtual/coverage.h"
+#include "ingest/hdf5/virtual/virtual_mappings.h"
 
 namespace weir {
 
 struct VirtualVolume {
   std::unique_ptr<StoredBoxes> boxes;
   Uncovered unmapped;  ///< elements of the volume without a source, which read as the dataset's fill value
+  UnwrittenInSources unwritten;
 };
 
 /// The three axes of `dataset` (in the file `parent`) behind the leading ones, `extent` voxels, at `index`, one

@@ -9,7 +9,9 @@
 #include "ingest/hdf5/file/hdf5_error.h"
 #include "ingest/hdf5/file/hdf5_file.h"
 #include "ingest/hdf5/file/side_files.h"
+#include "ingest/hdf5/storage/chunk_store.h"
 #include "ingest/hdf5/storage/storage.h"
+#include "ingest/hdf5/storage/unwritten_chunks.h"
 #include "ingest/hdf5/virtual/coverage.h"
 #include "ingest/hdf5/virtual/selection_blocks.h"
 
@@ -105,14 +107,15 @@ class MappingReader {
                       ", nor to any other of the volume; the dataset is incomplete"));
     }
     Uncovered unmapped = uncovered(wanted_, blocks_);
-    return {std::move(mappings_), std::move(unmapped)};
+    return {std::move(mappings_), std::move(unmapped), std::move(unwritten_)};
   }
 
  private:
   Error error(const std::string& what) const { return {ErrorKind::input, cat(where_, ": ", what)}; }
 
-  std::string source_text(const VirtualMapping& found) const {
-    return cat("its source ", found.file.empty() ? parent_ : found.file, ": ", found.dataset, ": ");
+  std::string source_text(const VirtualMapping& found) const { return cat("its source ", source_name(found), ": "); }
+  std::string source_name(const VirtualMapping& found) const {
+    return cat(found.file.empty() ? parent_ : found.file, ": ", found.dataset);
   }
 
   StoredMapping stored(hid_t creation, std::size_t i) const {
@@ -138,7 +141,7 @@ class MappingReader {
       select_as(mapping.in_virtual.get(), found.in_virtual.get());
       if (!touches(found.in_virtual.get())) return;
     }
-    look_at_source(mapping, 0, found);
+    const Hdf5Handle opened = look_at_source(mapping, 0, found);
     if (endless) {
       std::optional<MappedSlab> source = MappedSlab::of(mapping.in_source.get());
       if (!source || !source->endless || source->dense() != slab->dense()) {
@@ -154,7 +157,7 @@ class MappingReader {
       source->select(found.in_source.get());
       if (!touches(found.in_virtual.get())) return;
     }
-    keep(std::move(found));
+    keep(std::move(found), opened.get());
   }
 
   void take_numbered(const StoredMapping& mapping, const MappedSlab& slab) {
@@ -169,8 +172,8 @@ class MappingReader {
       found.in_virtual = Hdf5Handle(H5Scopy(space_.get()));
       one.select(found.in_virtual.get());
       if (!touches(found.in_virtual.get())) continue;
-      look_at_source(mapping, block, found);
-      keep(std::move(found));
+      const Hdf5Handle opened = look_at_source(mapping, block, found);
+      keep(std::move(found), opened.get());
     }
   }
 
@@ -192,7 +195,8 @@ class MappingReader {
     return H5Sselect_intersect_block(space, first.data(), last.data()) > 0;
   }
 
-  void look_at_source(const StoredMapping& mapping, hsize_t block, VirtualMapping& found) const {
+  /// Returns it, open.
+  Hdf5Handle look_at_source(const StoredMapping& mapping, hsize_t block, VirtualMapping& found) const {
     found.dataset = virtual_source_name(mapping.dataset, block);
     const std::string file = virtual_source_name(mapping.file, block);
     if (file != ".") {
@@ -203,7 +207,7 @@ class MappingReader {
       }
       found.file = *path;
     }
-    const Hdf5Handle source = open_virtual_source(dataset_, found.file, found.dataset, where_);
+    Hdf5Handle source = open_virtual_source(dataset_, found.file, found.dataset, where_);
     const Storage storage = storage_of(source.get());
     const auto refuse = [&](const std::string& what) { return error(source_text(found) + what); };
     if (!storage.obstacle.empty()) throw refuse(storage.obstacle);
@@ -224,9 +228,10 @@ class MappingReader {
     }
     const Hdf5Handle type(H5Dget_type(source.get()));
     found.value_bytes = H5Tget_size(type.get());
+    return source;
   }
 
-  void keep(VirtualMapping found) {
+  void keep(VirtualMapping found, hid_t source) {
     const hssize_t mapped = H5Sget_select_npoints(found.in_virtual.get());
     const hssize_t held = H5Sget_select_npoints(found.in_source.get());
     if (mapped != held) throw error(cat(source_text(found), "has ", held, " elements where ", mapped, " are mapped"));
@@ -238,7 +243,23 @@ class MappingReader {
     H5Sget_select_bounds(found.in_virtual.get(), first.data(), last.data());
     found.bounds = {{first.begin(), first.end()}, {last.begin(), last.end()}};
     for (hsize_t& hi : found.bounds.hi) ++hi;
+    unwritten_.add(unwritten_in(source, found));
     mappings_.push_back(std::move(found));
+  }
+
+  // What of the source is not read may well be unwritten: other steps of a simulation that goes on.
+  UnwrittenInSources unwritten_in(hid_t source, const VirtualMapping& found) const {
+    if (found.chunk.empty()) return {};
+    std::vector<hsize_t> count;
+    for (std::size_t axis = 0; axis < wanted_.lo.size(); ++axis) count.push_back(wanted_.hi[axis] - wanted_.lo[axis]);
+    const Hdf5Handle wanted(H5Scopy(space_.get()));
+    H5Sselect_hyperslab(wanted.get(), H5S_SELECT_SET, wanted_.lo.data(), nullptr, count.data(), nullptr);
+    const Hdf5Handle read(H5Sselect_project_intersection(found.in_virtual.get(), found.in_source.get(), wanted.get()));
+    if (H5Sget_select_npoints(read.get()) <= 0) return {};
+    const UnwrittenChunks unwritten =
+        unwritten_chunks(source, found.chunk, read.get(), cat(where_, ": its source ", source_name(found)));
+    if (unwritten.first.empty()) return {unwritten.count, {}};
+    return {unwritten.count, cat(corner_text(unwritten.first), " of ", source_name(found))};
   }
 
   hid_t dataset_;
@@ -248,9 +269,15 @@ class MappingReader {
   Hdf5Handle space_;
   std::vector<VirtualMapping> mappings_;
   std::vector<AxisBox> blocks_;
+  UnwrittenInSources unwritten_;
 };
 
 }  // namespace
+
+void UnwrittenInSources::add(const UnwrittenInSources& further) {
+  if (first.empty()) first = further.first;
+  count += further.count;
+}
 
 VirtualMappings virtual_mappings(hid_t dataset, const AxisBox& wanted, const std::string& parent,
                                  const std::string& where) {

@@ -1,6 +1,6 @@
 // A virtual dataset's mappings: which elements of it lie where in which other
 // dataset. The library silently reads what it cannot find as fill values; here every source is found, or named in an
-// error, and elements that no source is mapped to are counted.
+// error, and elements that no source is mapped to are counted, and chunks that a source lacks.
 #pragma once
 
 #include <hdf5.h>
@@ -25,9 +25,19 @@ struct VirtualMapping {
   std::size_t value_bytes = 0;  ///< of the source's type
 };
 
+/// Chunks of sources that elements of the volume lie in and that nobody has written: the library gives the source's
+/// fill value for them.
+struct UnwrittenInSources {
+  std::uint64_t count = 0;  ///< once for each mapping that reads it
+  std::string first;        ///< "0, 0, 8 of PATH: DATASET"; empty where it was not looked up
+
+  void add(const UnwrittenInSources& further);
+};
+
 struct VirtualMappings {
   std::vector<VirtualMapping> mappings;
   Uncovered unmapped;  ///< elements that the library gives the fill value for
+  UnwrittenInSources unwritten;
 };
 
 /// The mappings of `dataset` (in the file `parent`) that have elements in `wanted`, in the file's order; those

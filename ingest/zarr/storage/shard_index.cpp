@@ -26,6 +26,8 @@ std::uint64_t shard_index_bytes(const ZarrSharding& sharding, std::uint64_t chun
 
 std::vector<ShardPlace> parse_shard_index(const ZarrSharding& sharding, std::span<std::byte> index,
                                           std::uint64_t shard_bytes, const std::string& where) {
+  const std::uint64_t index_begin = sharding.index_first ? 0 : shard_bytes - index.size();
+  const std::uint64_t index_end = index_begin + index.size();
   if (sharding.index_checksum) {
     try {
       index = check_crc32c(index);
@@ -42,6 +44,11 @@ std::vector<ShardPlace> parse_shard_index(const ZarrSharding& sharding, std::spa
     if (place.offset > shard_bytes || place.bytes > shard_bytes - place.offset) {
       throw input_error(where, cat("chunk ", i, " of the shard is said to have ", place.bytes, " bytes at ",
                                    place.offset, ", and the shard has ", shard_bytes, " bytes; the file is damaged"));
+    }
+    if (place.offset < index_end && place.offset + place.bytes > index_begin) {
+      throw input_error(
+          where, cat("chunk ", i, " of the shard is said to have ", place.bytes, " bytes at ", place.offset,
+                     ", and the shard's index lies from ", index_begin, " to ", index_end, "; the file is damaged"));
     }
   }
   return places;

@@ -25,7 +25,8 @@ struct ShardPlace {
 std::uint64_t shard_index_bytes(const ZarrSharding& sharding, std::uint64_t chunks);
 
 /// The places that `index`, of shard_index_bytes, has, the last axis's chunks beside each other. Throws Error(input),
-/// beginning with `where`, where its checksum is another one and where a place is not inside the shard's `shard_bytes`.
+/// beginning with `where`, where its checksum is another one and where a place is not inside the shard's `shard_bytes`
+/// or reaches into the index.
 std::vector<ShardPlace> parse_shard_index(const ZarrSharding& sharding, std::span<std::byte> index,
                                           std::uint64_t shard_bytes, const std::string& where);
 

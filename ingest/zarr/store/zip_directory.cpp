@@ -146,18 +146,24 @@ ZipEntries read_zip_directory(const ZipBytes& file, std::uint64_t memory, const 
   return entries;
 }
 
-std::uint64_t zip_entry_begin(const ZipBytes& file, const ZipEntry& entry, const std::string& where) {
+std::uint64_t zip_entry_begin(const ZipBytes& file, std::string_view name, const ZipEntry& entry,
+                              const std::string& where) {
   std::array<std::byte, kLocalBytes> header{};
   if (entry.header > file.size || file.size - entry.header < kLocalBytes) {
     throw damaged_zip(where, cat("is said to lie at ", entry.header, " of ", file.size, " bytes"));
   }
   file.read(entry.header, header);
   if (little_endian(header, 0, 4) != kLocalMagic) throw damaged_zip(where, cat("has no header at ", entry.header));
-  const std::uint64_t begin = entry.header + kLocalBytes + little_endian(header, 26, 2) + little_endian(header, 28, 2);
+  const std::uint64_t name_bytes = little_endian(header, 26, 2);
+  const std::uint64_t begin = entry.header + kLocalBytes + name_bytes + little_endian(header, 28, 2);
   if (begin > file.size || entry.packed > file.size - begin) {
     throw damaged_zip(where,
                       cat("has ", entry.packed, " bytes at ", begin, ", beyond the ", file.size, " of the file"));
   }
+  std::string found(static_cast<std::size_t>(name_bytes), '\0');
+  if (!found.empty()) file.read(entry.header + kLocalBytes, std::as_writable_bytes(std::span(found)));
+  // Of an entry that is read in parts no checksum tells it.
+  if (found != name) throw damaged_zip(where, cat("has the header of another entry at ", entry.header));
   return begin;
 }
 

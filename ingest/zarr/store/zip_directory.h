@@ -7,6 +7,7 @@
 #include <map>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace weir {
 
@@ -42,8 +43,9 @@ bool begins_as_zip(std::span<const std::byte> head);
 /// Error(usage) where the directory takes more than `memory` bytes, before any is taken.
 ZipEntries read_zip_directory(const ZipBytes& file, std::uint64_t memory, const std::string& where);
 
-/// Offset of the first byte of the entry's packed bytes. Throws Error(input) where its local header is none, or the
-/// bytes reach beyond the file.
-std::uint64_t zip_entry_begin(const ZipBytes& file, const ZipEntry& entry, const std::string& where);
+/// Offset of the first byte of the packed bytes of the entry `name`. Throws Error(input) where its local header is none
+/// or another entry's, or the bytes reach beyond the file.
+std::uint64_t zip_entry_begin(const ZipBytes& file, std::string_view name, const ZipEntry& entry,
+                              const std::string& where);
 
 }  // namespace weir

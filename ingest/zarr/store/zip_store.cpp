@@ -35,8 +35,8 @@ class RawInflater {
 
 class ZipObject final : public ZarrObject {
  public:
-  ZipObject(const ZipBytes& file, const ZipEntry& entry, std::string where)
-      : file_(file), entry_(entry), begin_(zip_entry_begin(file, entry, where)), where_(std::move(where)) {}
+  ZipObject(const ZipBytes& file, std::string_view name, const ZipEntry& entry, std::string where)
+      : file_(file), entry_(entry), begin_(zip_entry_begin(file, name, entry, where)), where_(std::move(where)) {}
 
   std::uint64_t size() const override { return entry_.bytes; }
 
@@ -133,7 +133,7 @@ class ZipStore final : public ZarrStore {
       throw input_error(shown(key), cat("is stored, and has ", entry.packed, " bytes and ", entry.bytes,
                                         " unpacked; the zip file is damaged"));
     }
-    return std::make_unique<ZipObject>(bytes_, entry, shown(key));
+    return std::make_unique<ZipObject>(bytes_, key, entry, shown(key));
   }
 
   std::vector<std::string> groups_in(const std::string& key) override {

@@ -195,6 +195,20 @@ static void inputs(void) {
   CHECK_STATUS(WEIR_ERROR_INPUT, weir_convert_file(path_of("x.raw"), NULL, NULL, path_of("a.nvdb"), &error));
 }
 
+/* A remedy names what the program has to set. */
+static void enumerators(void) {
+  const char* const input = path_of("v_2x2x2_uint8.raw");
+  FILE* const file = fopen(input, "wb");
+  CHECK(file != NULL && fwrite("12345678", 1, 8, file) == 8 && fclose(file) == 0);
+  char wanted[1024];
+  weir_input_options i;
+  weir_input_options_init(&i, sizeof i);
+  i.missing_chunks = WEIR_MISSING_CHUNKS_ERROR;
+  snprintf(wanted, sizeof wanted,
+           "%s: WEIR_MISSING_CHUNKS_ERROR is for Zarr arrays and HDF5 files, and this is raw; leave it out", input);
+  CHECK_USAGE(wanted, weir_convert_file(input, &i, NULL, path_of("a.nvdb"), &error));
+}
+
 static void grids(void) {
   weir_buffer* buffer = NULL;
   weir_grid* grid = NULL;
@@ -253,6 +267,7 @@ int main(void) {
   volumes();
   options();
   inputs();
+  enumerators();
   grids();
   long_messages();
   free(values);

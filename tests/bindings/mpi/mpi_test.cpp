@@ -212,17 +212,21 @@ TEST_F(Mpi, AFailureIsOneLineAndTheSameEverywhere) {
     EXPECT_EQ(run.exit_code, code) << run.err;
     EXPECT_EQ(line_of(run.err, "weir-mpi"), line) << run.err;
   };
-  fails({"none.raw", "-o", "out.nvdb"}, 3, "weir-mpi: none.raw: cannot open for reading: No such file or directory");
-  fails({"no\nne.raw", "-o", "out.nvdb"}, 3,
-        "weir-mpi: no\\nne.raw: cannot open for reading: No such file or directory");
+  const std::string missing =
+      "none.raw: cannot open for reading: No such file or directory; check the name and the current directory";
+  fails({"none.raw", "-o", "out.nvdb"}, 3, "weir-mpi: " + missing);
+  fails({"no\nne.raw", "-o", "out.nvdb"}, 3, "weir-mpi: no\\n" + missing.substr(2));
   fails({cloud, "-o", "none/out.nvdb"}, 5,
         "weir-mpi: none/out.nvdb: the directory none does not exist; make it or choose another output");
   fails(
       {cloud, "-o", "out.nvdb", "--size", "1000"}, 4,
       "weir-mpi: out.nvdb: 1000 bytes asked, the smallest tree for this volume takes 345312; ask for --size 345312 or "
       "more");
-  fails({cloud, "-o", "out.nvdb", "--speed", "9"}, 2,
-        "weir-mpi: The following arguments were not expected: 9 --speed; see weir-mpi --help");
+  fails({cloud, "-o", "out.nvdb", "--speed", "9"}, 2, "weir-mpi: no option --speed; see weir-mpi convert --help");
+  fails({cloud, "-o", "out.nvdb", "--sizee", "9"}, 2,
+        "weir-mpi: no option --sizee; did you mean --size? see weir-mpi convert --help");
+  fails({cloud, "-o=out.nvdb"}, 2,
+        "weir-mpi: -o=out.nvdb is read as the name =out.nvdb; write -o NAME or --output=NAME");
   EXPECT_EQ(leftovers(), std::vector<std::string>{});
   write_file(directory_ / "out.nvdb", "theirs");
   fails({cloud, "-o", "out.nvdb"}, 2, "weir-mpi: out.nvdb: exists; choose another output or pass --overwrite");

@@ -17,15 +17,12 @@ def keyword(option):
 
 class Options(FolderTest):
     def test_wrong_options_are_refused_for_the_same_reason(self):
-        refused = 0
         for wrong in WRONG:
-            refused += 1
             reason = re.sub(r"\{([^}]*)\}", lambda option: keyword(option[1]), wrong["reason"])
             with self.subTest(reason):
                 given = {keyword(key): text for key, text in wrong["given"].items()}
                 message = self.refused(weir.UsageError, weir.convert, ramp(9, 9, 9), self.folder / "a.nvdb", **given)
                 self.assertEqual(message, reason)
-        self.assertEqual(refused, len(WRONG))
 
     def test_flags_take_what_is_true_or_false(self):
         import numpy

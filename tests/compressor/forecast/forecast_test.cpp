@@ -9,6 +9,7 @@
 
 #include "compressor/conversion.h"
 #include "compressor/conversion_memory.h"
+#include "compressor/forecast/sample_plan.h"
 #include "tests/compressor/support/memory_volume.h"
 #include "tests/support/faulty_file_system.h"
 #include "tests/support/message_of_error.h"
@@ -39,6 +40,12 @@ float uneven(const Index3& i) {
 MemoryVolume& uneven_volume() {
   static MemoryVolume volume({{0, 0, 0}, {200, 256, 256}}, uneven);
   return volume;
+}
+
+MemoryVolume volume_with_nan_in_every_block() {
+  return MemoryVolume({{0, 0, 0}, {128, 256, 256}}, [](const Index3& i) {
+    return i.x % 8 == 3 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(i.y);
+  });
 }
 
 class ForecastTest : public testing::Test {
@@ -226,9 +233,7 @@ TEST_F(ForecastTest, SampleForALosslessFile_TellsTheSize) {
 }
 
 TEST_F(ForecastTest, ValuesThatAreRefused_AreReported) {
-  MemoryVolume volume({{0, 0, 0}, {128, 256, 256}}, [](const Index3& i) {
-    return i.x % 8 == 3 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(i.y);
-  });
+  MemoryVolume volume = volume_with_nan_in_every_block();
   const ConversionOptions asked = options(Encoding::automatic, Budget::Kind::rate);
   EXPECT_EQ(message_of_error(ErrorKind::input, [&] { forecast(volume, asked, 8 * kMiB); }),
             "memory: 262144 of the 2097152 voxels sampled are NaN or infinite; choose --nonfinite background or "
@@ -253,6 +258,65 @@ TEST_F(ForecastTest, Errors_AreThoseOfTheConversion) {
   EXPECT_EQ(message_of_error(ErrorKind::io, [&] { forecast(volume, asked, 1000); }),
             asked.output + ": the directory " + (directory_ / "missing") +
                 " does not exist; make it or choose another output");
+}
+
+TEST_F(ForecastTest, SampleForARate_NamesTheBudgetOfTheConversion) {
+  MemoryVolume& volume = uneven_volume();
+  ConversionOptions asked = options(Encoding::float32, Budget::Kind::rate);
+  asked.budget.bytes = 8 * kMiB;
+  EXPECT_EQ(forecast(volume, asked, 14 * kMiB).budget, "rate");
+  asked.budget.kind = Budget::Kind::automatic;
+  EXPECT_EQ(forecast(volume, asked, 14 * kMiB).budget, "rate");
+  asked.budget.kind = Budget::Kind::size;
+  EXPECT_EQ(forecast(volume, asked, 14 * kMiB).budget, "size");
+}
+
+TEST_F(ForecastTest, SmallestTreeAboveTheStandardRate_IsExpectedInstead) {
+  MemoryVolume volume = volume_with_nan_in_every_block();
+  ConversionOptions asked = options(Encoding::automatic, Budget::Kind::automatic);
+  asked.non_finite = NonFinitePolicy::keep;
+  const Forecast f = forecast(volume, asked, 8 * kMiB);
+  const Sidecar made = convert(volume, asked);
+  ASSERT_EQ(made.budget.kind, "minimum");
+  EXPECT_EQ(f.budget, "minimum");
+  EXPECT_EQ(f.not_sampled, "");
+  EXPECT_FALSE(f.exact_bytes);
+  EXPECT_NEAR(f.file_bytes.value / static_cast<double>(made.file.bytes), 1, 0.01);
+}
+
+TEST_F(ForecastTest, RateBelowTheSmallestTreeOfTheSampleAlone_IsRefused) {
+  MemoryVolume volume = volume_with_nan_in_every_block();
+  ConversionOptions asked = options(Encoding::automatic, Budget::Kind::rate);
+  asked.non_finite = NonFinitePolicy::keep;
+  for (const bool at_most : {false, true}) {
+    asked.budget.at_most = at_most;
+    const std::string message = message_of_error(ErrorKind::budget, [&] { forecast(volume, asked, 8 * kMiB); });
+    EXPECT_TRUE(
+        message.starts_with(asked.output + ": 4194304 bytes asked, the smallest tree for this volume takes about 3"))
+        << message;
+  }
+}
+
+TEST_F(ForecastTest, RateBelowTheSmallestTreeAsASampleHasIt_IsReported) {
+  MemoryVolume volume = volume_with_nan_in_every_block();
+  ConversionOptions asked = options(Encoding::automatic, Budget::Kind::rate);
+  asked.non_finite = NonFinitePolicy::keep;
+  asked.budget.rate = 2;
+  const Forecast f = forecast(volume, asked, 8 * kMiB);
+  EXPECT_TRUE(f.not_sampled.starts_with("by one, the smallest tree for this volume takes about 3")) << f.not_sampled;
+}
+
+TEST_F(ForecastTest, RangeOfOneBusyPlace_HasNoSizeBelowZero) {
+  const Box domain{{0, 0, 0}, {200, 256, 256}};
+  const SamplePlan plan(domain, AccessShape{}, static_cast<std::int64_t>(14 * kMiB / sizeof(float)), 1);
+  const Index3 corner = plan.source_corner({0, 0, 0});
+  const Box busy{corner, corner + plan.cell()};
+  MemoryVolume volume(domain, [&](const Index3& i) {
+    return busy.contains(Box{i, i + Index3{1, 1, 1}}) ? noise(i) : 0;
+  });
+  const Forecast f = forecast(volume, options(Encoding::packed, Budget::Kind::lossless), 14 * kMiB);
+  EXPECT_GT(f.file_bytes.high, 2 * f.file_bytes.value);
+  EXPECT_EQ(f.file_bytes.low, 0);
 }
 
 TEST_F(ForecastTest, SizeBelowAnyFile_IsRefusedBySampleToo) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -308,6 +309,18 @@ TEST(ErrorTargetOfMissingValues, WhatIsExactTakesNoMoreBitsThanItNeeds) {
   EXPECT_EQ(converted.sidecar.error.max_abs, 0);
   const auto& bits = converted.sidecar.selection.bits;
   EXPECT_EQ(bits[4], 0U) << "leaves of 16 bits, of 64";
+}
+
+// An early quantised file meets the target: a float file in its place must be planned for no larger an error.
+TEST(ErrorTargets, SpikesOnSmallNoise_ReachThePsnrAsked) {
+  std::mt19937_64 engine(1);
+  const auto draw = [&] { return std::ldexp(static_cast<double>(engine() >> 11U), -53); };
+  MemoryVolume volume({{0, 0, 0}, {64, 64, 64}},
+                      [&](const Index3&) { return static_cast<float>((draw() < 3e-4 ? 6e5 : 0) + draw() * 1e-3); });
+  ConversionOptions options;
+  options.encoding = Encoding::automatic;
+  options.budget = {Budget::Kind::psnr, 8, 0, 60};
+  EXPECT_GE(test::convert(volume, options).sidecar.error.psnr_db, 60);
 }
 
 }  // namespace

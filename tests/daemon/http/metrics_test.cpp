@@ -35,6 +35,7 @@ StatusView sample_status() {
   watch.last_done->outputs.push_back({"/out/a.nvdb", 1000, 4, 40.0, false, false});
   watch.last_done->outputs.push_back({"/out/b.nvdb", 2000, 8.25, 51.5, false, false});
   status.watches.push_back(watch);
+  status.disks.push_back({"/scratch", {"/scratch/out"}, 1000, 4000, 2.5, {}, ""});
   return status;
 }
 
@@ -112,26 +113,22 @@ TEST(Metrics, CountConversionsCumulatively) {
             "weir_conversion_seconds_count 5\n");
 }
 
-// The format's rules: HELP, TYPE, then the samples of that name, each name once.
 TEST(Metrics, ShowFreeAndTotalBytesOfOutputDisks) {
-  StatusView status = sample_status();
-  status.disks.push_back({"/scratch", {"/scratch/out"}, 1000, 4000, 2.5, {}, ""});
   EXPECT_EQ(
-      lines_with(metrics_text(status, {}, {}), "weir_output_disk"),
+      lines_with(metrics_text(sample_status(), {}, {}), "weir_output_disk"),
       "weir_output_disk_free_bytes{disk=\"/scratch\"} 1000\nweir_output_disk_size_bytes{disk=\"/scratch\"} 4000\n");
 }
 
 TEST(Metrics, PassPromtoolCheck) {
   if (std::system("command -v promtool >/dev/null") != 0) GTEST_SKIP() << "promtool is not installed";
   const TemporaryDirectory directory;
-  StatusView status = sample_status();
-  status.disks.push_back({"/scratch", {"/scratch/out"}, 1000, 4000, 2.5, {}, ""});
-  write_file(directory / "metrics", metrics_text(status, {}, {}));
+  write_file(directory / "metrics", metrics_text(sample_status(), {}, {}));
   const CommandResult result = run_command({"sh", "-c", "promtool check metrics <\"$1\"", "sh", directory / "metrics"});
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_EQ(result.out + result.err, "");
 }
 
+// The format's rules: HELP, TYPE, then the samples of that name, each name once.
 TEST(Metrics, NameEveryFamilyOnce) {
   const std::string text = metrics_text(sample_status(), {}, {});
   ASSERT_TRUE(text.ends_with('\n'));

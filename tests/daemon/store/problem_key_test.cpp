@@ -17,6 +17,26 @@ TEST(ProblemKey, LeavesOutThePathInsideTheText) {
             "verify: /out/*.nvdb: damaged; made of *");
 }
 
+TEST(ProblemKey, LeavesOutTheNamesOfOutputs) {
+  const std::string key =
+      "/out/*.nvdb: # bytes asked, the smallest tree for this volume takes #; ask for size # or more";
+  const std::string rest =
+      ": 4096 bytes asked, the smallest tree for this volume takes 309856; ask for size 309856 or more";
+  EXPECT_EQ(problem_key("/run/rho.raw", "/out/rho.nvdb" + rest), key);
+  EXPECT_EQ(problem_key("/run/vorticity_8x8x8_uint8.raw", "/out/vorticity_8x8x8_uint8.nvdb" + rest), key);
+  EXPECT_EQ(problem_key("/run/brain.nii.gz", "/out/brain.nvdb" + rest), key);
+  EXPECT_EQ(problem_key("/run/all.h5", "/out/all_density_3.nvdb" + rest), key);
+  EXPECT_EQ(problem_key("/run/rho.raw", "/out/rho.nvdb.partial: cannot create: Permission denied"),
+            "/out/*.nvdb.partial: cannot create: Permission denied");
+}
+
+TEST(ProblemKey, NamesThatBeginAsThatOfTheSource_Stay) {
+  EXPECT_EQ(problem_key("/run/rho.raw", "/rhodium/other.nvdb: exists"), "/rhodium/other.nvdb: exists");
+  EXPECT_EQ(problem_key("/run/rho.raw", "/rho/other.nvdb: exists"), "/rho/other.nvdb: exists");
+  EXPECT_EQ(problem_key("/run/rho.raw", "no dataset /rho"), "no dataset /rho");
+  EXPECT_EQ(problem_key("/run/.raw", "/out/.nvdb: exists"), "/out/.nvdb: exists");
+}
+
 TEST(ProblemKey, ReplacesTheFileNameOnlyAsAWholeWord) {
   EXPECT_EQ(problem_key("/run/a", "/run/a: has a bad head"), "has * bad head");
 }

@@ -2,10 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
 #include <limits>
 #include <string>
 
 #include "format/base/error.h"
+#include "tests/support/message_of_error.h"
+#include "tests/support/temporary_directory.h"
 
 namespace weir::scene_test {
 namespace {
@@ -204,6 +208,22 @@ TEST(Scene, MissingFile) {
     EXPECT_EQ(error.kind(), ErrorKind::input);
     EXPECT_STREQ(error.what(), "/nonexistent/s.toml: cannot read the scene; it must be an existing TOML file");
   }
+}
+
+TEST(Scene, Directory_IsNoScene) {
+  const TemporaryDirectory directory;
+  EXPECT_EQ(message_of_error(ErrorKind::input, [&] { load_scene(directory.path()); }),
+            directory.path().string() + ": cannot read the scene; it must be an existing TOML file");
+}
+
+TEST(Scene, FileLongerThanAnyScene_IsRefusedUnread) {
+  const TemporaryDirectory directory;
+  const std::string path = directory / "volume.raw";
+  std::ofstream(path) << "mode = \"dvr\"\n#" << std::string(kMostSceneBytes, ' ');
+  EXPECT_EQ(message_of_error(ErrorKind::input, [&] { load_scene(path); }),
+            path + ": more than 1048576 bytes, no scene has; give a TOML file");
+  std::filesystem::resize_file(path, kMostSceneBytes);
+  EXPECT_EQ(load_scene(path).mode, RenderMode::dvr);
 }
 
 TEST(RenderModeName, RoundTrip) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cfloat>
+#include <cmath>
 #include <limits>
 
 #include "format/base/error.h"
@@ -39,6 +40,20 @@ TEST(TransferFunction, RangeOfOneValue) {
   EXPECT_EQ(one.at(4).a, 0.0F);
   EXPECT_EQ(one.at(6).a, 1.0F);
   EXPECT_GE(one.max_opacity(5, 5), 0.5F);
+}
+
+// 0.1 blended with itself comes out an ulp above or below.
+TEST(TransferFunction, RangeOfOneValue_HoldsWhatABlendRoundsItTo) {
+  for (const float value : {0.1F, -0.1F, 3e38F}) {
+    const TransferFunction one({{0, 0, 0, 0}, {1, 1, 1, 1}}, value, value);
+    EXPECT_EQ(one.at(std::nextafter(value, -kInfinity)).a, 0.5F) << value;
+    EXPECT_EQ(one.at(std::nextafter(value, kInfinity)).a, 0.5F) << value;
+    EXPECT_EQ(one.at(value * 0.9999F).a, value > 0 ? 0.0F : 1.0F) << value;
+    EXPECT_GE(one.max_opacity(value, value), 0.5F) << value;
+  }
+  const TransferFunction zero({{0, 0, 0, 0}, {1, 1, 1, 1}}, 0, 0);
+  EXPECT_EQ(zero.at(0).a, 0.5F);
+  EXPECT_EQ(zero.at(1e-45F).a, 1.0F);
 }
 
 TEST(TransferFunction, RangeThatOverflowsAndDenormalRange) {

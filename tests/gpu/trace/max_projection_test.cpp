@@ -19,6 +19,15 @@ TEST(MaxAlong, PeakOnTheRay) {
   EXPECT_EQ(max_along(*medium, ray, 10, 0.5F, 0), 1 - 30.5F / 64) << "the end of the ray is outside";
 }
 
+TEST(MaxAlong, RayShorterThanAStep_HasASample) {
+  TestMedium medium({1, 1, 1}, 16, 1, 1.0F, [](const Float3&) { return 0.25F; });
+  const Ray ray = medium->ray({0, 0, 0.5F}, {0.6F, 0.8F, 0});
+  for (const float jitter : {0.0F, 0.5F, 0.99F}) {
+    EXPECT_EQ(max_along(*medium, ray, 0.1F, 0.5F, jitter), 0.25F);
+    EXPECT_EQ(max_along(*medium, ray, 1, 1000.0F, jitter), 0.25F) << "where voxels are far from cubes";
+  }
+}
+
 TEST(MaxAlong, SkipsCellsThatCannotRaiseIt) {
   int lookups = 0;
   TestMedium medium({64, 16, 16}, 16, 1, 1.0F, [&](const Float3& p) {

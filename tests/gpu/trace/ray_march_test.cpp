@@ -30,6 +30,16 @@ TEST(March, HomogeneousSlab) {
   }
 }
 
+TEST(March, SlabThinnerThanAStep) {
+  TestMedium medium({64, 16, 16}, 16, 4, 1.0F, [](const Float3&) { return 0.5F; });
+  medium->shown = {{8, 0, 0}, {8.25F, 16, 16}};
+  for (std::uint32_t i = 0; i < 20; ++i) {
+    Random random(1, i, 0);
+    EXPECT_NEAR(march(*medium, dark(), {-9, 8, 8}, {1, 0, 0}, 0.5F, 0, random).x, 1 - std::exp(-0.5F * 4 * 0.25F),
+                1e-5F);
+  }
+}
+
 TEST(March, EmptyCellsChangeNothing) {
   const auto f = [](const Float3& p) { return p.x >= 20 && p.x < 40 ? 0.3F : 0.0F; };
   TestMedium loose({64, 16, 16}, 16, 0.1F, 0.3F, f);

@@ -139,6 +139,8 @@ TEST(AmrexHeader, DamageIsToldWithItsLine) {
            {"\n0\n0\n0 1 ", "\n2\n0\n0 1 ",
             "H: line 15: the coordinates are spherical; only Cartesian ones can be read"},
            {"\n1 1 0.125", "\n2 1 0.125", "H: line 23: a level's number is 2, and must be from 1 to 1"},
+           {"Level_1/Cell", "Level_0/Cell",
+            "H: line 29: 'Level_0/Cell' is the path of the cells of level 1 and of level 0; the header is damaged"},
            {"Level_1/Cell", "../Cell",
             "H: line 29: '../Cell' should be the path of a level's cells, Level_0/Cell; the header is damaged"}}) {
     EXPECT_EQ(message_of_error(ErrorKind::input, [&] { header_of(with(kHeader, c.what, c.by)); }), c.message);

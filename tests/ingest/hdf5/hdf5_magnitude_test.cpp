@@ -54,6 +54,19 @@ with h5py.File("a.h5", "w") as f:
   EXPECT_EQ(source->access().bytes_per_voxel, 12U);
 }
 
+TEST_F(Hdf5Magnitude, OfComponentsThatLackChunks_SaysWhich) {
+  write_by_h5py(scratch_, R"(
+with h5py.File("a.h5", "w") as f:
+    for name, written in ("u", 8), ("v", 4), ("w", 4):
+        f.create_dataset(name, (2, 4, 8), "f4", chunks=(2, 4, 4), fillvalue=-7)[:, :, :written] = 1
+)");
+  const auto note = [&](const SourceOptions& options) {
+    return open_source(scratch_.path("a.h5"), options)->info().details.chunks_note;
+  };
+  const std::string lacks = ": 1 of its 2 chunks was never written and reads as its fill value, -7";
+  EXPECT_EQ(note(lengths_of({"u", "v", "w"})), "/v" + lacks + "; /w" + lacks);
+}
+
 TEST_F(Hdf5Magnitude, TypesLargeNumbersAndPositions) {
   write_by_h5py(scratch_, R"(
 u, v = values("i2", (2,) + SHAPE), values("f8", (2,) + SHAPE)

@@ -68,5 +68,22 @@ for number, depths in enumerate([[0], [10, 20]]):
   EXPECT_EQ(info.spacing[2], 10);
 }
 
+TEST(Hdf5Stack, OfFilesThatLackChunks_SaysWhichAndHowMany) {
+  if (!python_has("h5py, numpy")) GTEST_SKIP() << "python3 with h5py is missing";
+  const Scratch scratch;
+  write_by_h5py(scratch, R"(
+for number in range(4):
+    with h5py.File("s_%d.h5" % number, "w") as f:
+        d = f.create_dataset("d", (2, 4, 8), "f4", chunks=(2, 4, 4), fillvalue=-7)
+        d[:, :, : 8 if number == 0 else 4] = number
+)");
+  SourceOptions options;
+  options.stack = true;
+  EXPECT_EQ(
+      open_source(scratch.path("s_%d.h5"), options)->info().details.chunks_note,
+      scratch.path("s_1.h5") +
+          ": 1 of its 2 chunks was never written and reads as its fill value, -7; 2 further files lack chunks, too");
+}
+
 }  // namespace
 }  // namespace weir::hdf5_stack_test

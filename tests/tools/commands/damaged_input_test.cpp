@@ -47,6 +47,16 @@ TEST_F(DamagedInput, ConvertAndExportRefuseIt) {
   EXPECT_FALSE(fs::exists(exported_));
 }
 
+TEST_F(DamagedInput, ExportToANameThatIsTaken_IsRefusedBeforeAllIsRead) {
+  damage();
+  write_file(exported_, "theirs");
+  const CommandResult exported = run_weir({"export", volume_, "-o", exported_, "--progress", "never"});
+  if (exported.exit_code == 69) GTEST_SKIP() << "without OpenVDB's library";
+  EXPECT_EQ(exported.exit_code, 2);
+  EXPECT_EQ(exported.err, "weir: " + exported_ + ": exists; choose another output or pass --overwrite\n");
+  EXPECT_EQ(read_file(exported_), "theirs");
+}
+
 TEST_F(DamagedInput, WithoutASidecarItsValuesAreTaken) {
   damage();
   fs::remove(sidecar_path(volume_));

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "format/layout/nanovdb_layout.h"
+#include "tests/support/unreadable_file.h"
 #include "tests/tools/support/converted_volume.h"
 
 namespace weir::inspect_test {
@@ -136,6 +137,17 @@ TEST_F(Inspect, SidecarThatCannotBeRead_HidesNoVolume) {
   EXPECT_EQ(report["grid"]["type"], "float32");
   EXPECT_EQ(report["sidecar"], nullptr);
   EXPECT_EQ(report["sidecar_error"].get<std::string>().find(why), 0U);
+}
+
+TEST_F(Inspect, SidecarThatTheSystemDoesNotGive_ExitsWith5) {
+  const std::string unreadable = unreadable_file();
+  if (unreadable.empty()) GTEST_SKIP() << "this system has no file that root cannot read";
+  fs::remove(sidecar_path(volume_));
+  fs::create_symlink(unreadable, sidecar_path(volume_));
+  const CommandResult text = run_weir({"inspect", volume_});
+  EXPECT_EQ(text.exit_code, 5);
+  EXPECT_EQ(text.err, "weir: " + sidecar_path(volume_) + ": cannot read the sidecar; check the permissions\n");
+  EXPECT_EQ(run_weir({"verify", volume_}).exit_code, 5) << "the same of both";
 }
 
 TEST_F(Inspect, DrawsTheHistogram_WhereTheSidecarCannotBeRead) {

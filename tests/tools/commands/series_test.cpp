@@ -118,8 +118,20 @@ TEST_F(SeriesCommand, AStepThatFails_IsSaidWithWhatWasDone) {
   const auto made =
       run_weir({"convert", directory_ / "n_%d_16x16x16_float32.raw", "-o", directory_ / "out/", "--size", "400000"});
   EXPECT_EQ(made.exit_code, 3);
-  EXPECT_NE(made.err.find("1 of 3 volumes were converted, and none after " + (directory_ / "n_1_16x16x16_float32.raw") +
-                          "; --skip-done leaves out what is done"),
+  EXPECT_NE(made.err.find("1 of 3 volumes were converted, and none from " +
+                          (directory_ / "out/n_1_16x16x16_float32.nvdb") + " on; --skip-done leaves out what is done"),
+            std::string::npos)
+      << made.err;
+}
+
+TEST_F(SeriesCommand, AVolumeOfAFileThatFails_IsSaidByItsOutput) {
+  std::string bytes(3 * 16 * 16 * 16 * sizeof(float), '\0');
+  bytes.replace(16 * 16 * 16 * sizeof(float), 4, "\xFF\xFF\xFF\xFF");  // NaN, in the second
+  const std::string nrrd = directory_ / "a.nrrd";
+  write_file(nrrd, "NRRD0004\ntype: float\ndimension: 4\nsizes: 16 16 16 3\nencoding: raw\nendian: little\n\n" + bytes);
+  const auto made = run_weir({"convert", nrrd, "--index", "*", "-o", directory_ / "out/", "--size", "400000"});
+  EXPECT_EQ(made.exit_code, 3);
+  EXPECT_NE(made.err.find("1 of 3 volumes were converted, and none from " + (directory_ / "out/a_1.nvdb") + " on; "),
             std::string::npos)
       << made.err;
 }

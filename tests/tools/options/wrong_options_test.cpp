@@ -95,7 +95,7 @@ TEST(WrongOptions, Configuration) {
     const std::string message = message_of_error(ErrorKind::input, [&] { read_watch_options(reader, table); });
     EXPECT_EQ(message.substr(message.find(": ") + 2), wrong.reason.worded(key_wording));
   }
-  EXPECT_EQ(refused, 51);
+  EXPECT_EQ(refused, 52);
 }
 
 /// The members of weir.h that say the same; none where C cannot say it.

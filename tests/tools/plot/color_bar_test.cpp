@@ -61,6 +61,15 @@ TEST(ColorBar, OneValueAndHugeOnesHaveNumbers) {
   EXPECT_GT(dark_pixels(draw_color_bar(viridis(1e-30F, 1.1e-30F), "", 64), 30), 0);
 }
 
+TEST(ColorBar, OneValue_IsNotRoundedToAWholeNumber) {
+  EXPECT_NE(draw_color_bar(viridis(3.5F, 3.5F), "", 100).pixels, draw_color_bar(viridis(4, 4), "", 100).pixels);
+  EXPECT_NE(draw_color_bar(viridis(25.7F, 25.7F), "", 100).pixels, draw_color_bar(viridis(26, 26), "", 100).pixels);
+}
+
+TEST(ColorBar, WithRoomForItsEndsAlone_NamesThemToAHundredth) {
+  EXPECT_NE(draw_color_bar(viridis(0.34F, 1.26F), "", 64).pixels, draw_color_bar(viridis(0.33F, 1.27F), "", 64).pixels);
+}
+
 TEST(ColorBar, OfAPictureThatIsTooLow_IsRefused) {
   EXPECT_EQ(message_of_error(ErrorKind::usage, [] { draw_color_bar(viridis(0, 1), "", 63); }),
             "--colorbar needs a picture of at least 64 pixels in height, this one has 63");

@@ -12,6 +12,7 @@
 #include "format/io/file_system.h"
 #include "tests/support/python.h"
 #include "tests/support/run_command.h"
+#include "tests/support/unreadable_file.h"
 
 namespace weir::finished_output_test {
 namespace {
@@ -293,6 +294,20 @@ TEST_F(SkipDone, RefusesToReplaceAForeignOutput) {
   EXPECT_EQ(taken.exit_code, 2);
   EXPECT_NE(taken.err.find("(was made of " + source_ + ")"), std::string::npos) << taken.err;
   EXPECT_TRUE(fs::remove(other));
+  EXPECT_TRUE(leaves_it());
+}
+
+TEST_F(SkipDone, SidecarThatTheSystemDoesNotGive_IsNoOtherFilesAndExitsWith5) {
+  const std::string unreadable = unreadable_file();
+  if (unreadable.empty()) GTEST_SKIP() << "this system has no file that root cannot read";
+  ASSERT_EQ(convert().exit_code, 0);
+  fs::remove(output_ + ".json");
+  fs::create_symlink(unreadable, output_ + ".json");
+  const CommandResult refused = convert();
+  EXPECT_EQ(refused.exit_code, 5);
+  EXPECT_EQ(refused.err, "weir: " + output_ + ".json: cannot read the sidecar; check the permissions\n");
+  EXPECT_TRUE(fs::exists(output_));
+  EXPECT_EQ(convert({"--overwrite"}).exit_code, 0);
   EXPECT_TRUE(leaves_it());
 }
 

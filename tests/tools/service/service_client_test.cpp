@@ -102,6 +102,33 @@ TEST_F(ServiceCommands, RetryJobs) {
   EXPECT_EQ(weir(served, {"retry", "77"}).err, cat("weir: ", served.address(), ": there is no job 77\n"));
 }
 
+TEST_F(ServiceCommands, RetryAndCancel_OneJobRefused_AskForTheOthers) {
+  Served served(control_);
+  const CommandResult retried = weir(served, {"retry", "77", "2", "78", "3"});
+  EXPECT_EQ(retried.exit_code, 2);
+  EXPECT_EQ(retried.out, "job 2 is tried again: /scratch/run 1/2.raw\njob 3 is tried again: /scratch/run 1/3.raw\n");
+  EXPECT_EQ(retried.err,
+            cat("weir: ", served.address(), ": there is no job 77; ", served.address(), ": there is no job 78\n"));
+  const CommandResult cancelled = weir(served, {"cancel", "2", "77", "3", "77", "--json"});
+  EXPECT_EQ(cancelled.exit_code, 2);
+  EXPECT_EQ(nlohmann::json::parse(cancelled.out).at("jobs").size(), 2U) << cancelled.out;
+  EXPECT_EQ(cancelled.err, cat("weir: ", served.address(), ": there is no job 77\n")) << "once";
+  EXPECT_EQ(served.run([&] { return control_.asked; }),
+            (std::vector<std::string>{"retry 2", "retry 3", "cancel 2", "cancel 3"}));
+}
+
+TEST_F(ServiceCommands, RetryJobs_NoServiceAnswers_IsSaidOnce) {
+  std::string address;
+  {
+    const Served served(control_);
+    address = served.address();
+  }
+  const CommandResult result = run_weir({"retry", "1", "2", "--json", "--address", address});
+  EXPECT_EQ(result.exit_code, 5);
+  EXPECT_EQ(result.out, "{\"jobs\":[]}\n");
+  EXPECT_EQ(result.err.find(address), result.err.rfind(address)) << result.err;
+}
+
 TEST_F(ServiceCommands, CancelJobs) {
   Served served(control_);
   control_.all[1].state = JobState::waiting;

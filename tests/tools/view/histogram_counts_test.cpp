@@ -88,6 +88,15 @@ TEST_F(HistogramCountsTest, WhoComesToOneThatIsGivenUp_HasItCountedAgain) {
   EXPECT_EQ(told_, (Texts{{2, {"counted a"}}}));
 }
 
+TEST_F(HistogramCountsTest, AskedAgainByTheSameViewer_IsNotBegunAgain) {
+  counts_.ask(1, {0, 0, "a"});
+  ASSERT_TRUE(eventually([&] { return begun().size() == 1; }));
+  counts_.ask(1, {0, 0, "a"});
+  go_ = true;
+  ASSERT_TRUE(eventually([&] { return told_[1].size() == 1; }));
+  EXPECT_EQ(begun(), (std::vector<std::string>{"a"}));
+}
+
 TEST_F(HistogramCountsTest, Failure_IsSaid) {
   go_ = true;
   counts_.ask(1, {0, 0, "bad"});

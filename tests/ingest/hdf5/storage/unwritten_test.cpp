@@ -54,6 +54,22 @@ with h5py.File("a.h5", "w") as f: f.create_dataset("d", (4, 3, 2), "f4", fillval
                 "--missing-chunks fill");
 }
 
+// As NetCDF's NC_NOFILL has it: the library leaves what is in memory.
+TEST_F(Hdf5Unwritten, ChunkThatTheLibraryReads_IsTheFillValueThoughThatIsNeverWritten) {
+  write_by_h5py(scratch_, R"(
+with h5py.File("a.h5", "w") as f:
+    p = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
+    p.set_chunk((8, 8, 8)); p.set_scaleoffset(h5py.h5z.SO_INT, 0)
+    p.set_fill_value(np.array(-7, "i4")); p.set_fill_time(h5py.h5d.FILL_TIME_NEVER)
+    d = h5py.Dataset(h5py.h5d.create(f.id, b"d", h5py.h5t.STD_I32LE, h5py.h5s.create_simple((8, 8, 16)), p))
+    d[:, :, :8] = 5
+)");
+  const auto source = open_source(scratch_.path("a.h5"), {});
+  EXPECT_EQ(source->info().details.chunks_note, "1 of its 2 chunks was never written and reads as its fill value, -7");
+  const std::vector<float> values = all_values(*source);
+  for (std::size_t i = 0; i < values.size(); ++i) ASSERT_EQ(values[i], i % 16 < 8 ? 5 : -7) << i;
+}
+
 // Nobody chose what such a one reads as, it is no data, or the library would leave what is in memory.
 TEST_F(Hdf5Unwritten, IsRefusedWhereItsFillValueIsNoData) {
   write_by_h5py(scratch_, R"(

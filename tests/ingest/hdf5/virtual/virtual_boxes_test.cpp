@@ -158,6 +158,33 @@ with h5py.File("a.h5", "w") as f:
                 "dataset is incomplete");
 }
 
+TEST_F(VirtualDataset, ChunksThatASourceLacks_AreCountedWhereTheVolumeReadsThem) {
+  write_by_h5py(scratch_, R"(
+with h5py.File("source.h5", "w") as f:
+    d = f.create_dataset("d", (2, 4, 4, 8), "f4", chunks=(1, 4, 4, 4), fillvalue=-7)
+    d[0] = 1
+    d[1, :, :, :4] = 2
+layout = h5py.VirtualLayout((2, 4, 4, 8), "f4")
+layout[...] = h5py.VirtualSource("source.h5", "d", (2, 4, 4, 8))
+with h5py.File("a.h5", "w") as f:
+    f.create_virtual_dataset("v", layout)
+    expect("second", f["v"][1])
+)");
+  const std::string path = scratch_.path("a.h5");
+  const auto note = [&](std::int64_t step, MissingChunks chunks) {
+    SourceOptions options = dataset_options("v", {step});
+    options.missing_chunks = chunks;
+    return open_source(path, options)->info().details.chunks_note;
+  };
+  expect_reads(scratch_, "a.h5", dataset_options("v", {1}), "second");
+  EXPECT_EQ(note(0, MissingChunks::error), "");
+  EXPECT_EQ(note(1, MissingChunks::fill), "1 chunk of its sources was never written and reads as a fill value");
+  EXPECT_EQ(message_of_error(ErrorKind::input, [&] { note(1, MissingChunks::error); }),
+            path + ": /v: 1 chunk of its sources was never written (the first at 1, 0, 0, 4 of " +
+                scratch_.path("source.h5") +
+                ": d), and with --missing-chunks error all must be; write them, or use --missing-chunks fill");
+}
+
 TEST_F(VirtualDataset, NamesTheSourceOrTheElementThatIsMissing) {
   const LeaksOfLibraries of_plugins;
   write_by_h5py(scratch_, R"(

@@ -32,7 +32,7 @@ std::string refusal(const std::string& zip, ErrorKind kind = ErrorKind::input, s
   return message_of_error(kind, [&] {
     const ZipBytes bytes = bytes_in(zip);
     for (const auto& [name, entry] : read_zip_directory(bytes, memory, "z"))
-      zip_entry_begin(bytes, entry, "z: " + name);
+      zip_entry_begin(bytes, name, entry, "z: " + name);
   });
 }
 
@@ -44,7 +44,7 @@ TEST(ZipDirectory, EntriesAreFound) {
   const ZipEntry& entry = entries.at("a/b");
   EXPECT_EQ(entry.bytes, 2U);
   EXPECT_EQ(entry.crc, 0x9E83486DU);
-  EXPECT_EQ(zip_entry_begin(bytes, entry, "z"), 33U);
+  EXPECT_EQ(zip_entry_begin(bytes, "a/b", entry, "z"), 33U);
   EXPECT_EQ(read_zip_directory(bytes_in(zip + ""), kMiB, "z").size(), 1U);
 }
 
@@ -68,6 +68,16 @@ TEST(ZipDirectory, DamageIsReported) {
   zip = kZip;
   zip[kCentral + 42] = 1;
   EXPECT_EQ(refusal(zip), "z: a/b: has no header at 1; the zip file is cut short or damaged");
+}
+
+TEST(ZipDirectory, EntryAtTheHeaderOfAnother_IsReported) {
+  std::string zip(kZip);
+  zip[kCentral + 46] = 'c';
+  EXPECT_EQ(refusal(zip), "z: c/b: has the header of another entry at 0; the zip file is cut short or damaged");
+  zip = kZip;
+  zip[26] = 2;
+  zip[28] = 1;
+  EXPECT_EQ(refusal(zip), "z: a/b: has the header of another entry at 0; the zip file is cut short or damaged");
 }
 
 TEST(ZipDirectory, LargerThanTheMemory_IsRefusedBeforeItIsRead) {
