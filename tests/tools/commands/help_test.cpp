@@ -38,9 +38,8 @@ TEST(Help, OptionThatMayBeRepeated_IsShownWithOneValue) {
 
 TEST(Help, OfACommandThatReadsOneVolume_SaysNothingOfSeveral) {
   for (const std::string command : {"render", "compare", "view", "sweep", "inspect"}) {
-    const CommandResult asked = run_weir({command, "--help"});
-    if (asked.exit_code != 0) continue;  // a build without weir view
-    const std::string& help = asked.out;
+    const std::string help = run_weir({command, "--help"}).out;
+    if (help.find("(not in this build)") != std::string::npos) continue;
     EXPECT_NE(help.find("--dataset NAME "), std::string::npos) << command;
     EXPECT_NE(help.find("--level N "), std::string::npos) << command;
     EXPECT_EQ(help.find("--levels ") != std::string::npos, command == "compare") << "of the level that a file is of";
