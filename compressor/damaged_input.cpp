@@ -41,9 +41,9 @@ void refuse_damaged(const std::string& path, const DamageWatch& watch) {
   const std::unique_ptr<File> file = make_posix_file_system()->open_to_read(path);
   if (watch.started) watch.started(file->size());
   if (digest_of_file(*file, no_team(), watch.advanced).hex() == *certified) return;
-  throw input_error(
-      path, cat("has other bytes than ", sidecar, " certifies: a copy broke off, or a disk or memory is ",
-                "faulty; copy it or convert it again, or move the sidecar away to take the values as they ", "are"));
+  throw input_error(path, cat("has other bytes than ", sidecar,
+                              " certifies: a copy broke off, or a disk or memory is faulty; copy it or convert it "
+                              "again, or move the sidecar away to take the values as they are"));
 }
 
 }  // namespace weir

@@ -18,6 +18,7 @@
 #include "ingest/synthetic/synthetic.h"
 #include "tests/compressor/support/converted.h"
 #include "tests/compressor/support/crash_file_system.h"
+#include "tests/compressor/support/two_materials.h"
 #include "tests/stock/stock_tree.h"
 #include "tests/support/message_of_error.h"
 
@@ -296,10 +297,7 @@ TEST(ErrorTargetOfSparseValues, WhatTheEncodingReachesIsNotRefused) {
 
 // Two materials, and voxels without a value, whose leaves are estimated as if the background could be anywhere.
 TEST(ErrorTargetOfMissingValues, WhatIsExactTakesNoMoreBitsThanItNeeds) {
-  MemoryVolume volume({{0, 0, 0}, {32, 32, 32}}, [](const Index3& i) {
-    const auto n = static_cast<std::uint32_t>(i.x + 32 * (i.y + 32 * i.z)) * 2654435761U >> 7U;
-    return n % 50 == 0 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(n % 2);
-  });
+  MemoryVolume volume = test::two_materials(32);
   ConversionOptions options;
   options.non_finite = NonFinitePolicy::background;
   options.background = 0.5F;

@@ -14,6 +14,7 @@
 #include "format/base/error.h"
 #include "ingest/raw/raw_source.h"
 #include "tests/compressor/support/converted.h"
+#include "tests/compressor/support/two_materials.h"
 #include "tests/support/message_of_error.h"
 #include "tests/support/temporary_directory.h"
 
@@ -108,10 +109,7 @@ class Float64 : public testing::Test {
 };
 
 TEST(NonFinite, BlocksThatKeepTheirFiniteValues_AreLosslessOverValidVoxels) {
-  MemoryVolume volume({{0, 0, 0}, {16, 16, 16}}, [](const Index3& i) {
-    const auto n = static_cast<std::uint32_t>(i.x + 16 * (i.y + 16 * i.z)) * 2654435761U >> 9U;
-    return n % 50 == 0 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(n % 2);
-  });
+  MemoryVolume volume = test::two_materials(16);
   ConversionOptions options;
   options.non_finite = NonFinitePolicy::background;
   options.background = 0.3F;
