@@ -174,6 +174,7 @@ TEST_F(SourceDeletionTest, OutputThatWasWrittenToSinceItWasCertified_KeepsItsSou
   config_.watches[0].delete_after_s = 1;  // more than the next calls take
   delete_done();
   const auto bytes = fs::file_size(output_);
+  std::this_thread::sleep_for(milliseconds(20));  // a later tick of the clock of files than the certificate's
   fs::resize_file(output_, 0);
   fs::resize_file(output_, bytes);
   EXPECT_TRUE(stays());
