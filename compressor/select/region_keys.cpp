@@ -9,37 +9,28 @@
 namespace weir {
 namespace {
 
-// The best ratio of saved error to bytes over opening a region and taking the k best steps of its leaves. It rises as
-// long as the next step's own is higher, and never after: seldom are all steps looked at. The steps of each leaf fall.
+// The best ratio of saved error to bytes over opening a region and taking the k best steps of its leaves: all whose own
+// ratio is higher. The ratio of those above any ratio is at most the best one, so that each pass leaves out what the
+// last one took too much, until none is left (Dinkelbach 1967): four or five of them. The steps of each leaf fall.
 double hull_step(double opening_gain, std::uint64_t opening_bytes, const RegionGains& gains) {
-  struct Next {
-    double key;
-    const LeafStep* step;
-    const LeafStep* end;  // of its leaf's
-  };
-  std::vector<Next> heap;
-  heap.reserve(gains.size());
-  for (const LeafGain& leaf : gains) {
-    if (leaf.step_count > 0) heap.push_back({leaf.steps->key, leaf.steps, leaf.steps + leaf.step_count});
-  }
-  // Of equal keys those of the first leaf first, so that sums never depend on more than the steps.
-  const auto after = [](const Next& a, const Next& b) { return a.key != b.key ? a.key < b.key : a.step > b.step; };
-  std::make_heap(heap.begin(), heap.end(), after);
-  double saved = opening_gain;
-  auto cost = static_cast<double>(opening_bytes);
-  while (!heap.empty() && heap.front().key > saved / cost) {
-    std::pop_heap(heap.begin(), heap.end(), after);
-    Next& best = heap.back();
-    saved += best.step->gain;
-    cost += static_cast<double>(best.step->bytes);
-    if (++best.step == best.end) {
-      heap.pop_back();
-    } else {
-      best.key = best.step->key;
-      std::push_heap(heap.begin(), heap.end(), after);
+  const auto ratio_with = [&](const auto& takes) {
+    double saved = opening_gain;
+    std::uint64_t cost = opening_bytes;
+    for (const LeafGain& leaf : gains) {
+      for (const LeafStep& step : leaf.all_steps()) {
+        if (!takes(leaf, step)) break;
+        saved += step.gain;
+        cost += step.bytes;
+      }
     }
+    return saved / static_cast<double>(cost);
+  };
+  double best = ratio_with([](const LeafGain& leaf, const LeafStep& step) { return &step == leaf.steps; });
+  for (;;) {
+    const double ratio = ratio_with([best](const LeafGain&, const LeafStep& step) { return step.key > best; });
+    if (!(ratio > best)) return best;
+    best = ratio;
   }
-  return saved / cost;
 }
 
 }  // namespace

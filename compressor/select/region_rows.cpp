@@ -63,10 +63,12 @@ RegionRows read_region(const RowStore& store, const Box& leaf_box, RowBuffers& b
 
 void for_each_region(const TreeRegions& tree, const RowStore& store, const Box& regions,
                      const std::function<void(std::int64_t, const RegionRows&)>& visit) {
-  // One task: a segment of regions along x, whose rows are read in long runs; shorter where threads would have no work.
+  // One task: a region, or where rows are read a segment of regions along x, whose rows lie in long runs; shorter where
+  // threads would have no work.
   const Index3 extent = regions.extent();
   const std::int64_t busy = 4 * static_cast<std::int64_t>(tbb::this_task_arena::max_concurrency());
-  const std::int64_t segment = std::clamp<std::int64_t>(regions.voxels() / busy, 1, store.room().segment_regions);
+  const std::int64_t longest = all_held(store) ? 1 : store.room().segment_regions;
+  const std::int64_t segment = std::clamp<std::int64_t>(regions.voxels() / busy, 1, longest);
   const Index3 tasks{ceil_div(extent.x, segment), extent.y, extent.z};
   tbb::enumerable_thread_specific<RowBuffers> buffers;
   tbb::parallel_for(std::int64_t{0}, volume(tasks), [&](std::int64_t task) {
