@@ -10,7 +10,7 @@
 
 namespace weir {
 
-/// Macrocells of 32^3 voxels: measured faster than 16^3 and 64^3 (docs/performance.md).
+/// Macrocells of 32^3 voxels: measured faster than 16^3 and 64^3 (docs/what-was-tried.md).
 inline constexpr std::int64_t kDeviceMacrocell = 32;
 
 /// Throws Error(usage) where there is no such device.
