@@ -60,7 +60,7 @@ function(weir_mpi_tests)
     set_target_properties(${target} PROPERTIES C_STANDARD 99 C_STANDARD_REQUIRED ON C_EXTENSIONS OFF)
   endforeach()
   cmake_path(GET MPI_C_COMPILER PARENT_PATH wrappers)  # the Fortran compiler's wrapper of the same MPI, where there is one
-  add_executable(weir_tests_mpi tests/bindings/mpi/mpi_test.cpp)
+  add_executable(weir_tests_mpi tests/bindings/mpi/hangup_test.cpp tests/bindings/mpi/mpi_test.cpp)
   add_dependencies(weir_tests weir_tests_mpi)
   add_dependencies(weir_tests_mpi weir weir-mpi weir_mpi_push_boxes weir_mpi_heat)
   target_link_libraries(weir_tests_mpi PRIVATE weir_test_support GTest::gtest_main)

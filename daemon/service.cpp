@@ -51,7 +51,7 @@ Service::Service(Load load, std::string program, std::string version)
       log_(config_.service),
       notifier_(ServiceNotifier::from_environment()),
       store_(config_.service.state),
-      state_{std::move(version), config_.path, false, 0, 0, config_.service.jobs},
+      state_{.version = std::move(version), .config = config_.path, .jobs = config_.service.jobs},
       runner_(io_, store_, log_, program,
               [this](const Job& job) {
                 for (const auto& tree : trees_) {

@@ -38,8 +38,15 @@ JobView view_of(const Job& job) {
   view.peak_rss_bytes = job.result.peak_rss_bytes;
   for (const JobOutput& output : job.result.outputs) {
     const bool finite = output.psnr_db && std::isfinite(*output.psnr_db);
-    view.outputs.push_back({output.path, output.bytes, output.rate, finite ? output.psnr_db : std::nullopt,
-                            !output.psnr_db, !output.thumbnail.empty(), output.max_error, output.min, output.max});
+    view.outputs.push_back({.path = output.path,
+                            .bytes = output.bytes,
+                            .rate = output.rate,
+                            .psnr_db = finite ? output.psnr_db : std::nullopt,
+                            .lossless = !output.psnr_db,
+                            .thumbnail = !output.thumbnail.empty(),
+                            .max_error = output.max_error,
+                            .min = output.min,
+                            .max = output.max});
   }
   return view;
 }
@@ -262,8 +269,13 @@ std::vector<DiskView> ServiceControl::disks() const {
   for (const OutputDisk& disk : runner_.disks()) {
     std::string held = runner_.hold_of(disk.room);
     if (disk.silent.count() > 0) held = cat(disk.path, " has not answered for ", disk.silent.count(), " s");
-    views.push_back({disk.path, disk.directories, disk.room.free, disk.room.total, disk.written_bytes_per_s,
-                     disk.fills_in_s, std::move(held)});
+    views.push_back({.path = disk.path,
+                     .directories = disk.directories,
+                     .free_bytes = disk.room.free,
+                     .total_bytes = disk.room.total,
+                     .written_bytes_per_s = disk.written_bytes_per_s,
+                     .fills_in_s = disk.fills_in_s,
+                     .held = std::move(held)});
   }
   return views;
 }

@@ -3,7 +3,6 @@
 #include <atomic>
 #include <csignal>
 
-#include "format/base/error.h"
 #include "tools/command.h"
 
 namespace weir {
@@ -32,6 +31,8 @@ void catch_interrupts() {
   std::signal(SIGXFSZ, SIG_IGN);
 }
 
-int interrupted_exit_code() { return hung_up ? 128 + SIGHUP : static_cast<int>(ErrorKind::interrupted); }
+int exit_code_of(const Error& error) {
+  return error.kind() == ErrorKind::interrupted && hung_up ? 128 + SIGHUP : error.exit_code();
+}
 
 }  // namespace weir

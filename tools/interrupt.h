@@ -1,6 +1,8 @@
 // SIGINT, SIGTERM and SIGHUP as a request to stop, which work checks.
 #pragma once
 
+#include "format/base/error.h"
+
 namespace weir {
 
 /// From here on the first of the signals sets interrupt_flag (command.h), so that the work ends cleanly; a second one
@@ -8,7 +10,7 @@ namespace weir {
 /// error of the call from here on, and no signal.
 void catch_interrupts();
 
-/// What the process exits with where it was interrupted: 129 after SIGHUP, else 130.
-int interrupted_exit_code();
+/// What the process exits with: where it was interrupted, 129 after SIGHUP, else what the error says.
+int exit_code_of(const Error& error);
 
 }  // namespace weir

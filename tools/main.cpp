@@ -3,12 +3,8 @@
 
 #include <csignal>
 #include <exception>
-#include <new>
 #include <string>
-#include <string_view>
-#include <system_error>
 
-#include "compressor/plan/startable_threads.h"
 #include "format/base/error.h"
 #include "ingest/drivers/hdf5_crash.h"
 #include "tools/command.h"
@@ -17,6 +13,7 @@
 #include "tools/options/parse_command_line.h"
 #include "tools/options/parse_message.h"
 #include "tools/report/error_line.h"
+#include "tools/report/fault.h"
 #include "tools/report/standard_output.h"
 
 namespace {
@@ -24,10 +21,6 @@ namespace {
 int fail(const std::string& message, int code) {
   weir::print_error_line(message);
   return code;
-}
-
-int fail_internally(const std::exception& error) {
-  return fail(std::string("internal fault: ") + error.what() + "; please report it", 1);
 }
 
 int run(int argc, char** argv) {
@@ -73,18 +66,10 @@ int run(int argc, char** argv) {
   } catch (const weir::ExitStatus& status) {
     return status.code;
   } catch (const weir::Error& error) {
-    const bool interrupted = error.kind() == weir::ErrorKind::interrupted;
-    return fail(weir::command_message(app, error), interrupted ? weir::interrupted_exit_code() : error.exit_code());
-  } catch (const std::bad_alloc&) {
-    return fail("out of memory; free some, or use a smaller --memory, or a smaller --size of a picture",
-                static_cast<int>(weir::ErrorKind::internal));
-  } catch (const std::system_error& error) {
-    if (error.code() != std::errc::resource_unavailable_try_again) return fail_internally(error);
-    return fail(weir::kNoMoreThreads, static_cast<int>(weir::ErrorKind::io));
+    return fail(weir::command_message(app, error), weir::exit_code_of(error));
   } catch (const std::exception& error) {
-    // oneTBB's words for it.
-    const bool no_thread = std::string_view(error.what()).starts_with("pthread_create has failed");
-    return no_thread ? fail(weir::kNoMoreThreads, static_cast<int>(weir::ErrorKind::io)) : fail_internally(error);
+    const weir::Fault fault = weir::fault_of(error, "--memory, or a smaller --size of a picture");
+    return fail(fault.message, fault.exit_code);
   }
 }
 

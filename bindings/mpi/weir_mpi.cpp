@@ -27,6 +27,7 @@
 #include "tools/options/run_options.h"
 #include "tools/options/table_options.h"
 #include "tools/report/error_line.h"
+#include "tools/report/fault.h"
 #include "tools/report/progress.h"
 #include "tools/report/standard_output.h"
 
@@ -113,7 +114,7 @@ int run(int argc, char** argv, int rank) {
     if (error.get_exit_code() == 0) return says ? app.exit(error) : 0;
     return fail(weir::parse_message(app, error), static_cast<int>(weir::ErrorKind::usage), says);
   } catch (const weir::Error& error) {
-    return fail(weir::command_message(app, error), error.exit_code(), says);
+    return fail(weir::command_message(app, error), weir::exit_code_of(error), says);
   }
 }
 
@@ -133,8 +134,8 @@ int main(int argc, char** argv) {
   try {
     code = run(argc, argv, rank);
   } catch (const std::exception& error) {  // of this process alone: the others would wait
-    fail(weir::cat("process ", rank, ": internal fault: ", error.what(), "; please report it"), code, true);
-    MPI_Abort(MPI_COMM_WORLD, code);
+    const weir::Fault fault = weir::fault_of(error, "--memory");
+    MPI_Abort(MPI_COMM_WORLD, fail(weir::cat("process ", rank, ": ", fault.message), fault.exit_code, true));
   }
   try {
     weir::finish_stdout();

@@ -1,11 +1,15 @@
 #include "daemon/config/check_access.h"
 
 #include <fcntl.h>
+#include <linux/magic.h>
 #include <pwd.h>
+#include <sys/vfs.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <string>
@@ -57,6 +61,14 @@ bool is_no_directory(const std::string& path) {
   return fs::exists(path, ignored) && !fs::is_directory(path, ignored);
 }
 
+/// Whether the kernel alone makes files there; to root they look writable.
+bool is_of_the_kernel(const std::string& directory) {
+  constexpr std::array<std::uint32_t, 4> kTypes{PROC_SUPER_MAGIC, SYSFS_MAGIC, CGROUP_SUPER_MAGIC, CGROUP2_SUPER_MAGIC};
+  struct statfs status {};
+  return ::statfs(directory.c_str(), &status) == 0 &&
+         std::ranges::find(kTypes, static_cast<std::uint32_t>(status.f_type)) != kTypes.end();
+}
+
 void require_writable_directory(const std::string& path, std::string_view key) {
   if (is_no_directory(path)) refuse_access(path, key, "written to", ENOTDIR);
   if (!may(path, W_OK | X_OK)) refuse_access(path, key, "written to", errno);
@@ -85,6 +97,10 @@ void require_directory(const std::string& path, std::string_view key) {
   fs::path there = path;
   std::error_code ignored;
   while (!fs::exists(there, ignored) && !ignored && there.has_relative_path()) there = there.parent_path();
+  if (is_of_the_kernel(there.string())) {
+    throw Error(ErrorKind::io,
+                cat(path, ": ", key, " lies on a file system of the kernel; choose a directory on a disk"));
+  }
   require_writable_directory(there.string(), key);
 }
 

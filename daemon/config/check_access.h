@@ -6,10 +6,10 @@
 namespace weir {
 
 /// Throws Error(io) for the first path that the service must write to or read and may not: one line with the path, its
-/// key, the user, the reason and a remedy; and for a work_dir that is missing or memory, with which every conversion
-/// would fail. Looked at are the state file, log, port_file, control_socket and work_dir, and of each watch its output
-/// (what is missing of it can be made) and its directory, where that is there already. Changes nothing; a full disk is
-/// not noticed.
+/// key, the user, the reason and a remedy; and for a work_dir that is missing or memory, or an output on /proc or its
+/// like, with which every conversion would fail. Looked at are the state file, log, port_file, control_socket and
+/// work_dir, and of each watch its output (what is missing of it can be made) and its directory, where that is there
+/// already. Changes nothing; a full disk is not noticed.
 void check_access(const DaemonConfig& config);
 
 }  // namespace weir

@@ -12,7 +12,8 @@ void JobRunner::disk_full(const RunningJob& run, const TaskReport& report) {
   const DiskRoom room = room_in(directory);  // as it is now: it has just answered the job
   const bool of_output =
       room.device == room_in(std::filesystem::path(run.work->task().output).parent_path().string()).device;
-  if (of_output && report.planned_bytes > room.total) {  // waiting makes no disk larger
+  // Waiting makes no disk larger. Of some, as of a file server behind FUSE, the size is not told.
+  if (of_output && room.total > 0 && report.planned_bytes > room.total) {
     TaskReport never = report;
     never.result.reason =
         cat(directory, ": ", format_bytes(report.planned_bytes), " are needed, and its whole file system has ",

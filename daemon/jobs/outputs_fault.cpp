@@ -67,7 +67,7 @@ std::string certificate_fault(const Job& job, const nlohmann::json& sidecar, con
     return cat(path, " is of another file, or of this one as it was before");
   }
   if (state && touched_since(*state, look_at_file(path))) {
-    return cat("it was replaced, or its rights, owner or links were changed, after ", path,
+    return cat("it was replaced, or its name, rights, owner or links were changed, after ", path,
                " was written; let its job be done again (weir retry --force ", job.id, ")");
   }
   return loss_fault(sidecar, path);

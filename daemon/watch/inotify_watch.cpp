@@ -87,7 +87,12 @@ void InotifyWatch::start() {
   } catch (const Error& error) {
     return fail(error.what());
   }
-  stream_.assign(inotify_->descriptor());
+  boost::system::error_code error;
+  stream_.assign(inotify_->descriptor(), error);
+  if (error) {
+    return fail(
+        cat("inotify: its events cannot be waited for (the limit is fs.epoll.max_user_watches): ", error.message()));
+  }
   look_at_all(false);
   await_events();
 }

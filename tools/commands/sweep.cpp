@@ -236,6 +236,16 @@ void draw_charts(FileSystem& files, const ResultDirectory& directory, const Swee
   }
 }
 
+// Of volumes that were to be kept, those that are done stay.
+Error interrupted_sweep(const SweepReport& report, const SweepArguments& a) {
+  const auto volumes =
+      std::ranges::count_if(report.rows, [](const SweepRow& row) { return row.result && row.result->leaves_kept; });
+  if (!a.keep || volumes == 0) return {ErrorKind::interrupted, "interrupted; no results were written"};
+  return {ErrorKind::interrupted,
+          cat("interrupted; no report was written, and ", volumes, volumes == 1 ? " volume is" : " volumes are",
+              " kept in ", a.output, "; choose another directory with -o or pass --overwrite to begin anew")};
+}
+
 // Without the driver for charts, which is said with its remedy, all else is done.
 bool can_draw_charts(const std::string& output) {
   try {
@@ -271,11 +281,12 @@ void sweep(const CLI::App& command, const SweepArguments& a) {
   report.extent = info.extent;
   report.threads = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
   report.memory = source_options.memory;
-  for (const SweepMethod& method : methods) {
-    for (const double rate : rates) {
-      if (interrupt_flag()) throw Error(ErrorKind::interrupted, "interrupted; no results were written");
-      report.rows.push_back(sweep.run(method, rate));
+  try {
+    for (const SweepMethod& method : methods) {
+      for (const double rate : rates) report.rows.push_back(sweep.run(method, rate));
     }
+  } catch (const Error& error) {
+    throw error.kind() == ErrorKind::interrupted ? interrupted_sweep(report, a) : error;
   }
   report.total_s = seconds_since(start);
   report.peak_rss_bytes = peak_resident_bytes();

@@ -17,6 +17,7 @@
 #include "daemon/config/load_config.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "tools/command.h"
 
 namespace weir {
 namespace {
@@ -28,6 +29,7 @@ using UnixEndpoint = boost::asio::local::stream_protocol::endpoint;
 using boost::system::error_code;
 
 constexpr std::chrono::seconds kPatience{30};                  // for a whole answer
+constexpr std::chrono::milliseconds kInterruptLook{100};       // an interrupt ends no wait by itself
 constexpr std::uint64_t kMaxAnswer = std::uint64_t{64} << 20;  // bytes; a full page of jobs is a few MiB
 
 std::string first_word_of(const std::string& path) {
@@ -75,7 +77,11 @@ class Exchange {
     } else {
       resolve();
     }
-    io_.run();
+    while (!io_.stopped()) {
+      if (interrupt_flag())
+        throw Error(ErrorKind::interrupted, cat(address_.text(), ": interrupted before it answered"));
+      io_.run_for(kInterruptLook);
+    }
     if (!failure_.empty()) throw Error(ErrorKind::io, cat(address_.text(), ": ", failure_));
     return parser_.release();
   }

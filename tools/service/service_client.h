@@ -35,7 +35,7 @@ class ServiceClient {
   explicit ServiceClient(const ServiceOptions& options);
 
   /// The JSON the service answers. Throws Error(io) where it does not answer, or not as weir does; Error(usage) with
-  /// its own message where it refuses.
+  /// its own message where it refuses; Error(interrupted) where interrupt_flag() was set before the answer.
   Json get(const std::string& target) const { return ask("GET", target); }
   Json post(const std::string& target) const { return ask("POST", target); }
 

@@ -8,7 +8,7 @@
 
 #include "bindings/c/weir.h"
 #include "format/base/text.h"
-#include "tests/support/run_command.h"
+#include "tests/bindings/mpi/run_mpi.h"
 #include "tests/support/temporary_directory.h"
 
 namespace weir::mpi_test {
@@ -17,27 +17,6 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::string kData = WEIR_SOURCE_DIR "/../shared/data/";
-
-// Of a launcher that refuses root and more processes than cores unless told.
-CommandOptions mpi_options(const fs::path& directory) {
-  CommandOptions options;
-  options.directory = directory;
-  options.environment = {"OMPI_ALLOW_RUN_AS_ROOT=1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1",
-                         "OMPI_MCA_rmaps_base_oversubscribe=1", "OMPI_MCA_mpi_yield_when_idle=1",
-                         "OMPI_MCA_btl_base_warn_component_unused=0"};
-  return options;
-}
-
-CommandResult run_mpi(int processes, std::vector<std::string> command, const fs::path& directory) {
-  command.insert(command.begin(), {WEIR_MPIEXEC, "-n", cat(processes)});
-  return run_command(command, mpi_options(directory));
-}
-
-// The first line that `program` said, among those of the launcher.
-std::string line_of(const std::string& text, const std::string& program) {
-  const std::size_t at = text.find(program + ": ");
-  return at == std::string::npos ? "" : text.substr(at, text.find('\n', at) - at);
-}
 
 std::vector<std::string> sorted_lines(const std::string& text) {
   std::vector<std::string> lines = split(text, '\n');

@@ -108,6 +108,16 @@ TEST_F(CheckAccess, WorkDirThatIsMissingOrMemory_IsRefused) {
                          "/dev/shm: work_dir lies on a memory file system; choose a directory on a disk", "");
 }
 
+// Where root may write, but make no directory.
+TEST_F(CheckAccess, OutputThatTheKernelMakesTheFilesOf_IsRefused) {
+  write_file(directory_ / "weir.toml",
+             "[service]\nstate = 'weir.db'\n[[watch]]\ndirectory = 'in'\noutput = '/proc/weir/nvdb'\n");
+  const CommandResult result = run_weir({"watch", "--check", directory_ / "weir.toml"});
+  EXPECT_EQ(result.exit_code, 5) << result.out;
+  EXPECT_EQ(result.err,
+            "weir: /proc/weir/nvdb: output lies on a file system of the kernel; choose a directory on a disk\n");
+}
+
 TEST_F(CheckAccess, FileThatIsADirectory_IsRefused) {
   fs::create_directory(directory_ / "state/d");
   for (const std::string key : {"log", "port_file", "control_socket"}) {

@@ -201,6 +201,25 @@ TEST_F(JobRunnerTest, OutputThatAnotherProcessWrites_IsWaitedForWithoutAnAttempt
   run_until([&] { return state(job) == JobState::done; });
 }
 
+// As of a file server behind FUSE.
+TEST_F(JobRunnerTest, FullDiskOfUnknownSize_IsWaitedForWithoutAnAttempt) {
+  const std::string program = directory_ / "weir";
+  write_file(program,
+             "#!/bin/sh\nfor a; do case $a in --progress-fd=*) fd=${a#*=};; esac; done\n"
+             "echo '{\"planned\": 1000}' >&$fd\n"
+             "echo '{\"failed\": \"no room\", \"errno\": 28, \"path\": \"/proc/a.nvdb\"}' >&$fd\nexit 5\n");
+  fs::permissions(program, fs::perms::owner_all);
+  config_.watches[0].output = "/proc";
+  JobRunner runner(io_, store_, log_, program, [](const Job&) {});
+  runner.configure(config_);
+  const Job job = add("a", "one");
+  runner.wake();
+  EXPECT_EQ(state(job), JobState::running);
+  run_until([&] { return state(job) == JobState::waiting; });
+  EXPECT_EQ(store_.job(job.id)->attempts, 0);
+  EXPECT_EQ(store_.job(job.id)->result.reason, "no room");
+}
+
 TEST_F(JobRunnerTest, StartsNothingWhilePaused) {
   const Job job = add("a", "one");
   runner_.pause();

@@ -49,14 +49,14 @@ TEST_P(WatchFiles, ExistingAndNewFilesAreConvertedOnce) {
 }
 
 TEST_P(WatchFiles, ASlowWriterIsWaitedFor) {
-  ServiceHarness service("", keys("settle = 0.6\n"));
+  ServiceHarness service("", keys("settle = 2\n"));
   service.start();
   const std::string volume = ServiceHarness::volume(3);
   const std::string name = std::string("slow") + ServiceHarness::kSuffix;
   {
     std::ofstream file(service.in(name + ".raw"), std::ios::binary);
-    for (std::size_t at = 0; at < volume.size(); at += 960) {
-      file.write(volume.data() + at, 960).flush();
+    for (std::size_t at = 0; at < volume.size(); at += 320) {
+      file.write(volume.data() + at, 320).flush();
       std::this_thread::sleep_for(milliseconds(150));
       ASSERT_EQ(service.logged(" start "), 0U) << "at byte " << at;
     }

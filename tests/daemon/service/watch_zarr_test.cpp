@@ -10,6 +10,7 @@
 
 #include "format/base/text.h"
 #include "tests/daemon/support/service_harness.h"
+#include "tests/support/file_tick.h"
 
 namespace weir::watch_zarr_test {
 namespace {
@@ -43,7 +44,7 @@ void add_chunk(const std::string& store, int version, int chunk) {
   std::ofstream(path, std::ios::binary) << values;
 }
 
-std::string keys(const std::string& method, const std::string& more = "settle = 0.9\n") {
+std::string keys(const std::string& method, const std::string& more = "settle = 2\n") {
   return cat("watch = \"", method, "\"\nrecursive = true\nlossless = true\n", more);
 }
 
@@ -59,7 +60,7 @@ TEST_P(WatchZarr, AStoreThatGrowsSlowly_IsConvertedOnceAndWhole) {
   for (const int version : {2, 3}) begin(service.in(cat("v", version, ".zarr")), version);
   for (int chunk = 0; chunk < kChunks; ++chunk) {
     for (const int version : {2, 3}) add_chunk(service.in(cat("v", version, ".zarr")), version, chunk);
-    std::this_thread::sleep_for(std::chrono::milliseconds(250));
+    std::this_thread::sleep_for(std::chrono::milliseconds(700));
     EXPECT_EQ(service.logged(" start "), 0U) << "before chunk " << chunk + 1 << '\n' << service.log();
   }
   ASSERT_TRUE(service.eventually_done(2)) << service.log();
@@ -87,7 +88,7 @@ TEST(WatchZarrDeletion, AStoreWhoseMetadataAreItsNewestFile_IsKeptWhole) {
   for (const int version : {2, 3}) {
     const std::string store = service.in(cat("v", version, ".zarr"));
     for (int chunk = 0; chunk < kChunks; ++chunk) add_chunk(store, version, chunk);
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));  // a tick of the clock of files
+    pass_file_tick();
     begin(store, version);
   }
   service.start();

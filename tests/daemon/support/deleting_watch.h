@@ -8,12 +8,12 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <thread>
 
 #include "daemon/jobs/conversion_task.h"
 #include "daemon/jobs/source_deletion.h"
 #include "daemon/store/file_identity.h"
 #include "format/sidecar/sidecar.h"
+#include "tests/support/file_tick.h"
 #include "tests/support/run_command.h"
 #include "tests/support/temporary_directory.h"
 
@@ -32,7 +32,7 @@ class DeletingWatch : public testing::Test {
     watch.delete_after_s = 0.05;
     config_.watches = {watch};
     write_file(source_, "values");
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));  // longer than a tick of the clock of files
+    pass_file_tick();
     write_output("");
   }
 

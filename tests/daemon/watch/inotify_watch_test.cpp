@@ -30,13 +30,14 @@ struct Faults {
   int add_error = ENOSPC;
   std::size_t events_until_overflow = std::size_t{1} << 30U;  ///< of one reading; further ones are lost
   bool read_fails = false;
+  bool cannot_be_waited_for = false;
 };
 
 class FaultyInotify final : public Inotify {
  public:
   explicit FaultyInotify(std::shared_ptr<Faults> faults) : faults_(std::move(faults)), real_(open_system_inotify()) {}
 
-  int descriptor() const override { return real_->descriptor(); }
+  int descriptor() const override { return faults_->cannot_be_waited_for ? -1 : real_->descriptor(); }
   int add(const std::string& directory) override {
     return faults_->watches_left-- > 0 ? real_->add(directory) : -faults_->add_error;
   }
@@ -220,6 +221,16 @@ TEST_F(InotifyWatchTest, MissingOrFailingInotifyQueue_FallsBackToPolling) {
   write_file(dir / "b.raw", "1");
   EXPECT_TRUE(dir.run_until_told(Kind::found, dir / "b.raw"));
   EXPECT_EQ(dir.notices, std::vector<std::string>{notice("inotify: read its queue: Input/output error")});
+}
+
+TEST_F(InotifyWatchTest, QueueThatCannotBeWaitedFor_FallsBackToPolling) {
+  dir.config.poll_interval_s = 0.02;
+  faults->cannot_be_waited_for = true;
+  write_file(dir / "a.raw", "1");
+  start();
+  EXPECT_TRUE(dir.run_until_told(Kind::found, dir / "a.raw"));
+  EXPECT_EQ(dir.notices, std::vector<std::string>{notice("inotify: its events cannot be waited for (the limit is "
+                                                         "fs.epoll.max_user_watches): Bad file descriptor")});
 }
 
 TEST_F(InotifyWatchTest, RefusedInotifyQueue_NamesTheSystemLimit) {

@@ -67,7 +67,7 @@ TEST(SourceIdentity, WithoutADataset_IdentityIsOfAllGroupsAndArrays) {
   EXPECT_TRUE(changes({}, "a/rho/zarr.json", "1"));
   EXPECT_TRUE(changes({"--lossless"}, "b/image/1/.zarray", "1"));
   EXPECT_TRUE(changes({"--dataset=b/im*"}, "b/image/0/.zattrs", "1"));
-  EXPECT_TRUE(changes({"--dataset=b/image"}, "b/image/0/.zarray", "12"));  // the finest scale
+  EXPECT_TRUE(changes({"--dataset=b/image"}, "b/image/0/.zarray", "123"));  // the finest scale
   EXPECT_FALSE(changes({"--dataset=b/image"}, "a/rho/zarr.json", "123"));
   EXPECT_FALSE(changes({}, "a/rho/c/0/zarr.json", "1"));  // among chunks
   EXPECT_FALSE(changes({}, "plain/notes", "1"));

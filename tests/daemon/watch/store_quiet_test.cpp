@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/file_tick.h"
 #include "tests/support/sanitized.h"
 #include "tests/support/temporary_directory.h"
 
@@ -68,6 +69,7 @@ TEST_F(StoreQuietTest, AnythingThatChangesInIt_BeginsTheTimeAnew) {
     EXPECT_DOUBLE_EQ(seconds(answer.until), now + 2) << what;
     EXPECT_NE(answer.reason.find("changed a moment ago"), std::string::npos) << answer.reason;
     now += 2;
+    pass_file_tick();
   };
   write("c/0/1", "");
   expect_changed("a new chunk");

@@ -294,6 +294,22 @@ TEST_F(SweepCommand, InterruptLeavesNothing) {
   }
 }
 
+TEST_F(SweepCommand, InterruptWithKeep_NamesTheVolumesThatStay) {
+  const std::string input = directory_ / "zeros_1024x1024x256_uint8.raw";
+  write_file(input, "");
+  fs::resize_file(input, std::uintmax_t{1} << 28U);
+  ChildProcess child({WEIR_COMMAND, "sweep", input, "-o", out_, "--keep", "--methods", "auto,float", "--rates",
+                      "100,50", "--progress", "never"});
+  const auto begun = [&](const char* name) { return fs::exists(fs::path(out_) / (std::string(name) + ".partial")); };
+  while (child.running() && !begun("auto_rate50.nvdb")) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  child.send_signal(SIGINT);
+  const CommandResult result = child.wait();
+  EXPECT_EQ(result.exit_code, 130);
+  EXPECT_EQ(result.err, "weir: interrupted; no report was written, and 1 volume is kept in " + out_ +
+                            "; choose another directory with -o or pass --overwrite to begin anew\n");
+  EXPECT_EQ(list_directory(out_), (Names{"auto_rate100.nvdb", "auto_rate100.nvdb.json"}));
+}
+
 TEST_F(SweepCommand, BoundedMemory) {
   if (kSanitized) GTEST_SKIP() << kSanitizedSkip;
   const std::string input = sample("gradient", "400x400x400_float32");  // 244 MiB

@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -252,6 +254,19 @@ TEST_F(ServiceCommands, FindTheServiceOfAConfiguration) {
   write_file(directory_ / "c.toml", any + watch);
   EXPECT_EQ(run_weir({"status", "--config", directory_ / "c.toml"}).err,
             "weir: the configuration listens on any free port and has no port_file; give --address\n");
+}
+
+// As where the service hangs with its file server.
+TEST_F(ServiceCommands, InterruptBeforeTheAnswer_EndsTheCommand) {
+  boost::asio::io_context io;
+  boost::asio::ip::tcp::acceptor silent(io, {boost::asio::ip::make_address("127.0.0.1"), 0});
+  const std::string address = cat("127.0.0.1:", silent.local_endpoint().port());
+  ChildProcess child({WEIR_COMMAND, "status", "--address", address});
+  const auto connection = silent.accept();
+  child.send_signal(SIGINT);
+  const CommandResult result = child.wait();
+  EXPECT_EQ(result.exit_code, 130);
+  EXPECT_EQ(result.err, cat("weir: ", address, ": interrupted before it answered\n"));
 }
 
 // Something else may listen there.
