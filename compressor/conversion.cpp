@@ -79,7 +79,7 @@ void reserve_ahead(OutputFiles& output, const ConversionOptions& options, const 
                    const Box& domain) {
   constexpr std::uint64_t kLeastBytes = std::uint64_t{16} << 20U;
   const Budget::Kind kind = options.budget.kind;
-  if (control.planned || (kind != Budget::Kind::size && kind != Budget::Kind::rate)) return;
+  if (control.planned || !control.pads_file || (kind != Budget::Kind::size && kind != Budget::Kind::rate)) return;
   const auto dense = static_cast<std::uint64_t>(domain.voxels()) * sizeof(float);
   const std::uint64_t bytes = asked_bytes(options.budget, dense);
   if (bytes >= kLeastBytes && bytes < dense) output.reserve_ahead(bytes);
@@ -123,7 +123,7 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
     cache_bytes = shares.cache_bytes;
   });
   work.hold_records(memory.record_bytes > 0);
-  if (journal == nullptr && team.alone()) reserve_ahead(output, options, control, domain);
+  if (journal == nullptr && team.alone() && threads == workers.threads) reserve_ahead(output, options, control, domain);
   StreamOptions stream = stream_options(control);
   // Of use to the survey, whose blocks are smaller; where threads are few, one has to do for reading.
   if (threads == workers.threads) stream.buffer_bytes = 2 * memory.block_bytes;

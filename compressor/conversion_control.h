@@ -24,6 +24,7 @@ struct ConversionControl {
   std::function<void(std::uint64_t bytes)>
       planned;                          ///< of the file, before room is taken for it; again where it is replanned
   std::function<void()> before_commit;  ///< the last call before the output appears; what it throws keeps it from that
+  bool pads_file = true;        ///< false: of a trial, whose file is not filled up to the size that was asked for
   BlockCoder* coder = nullptr;  ///< surveys and encodes packed blocks, where there is one; the bytes are the same
   Trace* trace = nullptr;       ///< gets the passes, and what each thread reads, surveys, encodes and writes in them
 };

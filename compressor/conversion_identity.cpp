@@ -4,21 +4,14 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
-#include <sstream>
 #include <system_error>
 
+#include "format/base/exact_text.h"
 #include "format/base/text.h"
 #include "format/io/digest.h"
 
 namespace weir {
 namespace {
-
-// All digits: what differs in the last of them is another conversion.
-std::string exact(double value) {
-  std::ostringstream text;
-  text << std::hexfloat << value;
-  return text.str();
-}
 
 // Another working directory may hold another file of that name, size and time.
 std::string place_of(const std::string& path) {
@@ -41,7 +34,7 @@ std::string states_of(std::span<const FileState> files) {
 std::string position(const Index3& i) { return cat(i.x, ',', i.y, ',', i.z); }
 
 std::string mapping_text(const ValueMapping& mapping) {
-  std::string text = cat(exact(mapping.scale), ' ', exact(mapping.offset));
+  std::string text = cat(hex_text(mapping.scale), ' ', hex_text(mapping.offset));
   for (const StoredValue& value : mapping.missing) text += cat(' ', stored_value_text(value));
   if (mapping.keeps_missing) text += " as data";
   return text;
@@ -59,10 +52,11 @@ std::map<std::string, std::string> deciding_options(std::map<std::string, std::s
 std::string visible_values(const Scene& scene) {
   const SceneVolume& volume = scene.volume;
   std::string text(render_mode_name(scene.mode));
-  if (volume.iso) text += cat(" iso ", exact(*volume.iso));
-  if (volume.range) text += cat(" range ", exact((*volume.range)[0]), ' ', exact((*volume.range)[1]));
+  if (volume.iso) text += cat(" iso ", hex_text(*volume.iso));
+  if (volume.range) text += cat(" range ", hex_text((*volume.range)[0]), ' ', hex_text((*volume.range)[1]));
   if (volume.region) text += cat(" region ", position(volume.region->lo), ' ', position(volume.region->hi));
-  for (const OpacityPoint& point : volume.opacity) text += cat(' ', exact(point.position), ':', exact(point.opacity));
+  for (const OpacityPoint& point : volume.opacity)
+    text += cat(' ', hex_text(point.position), ':', hex_text(point.opacity));
   return text;
 }
 
@@ -96,7 +90,7 @@ ConversionIdentity identify_conversion(const SourceInfo& source, const Conversio
       {"fill", fill_name(options.fill)},
       {"brick", cat(options.brick)},
       {"scene", options.scene ? options.scene->path : ""},
-      {"background", options.background ? exact(static_cast<double>(*options.background)) : "found"},
+      {"background", options.background ? hex_text(static_cast<double>(*options.background)) : "found"},
       {"paper background", options.paper_background ? "yes" : "no"},
       {"nonfinite", policy_name(options.non_finite)},
       {"missing policy", missing_policy_name(options)},

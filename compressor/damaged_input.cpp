@@ -16,14 +16,14 @@
 namespace weir {
 namespace {
 
-// The digest that the sidecar has of this very file.
-std::optional<std::string> certified_digest(const std::string& path, const std::string& sidecar, const Notice& notice) {
+// The sidecar of this very file.
+std::optional<Sidecar> certificate_of(const std::string& path, const std::string& sidecar, const Notice& notice) {
   const auto say = [&](const std::string& why) {
     if (notice) notice(cat(why, "; whether ", path, " is damaged is not known"));
   };
   try {
     Sidecar read = read_sidecar(sidecar);
-    if (is_of(read, NvdbFile(path).grid())) return read.file.digest;
+    if (is_of(read, NvdbFile(path).grid())) return read;
     say(cat(sidecar, ": is of another volume than ", path));
   } catch (const Error& error) {
     say(error.what());
@@ -33,17 +33,19 @@ std::optional<std::string> certified_digest(const std::string& path, const std::
 
 }  // namespace
 
+void refuse_damaged(const std::string& path, const Sidecar& certificate, const DamageWatch& watch) {
+  const std::unique_ptr<File> file = make_posix_file_system()->open_to_read(path);
+  if (watch.started) watch.started(file->size());
+  if (digest_of_file(*file, no_team(), watch.advanced).hex() == certificate.file.digest) return;
+  throw input_error(path, cat("has other bytes than ", find_sidecar(path),
+                              " certifies: a copy broke off, or a disk or memory is faulty; copy it or convert it "
+                              "again, or move the sidecar away to take the values as they are"));
+}
+
 void refuse_damaged(const std::string& path, const DamageWatch& watch) {
   const std::string sidecar = find_sidecar(path);
   if (!is_there(sidecar)) return;
-  const std::optional<std::string> certified = certified_digest(path, sidecar, watch.notice);
-  if (!certified) return;
-  const std::unique_ptr<File> file = make_posix_file_system()->open_to_read(path);
-  if (watch.started) watch.started(file->size());
-  if (digest_of_file(*file, no_team(), watch.advanced).hex() == *certified) return;
-  throw input_error(path, cat("has other bytes than ", sidecar,
-                              " certifies: a copy broke off, or a disk or memory is faulty; copy it or convert it "
-                              "again, or move the sidecar away to take the values as they are"));
+  if (const auto certificate = certificate_of(path, sidecar, watch.notice)) refuse_damaged(path, *certificate, watch);
 }
 
 }  // namespace weir

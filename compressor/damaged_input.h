@@ -6,6 +6,7 @@
 #include <string>
 
 #include "format/base/message.h"
+#include "format/sidecar/sidecar.h"
 
 namespace weir {
 
@@ -16,9 +17,11 @@ struct DamageWatch {
   std::function<void(std::uint64_t done_bytes)> advanced;  ///< may throw
 };
 
-/// Reads all of the .nvdb file at `path` where the sidecar of it lies beside it, and throws Error(input) where its
-/// bytes are not those that were certified. Of a file without a sidecar nothing is known, and nothing read. Throws
-/// Error(io) where it cannot be read.
+/// Reads all of the .nvdb file at `path`, and throws Error(input) where its bytes are not those that `certificate`, its
+/// sidecar, says. Throws Error(io) where it cannot be read.
+void refuse_damaged(const std::string& path, const Sidecar& certificate, const DamageWatch& watch);
+
+/// The same by the sidecar that lies beside it. Of a file without one nothing is known, and nothing read.
 void refuse_damaged(const std::string& path, const DamageWatch& watch);
 
 }  // namespace weir

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "format/base/error.h"
+#include "format/base/exact_text.h"
 #include "format/base/share_text.h"
 #include "format/base/text.h"
 
@@ -63,11 +64,11 @@ void refuse_missing(const Survey& survey, const SourceInfo& info) {
 void refuse_rounding(const Budget& budget, const Survey& survey, const SourceInfo& info) {
   const double rounded = survey.loss.max_abs_error;
   if (budget.kind != Budget::Kind::max_error || rounded <= budget.target) return;
-  throw Error(ErrorKind::budget,
-              compose(info.path, ": float32, which files hold, rounds ", survey.loss.inexact,
-                      survey.loss.inexact == 1 ? " value" : " values", " by up to ", rounded, ", more than ",
-                      option("max-error", budget.target), " allows; allow ", option("max-error", rounded),
-                      " or more, or subtract an offset from the values first"));
+  throw Error(ErrorKind::budget, compose(info.path, ": float32, which files hold, rounds ", survey.loss.inexact,
+                                         survey.loss.inexact == 1 ? " value" : " values", " by up to ", rounded,
+                                         ", more than ", option("max-error", budget.target), " allows; allow ",
+                                         option("max-error", exact_text(rounded)),  // with fewer digits it may be less
+                                         " or more, or subtract an offset from the values first"));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "format/base/text.h"
 #include "format/io/output_names.h"
 #include "format/output/commit_leftovers.h"
+#include "format/output/output_place.h"
 #include "format/sidecar/sidecar.h"
 
 namespace weir {

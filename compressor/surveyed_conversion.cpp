@@ -90,15 +90,21 @@ bool raises_default(const ConversionOptions& options, const Box& domain) {
          options.metric == Metric::sse && options.encoding != Encoding::fp4;
 }
 
+// Does meanwhile what may be left undone; nothing where there is no thread for it.
+template <class Work>
+std::jthread start_beside(Work work) {
+  try {
+    return std::jthread(std::move(work));
+  } catch (const std::system_error&) {
+    return {};
+  }
+}
+
 // Frees its memory meanwhile, which takes a second for 5 GB; at once where there is no thread for it.
 template <class T>
 std::jthread released(std::unique_ptr<T> memory) {
   if (memory == nullptr) return {};
-  try {
-    return std::jthread([memory = std::move(memory)]() mutable { memory.reset(); });
-  } catch (const std::system_error&) {
-    return {};
-  }
+  return start_beside([memory = std::move(memory)]() mutable { memory.reset(); });
 }
 
 // What the squares over `finite` voxels may sum up to for a PSNR.
@@ -165,7 +171,7 @@ class SurveyedConversion {
     const Clock::time_point encoding = Clock::now();
     EncodedFile encoded = encode(std::move(request));
     // Most of the file goes to the device while the rest is made.
-    const std::jthread writeback([this] { parts_.output.volume().start_writeback(); });
+    const std::jthread writeback = start_beside([this] { parts_.output.volume().start_writeback(); });
     const std::jthread release = released(stores_.rows.give_up_cache());
     const std::jthread unmap = released(std::move(encoded.mapped));
     write_inner_nodes(encoded);
@@ -256,6 +262,7 @@ class SurveyedConversion {
   // What is asked of the file; where a scene weighs, with what it shows of each leaf.
   FileRequest make_request() {
     FileRequest request = request_for(options_, survey_, info_, background_.value);
+    request.pads_file = parts_.control.pads_file;
     request.packed = packed_request(options_, survey_, info_, request.rule.fill.background);
     if (parts_.seen) {
       shown_ = find_reaches(*stores_.faces, *parts_.seen, request.rule.fill, parts_.source.places(), parts_.work,

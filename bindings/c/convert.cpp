@@ -13,7 +13,7 @@
 #include "compressor/plan/memory_plan.h"
 #include "format/base/text.h"
 #include "format/io/memory_file_system.h"
-#include "format/output/output_files.h"
+#include "format/io/output_names.h"
 #include "format/process/process_memory.h"
 #include "gpu/packed/coder_choice.h"
 #include "ingest/series_names.h"

@@ -113,7 +113,7 @@ enum {
   WEIR_ENCODING_FP16 = 5,
   WEIR_ENCODING_PACKED = 6 /* each 8^3 block coded as a whole, for weir's own readers; others see the blocks' means */
 };
-/* Of a packed file: whether its tree holds each block's mean, for readers of others. */
+/* Of a packed file: whether its tree holds each block's mean, which is what programs other than weir read. */
 enum {
   WEIR_PREVIEW_AUTO = 0, /* where that takes at most a tenth of the file */
   WEIR_PREVIEW_ON = 1,

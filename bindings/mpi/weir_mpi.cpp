@@ -15,7 +15,7 @@
 #include "compressor/options/conversion_request.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
-#include "format/output/output_files.h"
+#include "format/io/output_names.h"
 #include "ingest/source_registry.h"
 #include "tools/command.h"
 #include "tools/command_request.h"

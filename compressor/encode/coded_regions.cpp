@@ -28,7 +28,7 @@ std::optional<CodedStream> CodedRegion::find(const Index3& leaf) const {
   if (made_->made[i] == 0) return std::nullopt;
   const std::span<const std::byte> bytes = made_->bytes.subspan(asks_[i].offset, asks_[i].bytes);
   if (!made_->records.empty()) return CodedStream{bytes, {}, &made_->records[i], &made_->sources[i]};
-  return CodedStream{bytes, made_->decoded.subspan(512 * i, 512), nullptr, nullptr};
+  return CodedStream{bytes, made_->decoded.subspan(kLeafVoxels * i, kLeafVoxels), nullptr, nullptr};
 }
 
 CodedBatch::CodedBatch(const EncodeTarget& target, const Box& leaf_box, std::span<const std::int64_t> regions,

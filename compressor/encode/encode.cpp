@@ -14,6 +14,7 @@
 #include "compressor/encode/packed_encoder.h"
 #include "compressor/encode/resident_encode.h"
 #include "compressor/survey/cached_source.h"
+#include "compressor/survey/rows_to_read.h"
 #include "compressor/survey/surveyed_leaves.h"
 #include "compressor/team/region_share.h"
 
@@ -37,24 +38,18 @@ void for_each_in(const Box& box, Visit&& visit) {
   }
 }
 
-// The leaf layers and rows of `block` (lattice positions) that hold kept leaves; x is left whole,
-// because rows are what a file is read by. Empty where nothing is kept.
+// The rows of `block` (lattice positions) that hold kept leaves.
 Box trim_to_kept(const TreeRegions& tree, const ChoiceStore& store, const Box& block) {
-  Box kept{block.hi, block.lo};
+  RowsToRead kept(block);
   for_each_in(regions_under(tree, block), [&](const Index3& at) {
     const std::int64_t region = tree.region_lattice.linear(at);
     if (tree.regions[static_cast<std::size_t>(region)].leaves == 0) return;
     const LeafChoices choices = store.read(region);
     for_each_in(intersect(tree.leaf_box(region), block), [&](const Index3& leaf) {
-      if (!choices.kept(tree.mask_position(leaf))) return;
-      kept.lo = min(kept.lo, leaf);
-      kept.hi = max(kept.hi, leaf + Index3{1, 1, 1});
+      if (choices.kept(tree.mask_position(leaf))) kept.add(leaf);
     });
   });
-  if (kept.empty()) return kept;
-  kept.lo.x = block.lo.x;
-  kept.hi.x = block.hi.x;
-  return kept;
+  return kept.box();
 }
 
 std::unique_ptr<LayerEncoder> make_encoder(const EncodeTarget& target) {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "compressor/encode/layer_encoder.h"
-#include "compressor/survey/encoded_state.h"
+#include "compressor/resume/encoded_state.h"
 #include "compressor/survey/pauses.h"
 #include "ingest/plan/block_plan.h"
 #include "ingest/plan/block_stream.h"

@@ -183,12 +183,9 @@ class PackedEncoder final : public PackedLayerEncoder {
 
   DecodedErrors loss() const {
     const LeafDifference lost = difference_from(source_);
-    DecodedErrors loss{lost.squared_error, lost.max_abs, Kept::all, lost.zeros_lost};
     const LeafDifference of_all = replaced_ ? difference_from(values_) : lost;
-    if (of_all.different > 0 || of_all.nonfinite_different > 0) {
-      loss.kept = replaced_ && lost.different == 0 ? Kept::values : Kept::lossy;
-    }
-    return loss;
+    const bool every_bit = of_all.different == 0 && of_all.nonfinite_different == 0;
+    return {lost.squared_error, lost.max_abs, kept_of(replaced_ && lost.different == 0, every_bit), lost.zeros_lost};
   }
 
   // Of the in-domain voxels.

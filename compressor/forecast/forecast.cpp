@@ -30,6 +30,7 @@
 #include "compressor/surveyed_conversion.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "format/io/output_names.h"
 #include "format/process/process_memory.h"
 
 namespace weir {
@@ -127,6 +128,7 @@ class Forecaster {
     ConversionControl control;
     control.cancel = control_.cancel;
     control.coder = control_.coder;
+    control.pads_file = !forecast_.exact_bytes;  // its size may be beyond what a disk holds
     control.pass_started = control_.pass_started;
     control.pass_advanced = control_.pass_advanced;
     return control;
@@ -141,15 +143,17 @@ class Forecaster {
     const Trial trial = run_trial(source, options_, control, files_);
     if (!asked) say_loss(trial.sidecar, options_, control_.notice);
     Forecast& f = forecast_;
-    f.exact_bytes = true;
     f.sampled_voxels = static_cast<std::uint64_t>(domain_.voxels());
     f.places = 1;
     f.passes = static_cast<double>(source.voxels_read()) / static_cast<double>(domain_.voxels());
     f.read_bytes = source.bytes_read();
     f.survey_s = trial.survey_s;
     f.encode_s = trial.encode_s;
-    const auto bytes = static_cast<double>(trial.sidecar.file.bytes);
-    f.file_bytes = {bytes, bytes, bytes};
+    if (!f.exact_bytes) {
+      const auto bytes = static_cast<double>(trial.sidecar.file.bytes);
+      f.file_bytes = {bytes, bytes, bytes};
+      f.exact_bytes = true;
+    }
     describe_file(trial.sidecar);
   }
 

@@ -5,6 +5,7 @@
 #include "compressor/forecast/scratch_file_system.h"
 #include "compressor/resume/work_directory.h"
 #include "format/base/error.h"
+#include "format/io/output_names.h"
 #include "format/layout/tree_layout.h"
 #include "format/nanovdb/macrocells.h"
 #include "format/output/output_files.h"

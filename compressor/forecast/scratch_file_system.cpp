@@ -5,7 +5,7 @@
 
 #include "compressor/resume/work_directory.h"
 #include "format/base/error.h"
-#include "format/output/output_files.h"
+#include "format/io/output_names.h"
 #include "format/sidecar/sidecar.h"
 
 namespace weir {

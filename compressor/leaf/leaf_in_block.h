@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
 
 #include "format/base/index.h"
@@ -26,5 +27,10 @@ struct LeafInBlock {
 /// `inside`: the voxels of the leaf in the domain. Of a block in parts, and of one whose leaves lie in memory, the
 /// values are those of the leaf alone, which may be in `room`.
 LeafInBlock leaf_in_block(const Block& block, const Box& inside, LeafRoom& room);
+
+/// Copies the values of a leaf, those of `inside`, x fastest, out of the values of `voxels`, in which it lies. What
+/// lies `ahead` values behind each row, as those of a leaf to come do, is fetched into the cache meanwhile.
+std::span<const float> copy_leaf(std::span<const float> values, const Box& voxels, const Box& inside,
+                                 std::int64_t ahead, std::array<float, kLeafVoxels>& own);
 
 }  // namespace weir

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <numeric>
 
+#include "format/base/index.h"
 #include "format/base/simd.h"
 
 namespace weir {
@@ -44,7 +45,7 @@ std::optional<LeafLattice> find_lattice(std::span<const float> values, float min
   if (!(magnitude >= kSmallest && magnitude <= 0x1p100F)) return std::nullopt;
   // The unit of the largest magnitude's last bit: the largest value is below 2^24 of them.
   const int exponent = std::ilogb(magnitude) - 23;
-  std::array<std::int32_t, 512> integers;
+  std::array<std::int32_t, kLeafVoxels> integers;
   const float scale = std::ldexp(1.0F, -exponent);
   if (!to_integers(values.data(), values.size(), scale, integers.data())) return std::nullopt;
 

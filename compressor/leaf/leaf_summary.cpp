@@ -238,7 +238,7 @@ LeafRow summarize_leaf(std::span<const float> values, std::size_t sample_at, Uni
   if (scan.non_finite == 0) {
     summarize_finite(data, count, scan.differ, repeats, row);
   } else if (row.finite > 0) {
-    std::array<float, 512> finite;
+    std::array<float, kLeafVoxels> finite;
     std::size_t kept = 0;
     for (const float v : values) {
       if (std::isfinite(v)) finite[kept++] = v;

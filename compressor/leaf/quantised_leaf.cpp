@@ -167,7 +167,7 @@ QuantisedLeaf quantise_leaf(const LeafValues& values, const LeafValues& source, 
   leaf.max_abs = lost.max_abs;
   const LeafDifference of_all =
       difference_of(whole ? values : inside_only(values, leaf.decoded, node, inside), leaf.decoded);
-  leaf.kept = of_all.different == 0 ? Kept::all : lost.different == 0 ? Kept::values : Kept::lossy;
+  leaf.kept = kept_of(lost.different == 0, of_all.different == 0);
   return leaf;
 }
 

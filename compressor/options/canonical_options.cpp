@@ -1,9 +1,9 @@
 #include "compressor/options/canonical_options.h"
 
 #include <array>
-#include <sstream>
 
 #include "compressor/options/conversion_request.h"
+#include "format/base/exact_text.h"
 #include "format/base/text.h"
 
 namespace weir {
@@ -11,15 +11,8 @@ namespace {
 
 using Texts = std::map<std::string, std::string>;
 
-// All digits: what differs in the last of them is another conversion.
-std::string all_digits(double value) {
-  std::ostringstream text;
-  text << std::hexfloat << value;
-  return text.str();
-}
-
 std::string text_of(const std::array<double, 3>& triple) {
-  return cat(all_digits(triple[0]), ',', all_digits(triple[1]), ',', all_digits(triple[2]));
+  return cat(hex_text(triple[0]), ',', hex_text(triple[1]), ',', hex_text(triple[2]));
 }
 
 std::string text_of(const std::optional<std::int64_t>& end) { return end ? cat(*end) : ""; }
@@ -89,7 +82,7 @@ void add_method(const ConversionOptions& options, const ConversionOptions& stand
   add("paper background", options.paper_background, standard.paper_background);
   add("nonfinite", options.non_finite, standard.non_finite);
   add("missing-policy", meant_policy(options), meant_policy(standard));
-  if (options.background) texts["background"] = all_digits(static_cast<double>(*options.background));
+  if (options.background) texts["background"] = hex_text(static_cast<double>(*options.background));
 }
 
 bool has_key(std::span<const ConversionOption> table, std::string_view key) {

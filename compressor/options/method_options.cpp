@@ -37,7 +37,7 @@ void read_psnr(const OptionRow& row, const std::string& text, Request& request) 
   constexpr double kLeastDecibels = 1e-3;
   constexpr double kMostDecibels = 1000;
   request.conversion.budget.target =
-      read_number(row, text, kLeastDecibels, kMostDecibels, "a number of dB above 0 and up to 1000, 60 for instance");
+      read_number(row, text, kLeastDecibels, kMostDecibels, "a number of dB from 0.001 to 1000, 60 for instance");
 }
 
 void read_max_error(const OptionRow& row, const std::string& text, Request& request) {
@@ -131,8 +131,8 @@ constexpr ConversionOption kMethodOptions[] = {
       .argument = "auto|on|off",
       .standard = "auto",
       .help =
-          "of --encoding packed, for readers of others: on keeps each block's mean in the tree; auto: where that takes "
-          "at most a tenth of the file"},
+          "of --encoding packed: on keeps each block's mean in the tree, which is what programs other than weir read; "
+          "auto: where that takes at most a tenth of the file"},
      [](const OptionRow& row, const std::string& text, Request& r) {
        r.conversion.preview = std::array{Preview::automatic, Preview::on, Preview::off}.at(read_choice(row, text));
      }},

@@ -34,7 +34,7 @@ WEIR_SIMD FiniteRange finite_range(const float* values) {
   std::memcpy(&low, values, sizeof low);
   Floats8 high = low;
   Floats8 differences{};  // of each value and itself: not 0 where it is not finite
-  for (unsigned i = 0; i < 512; i += 8) {
+  for (unsigned i = 0; i < kLeafVoxels; i += 8) {
     Floats8 v;
     std::memcpy(&v, values + i, sizeof v);
     differences += v - v;

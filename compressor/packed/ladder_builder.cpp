@@ -187,7 +187,7 @@ std::optional<std::int32_t> LadderBuilder::bounded_step(const LeafValues& block,
   const double rounding = (deviation + std::fabs(mean)) * 0x1p-20;
   const double allowed = max_error - rounding;
   if (deviation < allowed) {
-    const std::int32_t step = coarsest_step_within(std::sqrt(512.0) / kMeanError * (allowed - deviation));
+    const std::int32_t step = coarsest_step_within(std::sqrt(double{kLeafVoxels}) / kMeanError * (allowed - deviation));
     // Where coefficients would count at that step, the trials below find as much.
     if (transform_.cost(step).bits <= kMeanAloneBits) return step;
   }
@@ -197,7 +197,7 @@ std::optional<std::int32_t> LadderBuilder::bounded_step(const LeafValues& block,
   for (int trial = 0; trial < kTrials && step <= kMostStep; ++trial, ++step) {
     const TransformBlock::Cost cost = transform_.cost(step);
     // No largest error is below the root of the mean square.
-    if (cost.squared_error > 512 * max_error * max_error) continue;
+    if (cost.squared_error > double{kLeafVoxels} * max_error * max_error) continue;
     const MeanRange exact{transform_.mean(), transform_.mean()};
     const BlockConstants constants = unclamped(step);
     const std::uint32_t bytes = stream_bytes(cost.bits + 8, mean_bits(exact, step));

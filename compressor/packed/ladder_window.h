@@ -140,7 +140,7 @@ RungSearch(std::size_t, std::size_t, std::size_t, const At&) -> RungSearch<At>;
 /// Whether, at every key of the window, `ahead` is so much the better buy than `behind` that the rungs next to `behind`
 /// are not chosen, either: they are at most about a bit a value better than the one that a search begins at.
 inline bool is_far_ahead(const KeyWindow& window, double energy, const RungPoint& ahead, const RungPoint& behind) {
-  constexpr double kBitAValue = 512 / 8.0;  // bytes of a block
+  constexpr double kBitAValue = kLeafVoxels / 8.0;  // bytes of a block
   const auto leads = [&](double key) {
     return energy * (behind.share - ahead.share) > key * (kBitAValue - (behind.bytes - ahead.bytes));
   };

@@ -10,7 +10,7 @@
 namespace weir {
 
 struct PackedRule {
-  bool preview = true;        ///< the tree holds each block's mean, for readers of others
+  bool preview = true;        ///< the tree holds each block's mean, for other programs than weir
   std::int32_t coarsest = 0;  ///< step number that a step field of 0 stands for
   /// Rungs that no cut within it can choose are left out, whether they are built or not.
   std::optional<KeyWindow> window{};

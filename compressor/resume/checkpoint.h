@@ -9,8 +9,8 @@
 
 #include "compressor/leaf/encoding.h"
 #include "compressor/packed/ladder_state.h"
+#include "compressor/resume/encoded_state.h"
 #include "compressor/survey/background.h"
-#include "compressor/survey/encoded_state.h"
 #include "compressor/survey/survey_tally.h"
 #include "format/io/digest.h"
 

@@ -14,7 +14,6 @@
 #include "format/base/text.h"
 #include "format/io/digest.h"
 #include "format/io/output_names.h"
-#include "format/output/output_files.h"
 
 namespace weir {
 namespace {
@@ -228,9 +227,17 @@ void Journal::save() {
   const bool waits = options_.interval_s == 0 || (options_.cancel != nullptr && *options_.cancel);
   std::vector<std::shared_ptr<File>> open;
   for (const auto& [name, file] : open_) open.push_back(file);
-  saving_ = std::async(waits ? std::launch::deferred : std::launch::async,
-                       [this, open = std::move(open), text = to_text(state)] { write(open, text); });
-  if (waits) wait();
+  const auto work = [this, open = std::move(open), text = to_text(state)] { write(open, text); };
+  if (!waits) {
+    try {
+      saving_ = std::async(std::launch::async, work);
+      return;
+    } catch (const std::system_error&) {
+      // No thread for it.
+    }
+  }
+  saving_ = std::async(std::launch::deferred, work);
+  wait();
 }
 
 void Journal::save_now() {

@@ -7,7 +7,6 @@
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "format/io/output_names.h"
-#include "format/output/output_files.h"
 
 namespace weir {
 

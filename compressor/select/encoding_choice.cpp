@@ -325,6 +325,10 @@ FilePlan plan_file(const FileRequest& request, const RowStore& rows, WorkDirecto
     return plan_best(request, rows, work);
   }();
   check_countable(file.plan.layout.counts, request.path);
+  if (!request.pads_file) {
+    file.size.bytes = file.plan.layout.content_end;
+    file.plan.layout = padded_to(file.plan.layout, file.size.bytes);
+  }
   return file;
 }
 

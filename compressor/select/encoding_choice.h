@@ -61,6 +61,7 @@ struct FileRequest {
   PackedRequest packed;   ///< for Encoding::packed
   Box domain;
   bool keeps_non_finite = false;  ///< some voxels stay NaN or infinite, which only float32 holds
+  bool pads_file = true;          ///< to the size of the budget, where all is chosen
   bool plans_float = false;       ///< for Encoding::automatic: the float file, too, where a bound would do
   std::string path;               ///< of the output, for messages
 };

@@ -13,8 +13,7 @@
 namespace weir {
 namespace {
 
-Kept kept_by(bool values, bool all) { return all ? Kept::all : values ? Kept::values : Kept::lossy; }
-Kept kept_of(const TileSums& sums) { return kept_by(sums.keeps_values, sums.exact); }
+Kept kept_of_tiles(const TileSums& sums) { return kept_of(sums.keeps_values, sums.exact); }
 
 // What merges without regard to order.
 struct PlanTally {
@@ -86,7 +85,7 @@ class RegionPlanner {
         return;
       }
       const float value = rule_.packed ? region.packed_value : rule_.fill.leaf_value(row);
-      const Kept kept = kept_by(Fill::keeps_values(row, value), rule_.fill.exact(row, voxels, value));
+      const Kept kept = kept_of(Fill::keeps_values(row, value), rule_.fill.exact(row, voxels, value));
       squares.add(row.sse_about(value));
       tally.max_abs = std::max(tally.max_abs, row.max_abs_about(value));
       tally.kept = std::min(tally.kept, kept);
@@ -225,12 +224,14 @@ TreePlan plan_tree(const Selection& selection, const RowStore& rows, TreeRegions
     if (region.open) {
       of_region = planner.add_leaves(choices, region_rows, region, tallies.local());
     } else if (rule.packed) {
-      of_region = planner.add_tile(region_rows, region.packed_value, kept_of(region.sums), region, tallies.local());
+      of_region =
+          planner.add_tile(region_rows, region.packed_value, kept_of_tiles(region.sums), region, tallies.local());
     } else {
       // One tile, of this region or of the whole upper node.
       const Upper& upper = tree.uppers[static_cast<std::size_t>(tree.upper_of(index))];
       const TileSums& sums = upper.open ? region.sums : upper.sums;
-      of_region = planner.add_tile(region_rows, tile_value(rule.fill, sums), kept_of(sums), region, tallies.local());
+      of_region =
+          planner.add_tile(region_rows, tile_value(rule.fill, sums), kept_of_tiles(sums), region, tallies.local());
     }
     if (rule.packed) {
       const Upper& upper = tree.uppers[static_cast<std::size_t>(tree.upper_of(index))];

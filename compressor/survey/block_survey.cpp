@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <span>
 #include <vector>
 
@@ -120,24 +119,8 @@ class BlockSurvey::Leaves {
 
   // The in-domain values of a leaf, x fastest.
   std::span<const float> gather(const Index3& leaf, std::array<float, kLeafVoxels>& values) const {
-    const Box inside = leaves_.voxels(leaf);
-    const Index3 extent = inside.extent();
-    const Index3 block_extent = block_.voxels.extent();
-    float* out = values.data();
-    const float* corner = block_.values.data() + linear_index(inside.lo - block_.voxels.lo, block_extent);
-    for (std::int64_t z = 0; z < extent.z; ++z) {
-      for (std::int64_t y = 0; y < extent.y; ++y) {
-        const float* row = corner + block_extent.x * (y + block_extent.y * z);
-        __builtin_prefetch(row + 2 * kLeafDim);  // of the next leaf but one, in another line of the cache
-        if (extent.x == kLeafDim) {              // a length the compiler knows
-          std::memcpy(out, row, kLeafDim * sizeof(float));
-        } else {
-          std::copy_n(row, extent.x, out);
-        }
-        out += extent.x;
-      }
-    }
-    return {values.data(), static_cast<std::size_t>(volume(extent))};
+    // Of the next leaf but one, in another line of the cache.
+    return copy_leaf(block_.values, block_.voxels, leaves_.voxels(leaf), 2 * kLeafDim, values);
   }
 
   // Surveys the leaf at `at` of the block, or holds it back, and returns false.

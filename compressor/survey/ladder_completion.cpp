@@ -8,6 +8,7 @@
 #include "compressor/packed/block_sample.h"
 #include "compressor/packed/block_values.h"
 #include "compressor/survey/cached_source.h"
+#include "compressor/survey/rows_to_read.h"
 #include "compressor/survey/spill_sums.h"
 #include "compressor/survey/surveyed_leaves.h"
 #include "compressor/team/region_share.h"
@@ -21,20 +22,15 @@ bool is_incomplete(const MissingLadders& missing, const NodeLattice& leaves, con
   return part != LadderPart::kept && (missing.all || (missing.filled && part == LadderPart::filled));
 }
 
-// The leaves of a box to read: whole in x, because rows are what a file is read by.
+// The rows of a box that hold incomplete leaves.
 Box box_to_read(const RowStore& rows, const MissingLadders& missing, const Box& box, std::vector<LeafRow>& buffer) {
   rows.read_box(box, buffer);
-  Box found{box.hi, box.lo};
+  RowsToRead found(box);
   for (std::int64_t i = 0; i < box.voxels(); ++i) {
     const Index3 leaf = box.lo + index_at(i, box.extent());
-    if (!is_incomplete(missing, rows.leaves(), leaf, buffer[static_cast<std::size_t>(i)])) continue;
-    found.lo = min(found.lo, leaf);
-    found.hi = max(found.hi, leaf + Index3{1, 1, 1});
+    if (is_incomplete(missing, rows.leaves(), leaf, buffer[static_cast<std::size_t>(i)])) found.add(leaf);
   }
-  if (found.empty()) return found;
-  found.lo.x = box.lo.x;
-  found.hi.x = box.hi.x;
-  return found;
+  return found.box();
 }
 
 }  // namespace

@@ -1,9 +1,8 @@
 #include "compressor/survey/surveyed_leaves.h"
 
-#include <algorithm>
 #include <array>
-#include <cstring>
 
+#include "compressor/leaf/leaf_in_block.h"
 #include "format/base/text.h"
 #include "ingest/files/file_state.h"
 #include "ingest/source/extent.h"
@@ -27,26 +26,12 @@ SurveyedLeaves::SurveyedLeaves(const RowStore& rows, const Box& leaf_box, const 
 void SurveyedLeaves::check(const Index3& leaf, std::span<const float> values, const Box& voxels) const {
   if (!checks()) return;
   const Box inside = leaves_.voxels(leaf);
-  const Index3 extent = inside.extent();
   const Index3 rows = voxels.extent();
-  std::array<float, kLeafVoxels> own;
-  float* out = own.data();
-  const float* const corner = values.data() + linear_index(inside.lo - voxels.lo, rows);
   if (held_ != nullptr) __builtin_prefetch(held_ + leaves_.linear(leaf));
   // Leaves come by z: rows of the next one, where the voxels have it.
   const std::int64_t next = inside.hi.z + kLeafDim <= voxels.hi.z ? kLeafDim * rows.x * rows.y : 0;
-  for (std::int64_t z = 0; z < extent.z; ++z) {
-    for (std::int64_t y = 0; y < extent.y; ++y, out += extent.x) {
-      const float* const row = corner + rows.x * (y + rows.y * z);
-      __builtin_prefetch(row + next);
-      if (extent.x == kLeafDim) {  // a length the compiler knows
-        std::memcpy(out, row, kLeafDim * sizeof(float));
-      } else {
-        std::copy_n(row, extent.x, out);
-      }
-    }
-  }
-  check(leaf, leaf_digest({own.data(), static_cast<std::size_t>(volume(extent))}));
+  std::array<float, kLeafVoxels> own;
+  check(leaf, leaf_digest(copy_leaf(values, voxels, inside, next, own)));
 }
 
 void SurveyedLeaves::check(const Index3& leaf, const Digest& digest) const {

@@ -6,7 +6,7 @@
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "format/io/output_names.h"
-#include "format/output/output_files.h"
+#include "format/output/output_place.h"
 #include "format/sidecar/sidecar.h"
 
 namespace weir {

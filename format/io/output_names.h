@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -28,5 +29,12 @@ inline std::string partial_path(const std::string& path) { return cat(path, kPar
 inline std::string previous_path(const std::string& sidecar) { return cat(sidecar, kPreviousEnding); }
 /// `name`: a file's, without directories.
 inline std::string work_name(const std::string& name) { return cat('.', name, kWorkEnding); }
+
+/// Directory part of an output's path, "." where there is none.
+inline std::string directory_of(const std::string& path) {
+  const std::size_t slash = path.rfind('/');
+  if (slash == std::string::npos) return ".";
+  return slash == 0 ? "/" : path.substr(0, slash);
+}
 
 }  // namespace weir

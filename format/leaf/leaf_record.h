@@ -16,6 +16,11 @@ enum class Kept : std::uint32_t {
   all
 };
 
+/// By whether every value is kept, and whether all bits are, those in place of voxels without a value among them.
+constexpr Kept kept_of(bool every_value, bool every_bit) {
+  return every_bit ? Kept::all : every_value ? Kept::values : Kept::lossy;
+}
+
 struct LeafRecord {
   double mean = 0;
   double m2 = 0;

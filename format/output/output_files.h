@@ -75,25 +75,4 @@ class OutputFiles {
   std::optional<std::uint64_t> reserved_;  // of the volume that clear_for() has left as it was
 };
 
-/// Throws what OutputFiles does where no output can be made at `path`, whose longest name of weir's own beside it is
-/// longer by `beside` bytes.
-void require_place(FileSystem& files, const std::string& path, std::size_t beside);
-
-/// Throws Error(usage) for names that say that no NanoVDB file is wanted: "-", a stream, and those that end as files of
-/// another known format do, NAME.vdb or NAME.PNG. Any other ending will do.
-void require_volume_name(const std::string& path);
-
-/// Throws Error(io) where `partial`, PATH.partial, was there before and may have a writer that no lock tells of.
-void require_alone(const File& partial);
-
-/// FileSystem::rename_new of what was written to the name `path`; Error(io) of EEXIST with a remedy where something has
-/// got that name meanwhile.
-void place_new(FileSystem& files, const std::string& written, const std::string& path);
-
-/// Makes the name of `path`, whose file is whole and flushed, durable. Throws Error(io) that says that it is there.
-void flush_name(FileSystem& files, const std::string& path);
-
-/// Directory part of a path, "." where there is none.
-std::string directory_of(const std::string& path);
-
 }  // namespace weir

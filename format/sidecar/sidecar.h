@@ -104,7 +104,7 @@ struct Sidecar {
   struct Background {
     double value = 0;
     std::string method;  ///< how it was found: "mode", "bin", "user", "source", ...
-    double share = 0;    ///< part of the voxels with that value, 0..1
+    double share = 0;    ///< part of the voxels with that value, 0..1; 0, not counted, for "user" and "source"
   } background;
 
   /// Finite source voxels equal to zero; none where weir was older.

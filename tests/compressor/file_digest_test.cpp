@@ -48,5 +48,14 @@ TEST_F(FileDigest, SaysHowFarItIsAndEndsByWhatThatThrows) {
   EXPECT_THROW(digest_of_file(*file, no_team(), [](std::uint64_t) { throw Stop(); }), Stop);
 }
 
+TEST_F(FileDigest, MappingHasTheDigestOfItsFile) {
+  const auto data = pattern(kDigestPieceBytes + 5);
+  std::vector<std::uint64_t> done;
+  const Digest digest = digest_of_mapping(data, nullptr, [&](std::uint64_t bytes) { done.push_back(bytes); });
+  EXPECT_EQ(digest, digest_of_file(*file_of(data), no_team()));
+  EXPECT_EQ(done, std::vector<std::uint64_t>{data.size()});
+  EXPECT_EQ(digest_of_mapping({}, nullptr), combine({}));
+}
+
 }  // namespace
 }  // namespace weir::file_digest_test

@@ -10,7 +10,7 @@
 
 #include "format/base/error.h"
 #include "format/base/text.h"
-#include "format/output/output_files.h"
+#include "format/output/output_place.h"
 #include "tests/ingest/hdf5/support/chunked_file.h"
 #include "tests/ingest/support/scratch.h"
 #include "tests/stock/openvdb_file.h"

@@ -22,7 +22,7 @@
 #include "format/base/text.h"
 #include "format/io/bandwidth.h"
 #include "format/io/limited_file_system.h"
-#include "format/output/output_files.h"
+#include "format/io/output_names.h"
 #include "gpu/packed/coder_choice.h"
 #include "ingest/file_values.h"
 #include "ingest/plan/limited_source.h"
@@ -199,7 +199,9 @@ Sidecar convert_step(const SeriesStep& step, const SourceOptions& source_options
   if (a.count_values) options.source_values = file_values(step.path, source_options);
   Progress progress(a.progress);
   ConversionControl control = control_of(work, progress);
-  control.planned = [&](std::uint64_t bytes) { announce(a.progress, nlohmann::json{{"planned", bytes}}.dump()); };
+  if (a.progress.descriptor >= 0) {  // whoever reads it may wait for room
+    control.planned = [&](std::uint64_t bytes) { announce(a.progress, nlohmann::json{{"planned", bytes}}.dump()); };
+  }
   Sidecar sidecar;
   with_bandwidth(std::move(source), work, [&](VolumeSource& volume, FileSystem& files) {
     sidecar = convert_volume(volume, options, control, files);

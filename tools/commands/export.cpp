@@ -147,7 +147,8 @@ void export_volume(const ExportArguments& arguments) {
   options.compression = compression_flags(arguments.compression);
   options.half = arguments.half;
   options.creator = cat("weir ", WEIR_VERSION);
-  if (const auto sidecar = sidecar_of(file)) options.metadata = certificate(*sidecar);
+  const std::optional<Sidecar> sidecar = sidecar_of(file);
+  if (sidecar) options.metadata = certificate(*sidecar);
   Progress progress(arguments.progress);
   const auto advance = [&](std::uint64_t done) {
     progress.update(done);
@@ -160,7 +161,10 @@ void export_volume(const ExportArguments& arguments) {
   const OpenVdbLibrary& library = openvdb_library(arguments.output + ": is to be an OpenVDB file");
   const std::unique_ptr<FileSystem> files = make_posix_file_system();
   PartialFile output(*files, arguments.output, arguments.overwrite);  // refuses a name before all is read
-  refuse_damaged(arguments.volume, {{}, [&](std::uint64_t bytes) { progress.start("check", bytes); }, advance});
+  if (sidecar) {
+    const auto started = [&](std::uint64_t bytes) { progress.start("check", bytes); };
+    refuse_damaged(arguments.volume, *sidecar, {{}, started, advance});
+  }
   progress.start("export", total);
   const VdbWritten written = write_vdb(file.grid(), arguments.volume, options, output.file());
   progress.finish();

@@ -199,8 +199,9 @@ void print_sidecar(const Sidecar& s) {
   line("selection   ", cat(s.selection.leaves_kept, " of ", s.selection.leaves_total, " leaves by ", s.selection.metric,
                            ", brick ", s.selection.brick, ", fill ", s.selection.fill, "; bits 1:", bits[0],
                            " 2:", bits[1], " 4:", bits[2], " 8:", bits[3], " 16:", bits[4], " 32:", bits[5]));
-  line("background  ", cat(short_number(static_cast<double>(s.background.value)), ", ", s.background.method, ", ",
-                           short_number(100 * s.background.share), " % of the voxels"));
+  const double share = s.background.share;  // 0 where it was given, and not counted
+  line("background  ", cat(short_number(static_cast<double>(s.background.value)), ", ", s.background.method,
+                           share > 0 ? cat(", ", short_number(100 * share), " % of the voxels") : std::string()));
   if (const std::string text = rounded_text(s.conversion_loss); !text.empty()) line("rounded     ", text);
   if (const std::string text = missing_text(s); !text.empty()) line("missing     ", text);
   if (const std::string text = nonfinite_text(s); !text.empty()) line("not finite  ", text);

@@ -13,7 +13,7 @@
 #include "format/io/real_path.h"
 #include "format/nanovdb/nvdb_checksum.h"
 #include "format/nanovdb/nvdb_file.h"
-#include "format/output/output_files.h"
+#include "format/output/output_place.h"
 #include "format/sidecar/read_sidecar.h"
 #include "ingest/raw/raw_name.h"
 

@@ -1,16 +1,14 @@
 #include "tools/verify/volume_verification.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <memory>
 #include <optional>
 #include <span>
 #include <utility>
 
+#include "compressor/file_digest.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
-#include "format/io/digest.h"
 #include "format/nanovdb/nvdb_file.h"
 #include "format/sidecar/find_sidecar.h"
 #include "format/sidecar/read_sidecar.h"
@@ -26,22 +24,14 @@ void stop_if_cancelled(const VerificationWatch& watch) {
   if (watch.cancel != nullptr && *watch.cancel) throw Error(ErrorKind::interrupted, "interrupted");
 }
 
-std::string parallel_digest(std::span<const std::byte> file, const VerificationWatch& watch) {
-  constexpr std::uint64_t kBatch = 32;  // pieces between two looks at the progress and the cancel flag
+std::string watched_digest(std::span<const std::byte> file, const VerificationWatch& watch) {
   if (watch.pass_started) watch.pass_started("digest", file.size());
   const TraceSpan pass(watch.trace, "digest", file.size());
-  std::vector<Digest> pieces(piece_count(file.size()));
-  for (std::uint64_t begin = 0; begin < pieces.size(); begin += kBatch) {
-    const std::uint64_t end = std::min<std::uint64_t>(begin + kBatch, pieces.size());
-    tbb::parallel_for(begin, end, [&](std::uint64_t i) {
-      const std::span<const std::byte> piece = file_piece(file, i);
-      const TraceSpan span(watch.trace, "hash", piece.size());
-      pieces[i] = piece_digest(piece);
-    });
-    if (watch.pass_advanced) watch.pass_advanced(end * kDigestPieceBytes);
+  const Digest digest = digest_of_mapping(file, watch.trace, [&](std::uint64_t done) {
+    if (watch.pass_advanced) watch.pass_advanced(done);
     stop_if_cancelled(watch);
-  }
-  return combine(pieces).hex();
+  });
+  return digest.hex();
 }
 
 TreeCensus watched_census(const NvdbGrid& grid, const VerificationWatch& watch) {
@@ -88,7 +78,7 @@ std::vector<VolumeCheck> verify_volume(const std::string& path, const Verificati
   checks.push_back({"structure", "valid", "a valid NanoVDB file", true});
   for (VolumeCheck& check : check_structure(grid, *census)) checks.push_back(std::move(check));
   if (!sidecar) return checks;
-  const std::string digest = parallel_digest(grid.bytes(), watch);
+  const std::string digest = watched_digest(grid.bytes(), watch);
   for (VolumeCheck& check : check_sidecar(grid, *census, digest, *sidecar)) checks.push_back(std::move(check));
   for (VolumeCheck& check : check_certificate(*sidecar)) checks.push_back(std::move(check));
   for (VolumeCheck& check : check_lossless(*census, grid.background(), *sidecar)) checks.push_back(std::move(check));

@@ -132,7 +132,7 @@ static void options(void) {
   REFUSE_OPTIONS("budget_kind is -1, it must be 0 to 5", o.budget_kind = -1);
   REFUSE_OPTIONS("budget (WEIR_BUDGET_RATE) is \"0\", it must be a positive number: dense float32 bytes / file bytes",
                  o.budget_kind = WEIR_BUDGET_RATE);
-  REFUSE_OPTIONS("budget (WEIR_BUDGET_PSNR) is \"nan\", it must be a number of dB above 0 and up to 1000, 60 for instance", (o.budget_kind = WEIR_BUDGET_PSNR, o.budget = NAN));
+  REFUSE_OPTIONS("budget (WEIR_BUDGET_PSNR) is \"nan\", it must be a number of dB from 0.001 to 1000, 60 for instance", (o.budget_kind = WEIR_BUDGET_PSNR, o.budget = NAN));
   REFUSE_OPTIONS("budget (WEIR_BUDGET_MAX_ERROR) is \"-1\", it must be a number from 0 to 1e300, in the values' own unit",
                  (o.budget_kind = WEIR_BUDGET_MAX_ERROR, o.budget = -1));
   REFUSE_OPTIONS("budget is 8, and budget_kind is not WEIR_BUDGET_RATE, _PSNR or _MAX_ERROR; set one or the other",

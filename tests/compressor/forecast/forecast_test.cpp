@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "compressor/conversion.h"
 #include "compressor/conversion_memory.h"
@@ -258,6 +259,31 @@ TEST_F(ForecastTest, Errors_AreThoseOfTheConversion) {
   EXPECT_EQ(message_of_error(ErrorKind::io, [&] { forecast(volume, asked, 1000); }),
             asked.output + ": the directory " + (directory_ / "missing") +
                 " does not exist; make it or choose another output");
+}
+
+TEST_F(ForecastTest, SizeThatNoDiskHolds_IsRefusedByTheRoomThereIs) {
+  ConversionOptions asked = options(Encoding::automatic, Budget::Kind::size);
+  asked.budget.bytes = 1'000'000'000'000'000;
+  for (const std::uint64_t most_bytes : {kForecastBytes, 14 * kMiB}) {  // the whole volume, and a sample
+    const std::string message = message_of_error(ErrorKind::io, [&] { forecast(uneven_volume(), asked, most_bytes); });
+    EXPECT_TRUE(message.starts_with(asked.output + ": takes 1000000000000000 bytes of ")) << message;
+  }
+}
+
+TEST_F(ForecastTest, SizeAboveWhatAVolumeNeeds_IsExpectedWithItsNotice) {
+  MemoryVolume volume({{0, 0, 0}, {64, 64, 64}}, noise);
+  ConversionOptions asked = options(Encoding::automatic, Budget::Kind::size);
+  asked.budget.bytes = 64 * kMiB;
+  std::vector<std::string> notices;
+  ConversionControl control;
+  control.notice = [&](const Message& line) { notices.push_back(line.text()); };
+  const Forecast f = forecast_conversion(volume, asked, control, *files_, kForecastBytes);
+  EXPECT_EQ(f.file_bytes.value, static_cast<double>(asked.budget.bytes));
+  EXPECT_TRUE(f.exact_bytes);
+  EXPECT_TRUE(f.error.lossless);
+  ASSERT_EQ(notices.size(), 1U);
+  EXPECT_NE(notices.front().find(" of the 67108864 asked are padding, which --at-most leaves out"), std::string::npos)
+      << notices.front();
 }
 
 TEST_F(ForecastTest, SampleForARate_NamesTheBudgetOfTheConversion) {

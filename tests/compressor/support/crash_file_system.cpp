@@ -6,7 +6,7 @@
 
 #include "format/base/error.h"
 #include "format/base/text.h"
-#include "format/output/output_files.h"
+#include "format/io/output_names.h"
 
 namespace weir::test {
 

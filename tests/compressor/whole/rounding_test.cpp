@@ -8,6 +8,7 @@
 #include "format/base/error.h"
 #include "ingest/values/array_source.h"
 #include "tests/compressor/support/converted.h"
+#include "tests/support/message_of_error.h"
 
 namespace weir::rounding_test {
 namespace {
@@ -37,18 +38,26 @@ test::Converted converted(const std::vector<double>& values, const Budget& budge
   return test::convert(*source, options);
 }
 
+std::string refusal(const std::vector<double>& values, double max_error) {
+  return message_of_error(ErrorKind::budget, [&] { converted(values, {Budget::Kind::max_error, 8, 0, max_error}); });
+}
+
 TEST(Rounding, BeyondTheBound_IsRefused) {
   const std::vector<double> values = ramp(1e9);
-  std::string message;
-  try {
-    converted(values, {Budget::Kind::max_error, 8, 0, 0.01});
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::budget);
-    message = error.what();
-  }
+  const std::string message = refusal(values, 0.01);
   EXPECT_TRUE(message.starts_with("memory: float32, which files hold, rounds ")) << message;
   EXPECT_TRUE(message.find(", more than --max-error 0.01 allows; allow --max-error ") != std::string::npos) << message;
   EXPECT_LE(converted(values, {Budget::Kind::max_error, 8, 0, 40}).sidecar.error.max_abs, 40);
+}
+
+TEST(Rounding, BoundThatARefusalNames_IsTaken) {
+  const std::vector<double> values = ramp(1e6);  // rounded by 0.03 and 2.8e-11, more digits than messages have
+  const std::string message = refusal(values, 0.001);
+  const std::string remedy = "allow --max-error ";
+  const std::size_t at = message.find(remedy);
+  ASSERT_NE(at, std::string::npos) << message;
+  const double named = std::stod(message.substr(at + remedy.size()));
+  EXPECT_LE(converted(values, {Budget::Kind::max_error, 8, 0, named}).sidecar.error.max_abs, named);
 }
 
 TEST(Rounding, ThatNoErrorCounts_IsSaidForEveryBudget) {

@@ -313,11 +313,5 @@ TEST_F(OutputFilesTest, SaysThatTheDirectoryIsMissing) {
   }
 }
 
-TEST(DirectoryOf, IsThePathBeforeTheLastSlash) {
-  EXPECT_EQ(directory_of("a/b/c.nvdb"), "a/b");
-  EXPECT_EQ(directory_of("c.nvdb"), ".");
-  EXPECT_EQ(directory_of("/c.nvdb"), "/");
-}
-
 }  // namespace
 }  // namespace weir::output_files_test

@@ -29,6 +29,14 @@ TEST_F(Inspect, ShowsVolumeAndCertificate) {
   EXPECT_EQ(report["sidecar_matches"], true);
 }
 
+TEST_F(Inspect, BackgroundThatWasGiven_HasNoShare) {
+  EXPECT_NE(run_weir({"inspect", volume_}).out.find("\nbackground  0, mode, 50"), std::string::npos);
+  const std::string given = directory_ / "given.nvdb";
+  ASSERT_EQ(run_weir({"convert", volume_, "-o", given, "--background", "0", "-q"}).exit_code, 0);
+  const CommandResult text = run_weir({"inspect", given});
+  EXPECT_NE(text.out.find("\nbackground  0, user\n"), std::string::npos) << text.out;
+}
+
 TEST_F(Inspect, TextThatSteersATerminal_IsOneLine) {
   auto record = nlohmann::ordered_json::parse(read_file(sidecar_path(volume_)));
   record["source"]["long_name"] = "l\nweir: fake";

@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "ingest/plan/staging.h"
 #include "tests/support/run_command.h"
 #include "tests/support/sanitized.h"
 
@@ -199,6 +200,50 @@ TEST_F(ProcessLimits, Threads_AreFewerOrAClearError) {
   EXPECT_EQ(none.exit_code, 5);
   EXPECT_TRUE(none.err.ends_with(none_left)) << none.err;
   EXPECT_EQ(left(), std::vector<std::string>{});
+}
+
+TEST_F(ProcessLimits, ThreadsThatRunOutDuringAConversion_CostNothing) {
+  if (kSanitized) GTEST_SKIP() << kSanitizedSkip;
+  // After those that a conversion of one thread starts to see how many it may have; oneTBB is left its own.
+  const std::string counted = std::to_string(2 * kIoThreads + 2);
+  CommandOptions denied;
+  denied.environment = preload(
+      "#define _GNU_SOURCE\n#include <dlfcn.h>\n#include <errno.h>\n#include <pthread.h>\n#include <string.h>\n"
+      "static int started;\n"
+      "int pthread_create(pthread_t* t, const pthread_attr_t* a, void* (*run)(void*), void* with) {\n"
+      "  Dl_info caller;\n"
+      "  dladdr(__builtin_return_address(0), &caller);\n"
+      "  if (strstr(caller.dli_fname, \"libtbb\") == 0 && __sync_fetch_and_add(&started, 1) >= " +
+      counted +
+      ") return EAGAIN;\n"
+      "  int (*real)(pthread_t*, const pthread_attr_t*, void* (*)(void*), void*) = dlsym(RTLD_NEXT, "
+      "\"pthread_create\");\n"
+      "  return real(t, a, run, with);\n}\n");
+  const std::string path = volume(164);
+  for (const std::vector<std::string>& options :
+       std::vector<std::vector<std::string>>{{"--size", "16777216"}, {"--resume", "on", "--save-interval", "0.001"}}) {
+    std::vector<std::string> command{"convert", path, "-o", output_, "--overwrite", "--threads", "1", "-q"};
+    command.insert(command.end(), options.begin(), options.end());
+    ASSERT_EQ(run_weir(command).exit_code, 0);
+    const std::string expected = read_file(output_);
+    const CommandResult result = run_weir(command, denied);
+    EXPECT_EQ(result.exit_code, 0) << options.front() << ": " << result.err;
+    EXPECT_TRUE(read_file(output_) == expected) << options.front();
+  }
+}
+
+TEST_F(ProcessLimits, FileOfKnownSize_IsReservedBesideTheSurvey) {
+  CommandOptions told;
+  told.environment = preload(
+      "#define _GNU_SOURCE\n#include <dlfcn.h>\n#include <fcntl.h>\n#include <sys/syscall.h>\n#include <unistd.h>\n"
+      "int fallocate(int file, int mode, off_t offset, off_t bytes) {\n"
+      "  if (syscall(SYS_gettid) != getpid()) (void)!write(2, \"beside\\n\", 7);\n"
+      "  int (*real)(int, int, off_t, off_t) = dlsym(RTLD_NEXT, \"fallocate\");\n"
+      "  return real(file, mode, offset, bytes);\n}\n");
+  const CommandResult result =
+      run_weir({"convert", volume(164), "-o", output_, "--size", "16777216", "--threads", "1", "-q"}, told);
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(result.err, "beside\n");
 }
 
 TEST_F(ProcessLimits, ManyProcessors_DefaultCeilingLimitsTheThreads) {

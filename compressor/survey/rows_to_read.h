@@ -1,0 +1,28 @@
+// What to read of a block where only some of its leaves are needed.
+#pragma once
+
+#include "format/base/index.h"
+
+namespace weir {
+
+/// Positions of a leaf lattice. Rows along x are read whole: they are what a file is read by.
+class RowsToRead {
+ public:
+  explicit RowsToRead(const Box& block) : block_(block), needed_{block.hi, block.lo} {}
+
+  void add(const Index3& leaf) {
+    needed_.lo = min(needed_.lo, leaf);
+    needed_.hi = max(needed_.hi, leaf + Index3{1, 1, 1});
+  }
+  /// Empty where nothing was added.
+  Box box() const {
+    if (needed_.empty()) return needed_;
+    return {{block_.lo.x, needed_.lo.y, needed_.lo.z}, {block_.hi.x, needed_.hi.y, needed_.hi.z}};
+  }
+
+ private:
+  Box block_;
+  Box needed_;
+};
+
+}  // namespace weir
