@@ -9,6 +9,7 @@
 #include <benchmark/benchmark.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <cstdlib>
@@ -31,7 +32,7 @@ using Clock = std::chrono::steady_clock;
 
 /// Planes handed over at a time.
 constexpr std::int64_t kPlanes = 8;
-/// Where the plain copies go: more than a cache holds.
+/// Where the plain copies go, at least: more than a cache holds.
 constexpr std::size_t kCopyBytes = std::size_t{128} << 20U;
 
 std::string output_path() {
@@ -51,9 +52,9 @@ struct Simulation {
     open_synthetic(kind, {{dim, dim, dim}, 1})->read({{0, 0, 0}, {dim, dim, dim}}, values);
   }
   std::int64_t slabs() const { return dim / kPlanes; }
+  std::size_t slab_values() const { return static_cast<std::size_t>(dim * dim * kPlanes); }
   std::span<const float> slab(std::int64_t i) const {
-    const auto size = static_cast<std::size_t>(dim * dim * kPlanes);
-    return std::span(values).subspan(static_cast<std::size_t>(i) * size, size);
+    return std::span(values).subspan(static_cast<std::size_t>(i) * slab_values(), slab_values());
   }
   std::int64_t dim;
   std::vector<float> values;
@@ -94,7 +95,7 @@ void compute_for(double seconds) {
 void push(const std::string& kind, Encoding encoding, double pause_s_per_gb, benchmark::State& state) {
   const Simulation simulation(kind);
   const auto files = make_posix_file_system();
-  std::vector<std::byte> copies(kCopyBytes, std::byte{1});
+  std::vector<std::byte> copies(std::max(kCopyBytes, simulation.slab_values() * sizeof(float)), std::byte{1});
   Spent slabs;
   Spent copying;
   Spent ends;

@@ -93,6 +93,7 @@ def main():
                 browser.wait("the page is filled", lambda: browser.visible("#main"))
                 browser.script(f"""
                     const frame = document.querySelector('#frame');
+                    frame.style.minHeight = 0;
                     frame.style.width = frame.style.height = '{given.edge}px';""")
                 browser.wait("the picture", lambda: (browser.text("#quality") or "").startswith(
                     f"{given.edge} \u00d7 {given.edge}"), 60)

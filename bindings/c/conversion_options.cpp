@@ -179,7 +179,10 @@ SourceOptions read_input_options(const weir_input_options* given) {
     if (*o.component == '\0') throw usage("component is empty; give a position, x, y, z or magnitude, or NULL");
     texts["component"] = o.component;
   }
-  if (o.magnitude != nullptr) texts["magnitude"] = o.magnitude;
+  if (o.magnitude != nullptr) {
+    if (*o.magnitude == '\0') throw usage("magnitude is empty; give the names of two datasets or more, u,v,w, or NULL");
+    texts["magnitude"] = o.magnitude;
+  }
   if (o.has_level != 0) {
     texts["level"] = cat(o.level);
   } else if (o.level != 0) {
@@ -211,8 +214,7 @@ SourceOptions read_input_options(const weir_input_options* given) {
 }
 
 std::string checked_output(const char* path) {
-  std::string output = required(path, "output");
-  if (output.empty()) throw usage("output is empty; name a file");
+  std::string output = required_path(path, "output");
   std::error_code ignored;
   if (std::filesystem::is_directory(output, ignored)) {
     throw usage(cat(output, ": is a directory; name a file in it"));

@@ -110,7 +110,7 @@ void weir_buffer_free(weir_buffer* buffer) { delete buffer; }
 weir_status weir_convert_file(const char* input, const weir_input_options* input_options,
                               const weir_convert_options* options, const char* output, weir_error* error) {
   return guarded(error, [&] {
-    const std::string path = required(input, "input");
+    const std::string path = required_path(input, "input");
     SourceOptions source_options = read_input_options(input_options);
     const weir_convert_options given = options_or_defaults(options);
     ConversionOptions conversion = read_options(given);

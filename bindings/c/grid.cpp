@@ -100,7 +100,7 @@ const char* weir_version(void) { return WEIR_VERSION; }
 weir_status weir_open(const char* path, weir_grid** grid, weir_error* error) {
   return guarded(error, [&] {
     required(grid, "grid");
-    *grid = new weir_grid(std::string(required(path, "path")));
+    *grid = new weir_grid(std::string(required_path(path, "path")));
   });
 }
 

@@ -35,4 +35,10 @@ T* required(T* pointer, const char* name) {
   return pointer;
 }
 
+/// A path, which must not be empty either.
+inline const char* required_path(const char* path, const char* name) {
+  if (*required(path, name) == '\0') throw usage(std::string(name) + " is empty; name a file");
+  return path;
+}
+
 }  // namespace weir::c

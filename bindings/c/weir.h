@@ -258,7 +258,8 @@ typedef struct weir_push weir_push;
 
 /* Begins `output`. Strings of `volume` and `options` are copied, callbacks and `user` are used until the end; a
  * relative path stays what it is at this call. Values are kept in options->memory bytes and, where they do not fit,
- * compactly in the work directory. The caller frees *push by weir_push_free. */
+ * compactly in the work directory. WEIR_ERROR_IO where another push, conversion or process is writing that output. The
+ * caller frees *push by weir_push_free. */
 WEIR_API weir_status weir_push_begin(const weir_volume* volume, const weir_convert_options* options, const char* output,
                                      weir_push** push, weir_error* error);
 /* Takes planes z0 to z0 + nz - 1: `data` is voxel (0, 0, z0), `stride` as in weir_convert. The values may be changed
@@ -281,10 +282,11 @@ typedef struct weir_grid weir_grid;
 
 /* Maps the file and checks all of it but the values: no later call reads outside it, whatever its bytes are. The file
  * must not be truncated while it is open: reading pages that are gone ends a process by SIGBUS. weir itself replaces
- * files and never changes them in place. The caller closes *grid by weir_close. */
+ * files and never changes them in place. WEIR_ERROR_INPUT where it is missing or no NanoVDB file, WEIR_ERROR_IO where
+ * it may not be read. The caller closes *grid by weir_close. */
 WEIR_API weir_status weir_open(const char* path, weir_grid** grid, weir_error* error);
 /* The same for `bytes` bytes in memory, which are not copied and must not change until weir_close. `sidecar` is JSON
- * text or NULL. */
+ * text or NULL; one that is of another file, or cannot be read, certifies nothing and is no error. */
 WEIR_API weir_status weir_open_memory(const void* data, uint64_t bytes, const char* sidecar, weir_grid** grid,
                                       weir_error* error);
 WEIR_API void weir_close(weir_grid* grid);
@@ -317,7 +319,7 @@ typedef struct weir_grid_info {
 WEIR_API weir_status weir_grid_info_init(weir_grid_info* info, size_t struct_size);
 /* Fills *info, which weir_grid_info_init has set up. */
 WEIR_API weir_status weir_get_info(const weir_grid* grid, weir_grid_info* info, weir_error* error);
-/* Until weir_close. */
+/* The grid's name, which may be empty. Valid until weir_close, as the sidecar. */
 WEIR_API const char* weir_grid_name(const weir_grid* grid);
 WEIR_API const char* weir_grid_sidecar(const weir_grid* grid); /* JSON text; NULL where certified is 0 */
 /* The grid itself, data_bytes of it, as NanoVDB's own code takes it: aligned to 32 bytes in files that weir wrote and
@@ -328,7 +330,8 @@ WEIR_API const void* weir_grid_data(const weir_grid* grid);
  * the background, except where the last 8^3 blocks reach beyond the domain's edge and hold a value. */
 WEIR_API weir_status weir_value(const weir_grid* grid, const int64_t index[3], float* value, weir_error* error);
 /* The same for the voxels from `min` to before `max`, x fastest, into `values`, which has `count` floats, exactly as
- * many as there are voxels. Uses the calling thread alone. */
+ * many as there are voxels; else, and where a corner is beyond +-2^31, WEIR_ERROR_USAGE. Uses the calling thread
+ * alone. */
 WEIR_API weir_status weir_read_box(const weir_grid* grid, const int64_t min[3], const int64_t max[3], float* values,
                                    size_t count, weir_error* error);
 

@@ -44,8 +44,9 @@ class FileSystem {
  public:
   virtual ~FileSystem() = default;
   /// Creates or truncates `path` for reading and writing and takes an exclusive lock on it; a lock
-  /// held by another process is Error(io) "is being written by another process". Anything there but a regular file with
-  /// this one name, a symbolic link for instance, is not weir's: Error(usage).
+  /// held by another process, or by another File of this one, is Error(io) "is being written by another process or
+  /// conversion". Anything there but a regular file with this one name, a symbolic link for instance, is not weir's:
+  /// Error(usage).
   virtual std::unique_ptr<File> create(const std::string& path) = 0;
   /// The same, but what the file holds stays, and it may have further names.
   virtual std::unique_ptr<File> open(const std::string& path) = 0;

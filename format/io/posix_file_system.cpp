@@ -122,9 +122,10 @@ class PosixFileSystem final : public FileSystem {
       if (lock(descriptor) == 0) {
         file->set_exclusive();
       } else if (errno == EWOULDBLOCK) {
-        throw Error(ErrorKind::io,
-                    cat(path, ": is being written by another process; wait for it or choose another output"),
-                    SystemFailure{EWOULDBLOCK, path});
+        throw Error(
+            ErrorKind::io,
+            cat(path, ": is being written by another process or conversion; wait for it or choose another output"),
+            SystemFailure{EWOULDBLOCK, path});
       } else {
         warn_once_unlockable(path, errno);
       }

@@ -36,14 +36,15 @@ class Reader {
     for (std::uint8_t& component : p) component = byte();
     return p;
   }
-  /// Up to the next line feed, without it.
+  /// A line of the header without its end: a line feed, or both characters of Windows.
   std::string_view line() {
     const char* first = reinterpret_cast<const char*>(bytes_.data()) + at_;
     const std::string_view rest(first, bytes_.size() - at_);
     const std::size_t length = rest.find('\n');
     if (length == std::string_view::npos) fail("the header does not end; give a Radiance .hdr file");
     at_ += length + 1;
-    return rest.substr(0, length);
+    const bool carriage_return = length > 0 && rest[length - 1] == '\r';
+    return rest.substr(0, carriage_return ? length - 1 : length);
   }
   [[noreturn]] void fail(const std::string& message) const {
     throw Error(ErrorKind::input, cat(path_, ": offset ", at_, ": ", message));

@@ -14,17 +14,19 @@ inline constexpr int kIsoRefinements = 16;
 
 namespace detail {
 
-WEIR_HOST_DEVICE inline bool crosses(float a, float b, float iso) {
-  return is_finite(a) && is_finite(b) && (a < iso) != (b < iso);
+WEIR_HOST_DEVICE inline bool crosses(float a, float b, float level) {
+  return is_finite(a) && is_finite(b) && (a < level) != (b < level);
 }
 
 }  // namespace detail
 
-/// Parameter of the first crossing along a ray that `enter` has moved into the volume, or -1. NaN and
-/// infinite values are on neither side.
+/// Parameter of the first place along a ray, which `enter` has moved into the volume, where values below iso meet iso
+/// or more, or -1. NaN and infinite values are on neither side. A blend of voxels that all have the value iso may miss
+/// it by kBlendRounding: so much below it is iso, too, else the rounding in a plateau of that value would be a surface.
 template <class Volume>
 WEIR_HOST_DEVICE float find_iso(const Medium<Volume>& medium, const Ray& ray, float length, float iso,
                                 float voxel_step) {
+  const float rounding = kBlendRounding * std::abs(iso);
   CellWalk walk(medium.cells, ray, 0.0F, length);
   CellSpan span;
   while (walk.next(medium.cells, ray, span)) {
@@ -37,10 +39,12 @@ WEIR_HOST_DEVICE float find_iso(const Medium<Volume>& medium, const Ray& ray, fl
       float b = lesser(a + step, span.t1);
       if (!(b > a)) break;  // a step below the precision of t
       const float at_b = medium.volume.smooth(ray.at(b));
-      if (detail::crosses(at_a, at_b, iso)) {
+      if (detail::crosses(at_a, at_b, iso - rounding)) {
+        const bool on_plateau = std::abs(at_a - iso) <= rounding || std::abs(at_b - iso) <= rounding;
+        const float level = on_plateau ? iso - rounding : iso;
         for (int i = 0; i < kIsoRefinements; ++i) {
           const float middle = 0.5F * (a + b);
-          if ((medium.volume.smooth(ray.at(middle)) < iso) == (at_a < iso)) {
+          if ((medium.volume.smooth(ray.at(middle)) < level) == (at_a < level)) {
             a = middle;
           } else {
             b = middle;

@@ -22,7 +22,11 @@ std::string surface_warning(const Scene& scene, const MinMax& values) {
   const double iso = *scene.volume.iso;
   const auto low = static_cast<double>(values.min);
   const auto high = static_cast<double>(values.max);
-  if (iso >= low && iso <= high) return {};
+  if (iso >= low && iso <= high) {
+    if (static_cast<float>(iso) > values.min) return {};
+    return cat("the iso value ", with_digits(low, 4), " is the lowest of the values, up to ", with_digits(high, 4),
+               ": the picture shows no surface");
+  }
   const double passed = iso < low ? low : high;
   constexpr int kAll = 17;  // tell any two doubles apart
   int digits = 4;

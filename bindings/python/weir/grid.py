@@ -74,7 +74,7 @@ class Grid:
     def __repr__(self) -> str:
         if self.closed:
             return f"<weir.Grid {self._path!r}, closed>"
-        stored = "packed" if self._core.packed else self.type
+        stored = "packed" if self.packed else self.type
         return f"<weir.Grid {self._path!r}, {' x '.join(map(str, self.extent))}, {stored}>"
 
     def close(self) -> None:
@@ -98,9 +98,14 @@ class Grid:
 
     @property
     def type(self) -> str:
-        """How leaves are stored: "float32", "fpn", "fp4", "fp8" or "fp16"; of a packed file
-        "float32", its preview's."""
+        """How leaves are stored: "float32", "fpn", "fp4", "fp8" or "fp16"; where `packed`, the "float32" of the tree that
+        other programs read."""
         return self._core.type
+
+    @property
+    def packed(self) -> bool:
+        """Whether each 8^3 block is coded as a whole, by encoding="packed"."""
+        return self._core.packed
 
     @property
     def extent(self) -> tuple[int, int, int]:
@@ -239,6 +244,9 @@ class Grid:
         level
             Each value is the mean of the voxels in a cube of 2^level voxels along an edge (of those that are there, at
             the upper ends), NaN where one of them is. No more than some rows of the volume are held meanwhile.
+
+        Raises UsageError for a roi outside of the grid and a level that it does not have, InputError where the file was
+        written to since it was opened, as all that reads values.
         """
         low, high = _box_of(roi, self.level_shape(level))
         return self._core.read(low, high, level)
@@ -259,7 +267,8 @@ class Grid:
 
         Voxel i covers [i, i + 1), its centre is at i + 0.5; positions outside are clamped to the grid. "trilinear"
         blends the 8 voxels around a position, which it rounds to float32; "nearest" takes the one that covers it.
-        Beyond 2^23 voxels along an axis float32 has no position of each voxel: to_numpy(roi) reads it.
+        Beyond 2^23 voxels along an axis float32 has no position of each voxel: to_numpy(roi) reads it. Raises UsageError
+        for positions that are no numbers, or NaN.
         """
         if filter not in ("trilinear", "nearest"):
             raise UsageError(f"filter is {filter!r}, it must be 'trilinear' or 'nearest'")
@@ -283,13 +292,16 @@ class Grid:
         return self._core.sample(positions.reshape(-1, 3), filter == "trilinear").reshape(positions.shape[:-1])
 
     def macrocells(self) -> Macrocells:
-        """Bounds of the values in cells of 16^3 voxels and one voxel around each: the file's, else gathered from it."""
+        """Bounds of the values in cells of 16^3 voxels and one voxel around each: the file's, else gathered from it, which
+        decodes all of it. Raises UsageError for a file elsewhere that has none.
+        """
         return Macrocells(*self._core.macrocells())
 
     def verify(self, progress: Optional[Progress] = None) -> list[Check]:
         """All checks of `weir verify`: structure, checksums, and what file and sidecar say of each other.
 
-        Reads all of the file. It is whole where all(check.ok for check in grid.verify()).
+        Reads all of the file. It is whole where all(check.ok for check in grid.verify()). progress is called with the pass,
+        and its bytes done and in all. Raises InputError where another file is at `path` by now.
         """
         return [Check(*check) for check in self._core.verify(progress)]
 
@@ -328,7 +340,8 @@ class Grid:
         mode "path" scatters; backend "auto", "cpu" or "cuda"; devices, numbers of CUDA devices that share the samples;
         threads, 0: all; memory, bytes or "512MiB", of the CPU, and device_memory of each device: a packed file that
         decodes to more is rendered from a cache. Returns uint8 sRGB or, where `linear`, float32 radiance before tone
-        mapping. progress is called with "render" and samples.
+        mapping. progress is called with "render" and samples. Raises UsageError for a keyword that is out of its range, and
+        for a memory that is too small.
         """
         if linear and colorbar:
             raise UsageError("linear asks for radiance, colorbar for colours as a screen shows them; give one of them")

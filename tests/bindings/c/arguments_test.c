@@ -25,6 +25,7 @@ static void null_pointers(void) {
   CHECK_USAGE("buffer is a null pointer", weir_convert_to_memory(&volume, values, NULL, NULL, NULL, &error));
   CHECK_USAGE("data is a null pointer", weir_convert_to_memory(&volume, NULL, NULL, NULL, &buffer, &error));
   CHECK_USAGE("input is a null pointer", weir_convert_file(NULL, NULL, NULL, output, &error));
+  CHECK_USAGE("input is empty; name a file", weir_convert_file("", NULL, NULL, output, &error));
   CHECK_USAGE("output is a null pointer", weir_convert_file(output, NULL, NULL, NULL, &error));
   CHECK_USAGE("push is a null pointer", weir_push_begin(&volume, NULL, output, NULL, &error));
   CHECK_USAGE("weir_volume is a null pointer", weir_push_begin(NULL, NULL, output, &push, &error));
@@ -32,6 +33,7 @@ static void null_pointers(void) {
   CHECK_USAGE("push is a null pointer", weir_push_slab(NULL, 0, 1, values, NULL, &error));
   CHECK_USAGE("push is a null pointer", weir_push_end(NULL, &error));
   CHECK_USAGE("path is a null pointer", weir_open(NULL, &grid, &error));
+  CHECK_USAGE("path is empty; name a file", weir_open("", &grid, &error));
   CHECK_USAGE("grid is a null pointer", weir_open(output, NULL, &error));
   CHECK_USAGE("data is a null pointer", weir_open_memory(NULL, 10, NULL, &grid, &error));
   CHECK_USAGE("grid is a null pointer", weir_open_memory(values, 10, NULL, NULL, &error));
@@ -190,6 +192,7 @@ static void inputs(void) {
   REFUSE_INPUT("upsample is 2, it must be 0 to 1", i.upsample = 2);
   REFUSE_INPUT("missing_chunks is 2, it must be 0 to 1", i.missing_chunks = 2);
   REFUSE_INPUT("component is empty; give a position, x, y, z or magnitude, or NULL", i.component = "");
+  REFUSE_INPUT("magnitude is empty; give the names of two datasets or more, u,v,w, or NULL", i.magnitude = "");
   REFUSE_INPUT("missing is \"\", it must be a number or nan", i.missing = "");
   REFUSE_INPUT("origin is set, and has_origin is 0; set it", i.origin[0] = 1);
   CHECK_STATUS(WEIR_ERROR_INPUT, weir_convert_file(path_of("x.raw"), NULL, NULL, path_of("a.nvdb"), &error));

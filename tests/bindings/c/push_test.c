@@ -106,6 +106,7 @@ static void out_of_order(const float* values) {
   weir_push* push = begin(&volume, output);
   weir_push* second = NULL;
   CHECK_STATUS(WEIR_ERROR_IO, weir_push_begin(&volume, NULL, output, &second, &error)); /* the same output */
+  CHECK(strstr(error.message, ".partial: is being written by another process or conversion; wait for it"));
   CHECK(second == NULL);
   CHECK_STATUS(WEIR_ERROR_USAGE, weir_push_end(push, &error)); /* nothing was given */
   CHECK_OK(weir_push_slab(push, 0, NZ - 1, values, NULL, &error));

@@ -35,6 +35,13 @@ class Properties(FolderTest):
             self.assertEqual(grid.path, os.fsdecode(name))
             self.assertEqual(repr(grid), f"<weir.Grid {os.fsdecode(name)!r}, 9 x 9 x 9, float32>")
 
+    def test_packed_says_how_blocks_are_stored(self):
+        self.assertFalse(self.lossless(ramp(9, 9, 9)).packed)
+        weir.convert(ramp(9, 9, 9), self.folder / "p.nvdb", encoding="packed")
+        with weir.open(self.folder / "p.nvdb") as grid:
+            self.assertTrue(grid.packed)
+            self.assertEqual(grid.type, "float32")
+
     def test_without_a_sidecar(self):
         grid = self.lossless(ramp(9, 9, 9))
         (self.folder / "a.nvdb.json").unlink()

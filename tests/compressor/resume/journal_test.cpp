@@ -273,8 +273,9 @@ TEST(Journal, TheFilesOfALivingConversionAreLocked) {
     read_journal(*files, directory / "o.nvdb");
     FAIL();
   } catch (const Error& error) {
-    EXPECT_EQ(error.what(), directory / ".o.nvdb.work/rows" +
-                                ": is being written by another process; wait for it or choose another output");
+    EXPECT_EQ(error.what(),
+              directory / ".o.nvdb.work/rows" +
+                  ": is being written by another process or conversion; wait for it or choose another output");
   }
 }
 

@@ -188,7 +188,7 @@ TEST_F(JobRunnerTest, OutputThatAnotherProcessWrites_IsWaitedForWithoutAnAttempt
     const std::optional<Job> now = store_.job(job.id);
     EXPECT_EQ(now->attempts, 0);
     EXPECT_EQ(now->result.reason,
-              partial + ": is being written by another process; wait for it or choose another output");
+              partial + ": is being written by another process or conversion; wait for it or choose another output");
   }
   const std::string log = read_file(config_.service.log_file);
   EXPECT_NE(log.find(cat(" warning output-busy job=", job.id, " reason=\"", partial, ": is being written")),

@@ -70,8 +70,9 @@ TEST_F(WrongOutputTest, DirectoryThatCannotBeFlushed_IsSaid) {
 
 TEST_F(WrongOutputTest, OutputThatAnotherProcessWrites_IsLeft) {
   const auto writer = real_->create(output_ + ".partial");
-  EXPECT_EQ(remove(*real_), cat("not removed: ", output_,
-                                ".partial: is being written by another process; wait for it or choose another output"));
+  EXPECT_EQ(remove(*real_),
+            cat("not removed: ", output_,
+                ".partial: is being written by another process or conversion; wait for it or choose another output"));
   EXPECT_EQ(names(), (Names{"a.nvdb", "a.nvdb.json", "a.nvdb.partial"}));
 }
 

@@ -197,9 +197,10 @@ TEST_F(OutputFilesTest, TextLongerThanAnySidecarIsForeign) {
 TEST_F(OutputFilesTest, SecondWriterKeepsTheSidecarOfARunningCommit) {
   const OutputFiles first(*real_, output(), false);
   put("out.nvdb.json", "placed");  // as between its two renames
-  EXPECT_EQ(write_output(*real_, false), output() +
-                                             ".partial: is being written by another process; wait for it or choose "
-                                             "another output");
+  EXPECT_EQ(write_output(*real_, false),
+            output() +
+                ".partial: is being written by another process or conversion; wait for it or choose "
+                "another output");
   EXPECT_EQ(listing().at("out.nvdb.json"), "placed");
 }
 
@@ -266,9 +267,10 @@ TEST_F(OutputFilesTest, SecondWriterOfTheSameOutputIsRefused) {
     const OutputFiles second(*real_, output(), false);
     FAIL();
   } catch (const Error& error) {
-    EXPECT_EQ(std::string(error.what()), output() +
-                                             ".partial: is being written by another process; wait for it or choose "
-                                             "another output");
+    EXPECT_EQ(std::string(error.what()),
+              output() +
+                  ".partial: is being written by another process or conversion; wait for it or choose "
+                  "another output");
   }
   EXPECT_EQ(listing().count("out.nvdb.partial"), 1U);
 }

@@ -98,9 +98,10 @@ TEST_F(PartialFileTest, KeepsAFileThatAppearedBeforeTheCommit) {
 
 TEST_F(PartialFileTest, OneWriterAtATime) {
   const PartialFile first(*real_, output(), false);
-  EXPECT_EQ(write_output(*real_, false), output() +
-                                             ".partial: is being written by another process; wait for it or choose "
-                                             "another output");
+  EXPECT_EQ(write_output(*real_, false),
+            output() +
+                ".partial: is being written by another process or conversion; wait for it or choose "
+                "another output");
   EXPECT_EQ(listing(), (Listing{{"out.raw.partial", ""}}));
 }
 

@@ -64,6 +64,19 @@ TEST(RadianceHdr, FlatRowsAndOldRuns) {
   for (std::int32_t x = 0; x < 10; ++x) EXPECT_EQ(mixed.at(x, 1), (Float3{static_cast<float>(x + 3), 0, 0}));
 }
 
+TEST(RadianceHdr, HeaderWithWindowsLineEnds_IsRead) {
+  const Image image = decode("#?RADIANCE\r\nFORMAT=32-bit_rle_rgbe\r\n\r\n-Y 1 +X 1\r\n" + chars({128, 64, '\r', 129}));
+  ASSERT_EQ(image.width, 1);
+  EXPECT_EQ(image.at(0, 0), (Float3{1, 0.5F, 13.0F / 128}));
+}
+
+// The values were multiplied by it; that is not undone.
+TEST(RadianceHdr, Exposure_ChangesNoValue) {
+  const Image image =
+      decode("#?RADIANCE\nEXPOSURE=0.5\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n" + chars({128, 64, 0, 129}));
+  EXPECT_EQ(image.at(0, 0), (Float3{1, 0.5F, 0}));
+}
+
 TEST(RadianceHdr, Extremes) {
   const Image image = decode(kHead + "-Y 1 +X 2\n" + chars({255, 255, 255, 255, 128, 0, 0, 1}));
   EXPECT_EQ(image.at(0, 0).x, 255 * 0x1p119F);

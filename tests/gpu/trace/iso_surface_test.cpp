@@ -53,6 +53,30 @@ TEST(FindIso, NoSurfaceIsFoundAcrossNaN) {
   EXPECT_EQ(find_iso(*medium, medium->ray({0, 8, 8}, {1, 0, 0}), 64, 0.5F, 0.5F), -1.0F);
 }
 
+// A surface is where values below iso meet iso or more, so that a plateau of exactly iso lies above it.
+TEST(FindIso, OfAPlateausValue_TheSurfaceIsThePlateausLowerSide) {
+  const auto steps = [](const Float3& p) { return p.x < 20 ? 0.0F : p.x < 40 ? 0.5F : 1.0F; };
+  TestMedium medium({64, 16, 16}, 16, 1, 1.0F, steps);
+  const auto crossing = [&](float iso) { return find_iso(*medium, medium->ray({0, 8, 8}, {1, 0, 0}), 64, iso, 0.5F); };
+  EXPECT_NEAR(crossing(0.5F), 20, 1e-3F);
+  EXPECT_NEAR(crossing(1.0F), 40, 1e-3F);
+  EXPECT_EQ(crossing(0.0F), -1.0F);
+}
+
+// As blends of eight equal voxels round.
+TEST(FindIso, RoundingInAPlateauOfIsosValue_IsNoSurface) {
+  const auto rounded = [](const Float3& p) {
+    if (p.x < 20) return 0.3F;
+    return p.x - std::floor(p.x) < 0.4F ? std::nextafter(0.7F, 0.0F) : 0.7F;
+  };
+  TestMedium medium({64, 16, 16}, 16, 1, 1.0F, rounded);
+  const auto crossing = [&](float x) {
+    return find_iso(*medium, medium->ray({x, 8, 8}, {1, 0, 0}), 64 - x, 0.7F, 0.3F);
+  };
+  EXPECT_EQ(crossing(25), -1.0F);
+  EXPECT_NEAR(crossing(0), 20, 1e-3F);
+}
+
 TEST(FindIso, StepBelowFloatPrecisionTerminates) {
   TestMedium medium({64, 16, 16}, 16, 1, 1.0F, [](const Float3&) { return 0.0F; });
   EXPECT_EQ(find_iso(*medium, medium->ray({0, 8, 8}, {1, 0, 0}), 64, 0.5F, 1e-30F), -1.0F);

@@ -24,9 +24,15 @@ TEST(SurfaceWarning, ValueOutside_IsToldFromTheEndThatItPasses) {
             "the iso value 0.1 lies outside the values, 0 .. 0.09999999: the picture shows no surface");
 }
 
+TEST(SurfaceWarning, LowestValue_IsToldSinceNoneIsBelow) {
+  EXPECT_EQ(warning(0, {0, 0.75F}),
+            "the iso value 0 is the lowest of the values, up to 0.75: the picture shows no surface");
+  EXPECT_EQ(warning(7, {7, 7}), "the iso value 7 is the lowest of the values, up to 7: the picture shows no surface");
+}
+
 TEST(SurfaceWarning, ValueInside_IsNotMentioned) {
   EXPECT_EQ(warning(0.75, {0, 0.75F}), "");
-  EXPECT_EQ(warning(0, {0, 0.75F}), "");
+  EXPECT_EQ(warning(0.1, {0, 0.75F}), "");
   Scene scene;
   scene.volume.iso = 7;
   scene.mode = RenderMode::mip;

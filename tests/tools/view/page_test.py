@@ -395,6 +395,15 @@ def shows_steps_that_come(browser, url):
     browser.wait("that it is gone", lambda: browser.text("#step-name") == "no longer there: s_4.nvdb")
     browser.press("[")
     equal(browser.text("#step-name"), "3 of 3: s_3.nvdb")
+    # Where one step is left, nothing plays, and it is refined.
+    browser.press("SPACE")
+    browser.wait("it plays", lambda: browser.text("#play") == "Stop")
+    for name in ("s_1.nvdb", "s_3.nvdb"):
+        os.remove(steps / name)
+    browser.wait("one step is left", lambda: not browser.visible("#steps"))
+    equal(browser.script("return document.querySelector('#play').textContent"), "Play")
+    converged(browser)
+    equal(browser.text("#file-name"), "s_0.nvdb")
 
 
 def compares_two_files(browser, url):

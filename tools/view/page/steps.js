@@ -24,7 +24,7 @@ export class Steps {
     this.follow.addEventListener("change", () => this.follow.checked && this.go_to_last());
   }
 
-  /** The steps there are: `steps` are names by number, `order` the numbers in order. */
+  /** The steps there are: `steps` are names by number, `order` the numbers in order. Playing ends where one is left. */
   set({steps, order, grows}) {
     const known = this.names.length;
     const more = known > 0 ? order.filter((step) => step >= known).length : 0;
@@ -36,6 +36,9 @@ export class Steps {
     this.fresh += more;
     this.show(this.step);
     if (more > 0 && this.follow.checked && at_last && !this.playing) this.go_to_last();
+    if (!this.playing || order.length > 1) return;
+    this.set_playing(false);
+    if (order.length === 1) this.go(order[0], false);
   }
 
   /** The number of the step of that name; undefined where there is none. */
@@ -67,11 +70,15 @@ export class Steps {
 
   toggle() {
     if (this.order.length < 2) return;
-    this.playing = !this.playing;
-    set_text(this.play, this.playing ? "Stop" : "Play");
-    this.play.setAttribute("aria-label", this.playing ? "Stop" : "Play the steps");
+    this.set_playing(!this.playing);
     if (this.playing) this.next();
     else this.go(this.step, false);
+  }
+
+  set_playing(playing) {
+    this.playing = playing;
+    set_text(this.play, playing ? "Stop" : "Play");
+    this.play.setAttribute("aria-label", playing ? "Stop" : "Play the steps");
   }
 
   /** From one place to the next, and from the last to the first; from a step that is gone to one of these. */
