@@ -10,6 +10,8 @@ namespace weir {
 
 /// Coordinates of an axis that are looked at, at most: 8 MiB of them.
 inline constexpr std::size_t kMaxCoordinates = std::size_t{1} << 20U;
+/// Elements of a chunk of coordinates that is unpacked for them, at most.
+inline constexpr std::size_t kMaxCoordinateChunk = 2 * kMaxCoordinates;
 /// How far a coordinate may lie from where regular spacing puts it, in spacings: coordinates in degrees or
 /// kilometres are often rounded to a few digits.
 inline constexpr double kRegularTolerance = 1e-3;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <csignal>
+#include <cstddef>
 #include <cstdint>
 #include <ctime>
 #include <utility>
@@ -47,6 +48,38 @@ constexpr std::array kCrashes{SIGSEGV, SIGBUS, SIGABRT};
   }
   ::_exit(static_cast<int>(ErrorKind::input));
 }
+
+bool wants_own_stack(int signal) {
+  struct sigaction now {};
+  return ::sigaction(signal, nullptr, &now) == 0 && (now.sa_flags & SA_ONSTACK) != 0;
+}
+
+/// Of the thread that makes it, where it has none. Ends with the thread.
+class HandlerStack {
+ public:
+  HandlerStack() {
+    stack_t now{};
+    if (::sigaltstack(nullptr, &now) != 0 || (now.ss_flags & SS_DISABLE) == 0) return;
+    bytes_.resize(kBytes);
+    stack_t own{};
+    own.ss_sp = bytes_.data();
+    own.ss_size = bytes_.size();
+    ::sigaltstack(&own, nullptr);
+  }
+  ~HandlerStack() {
+    if (bytes_.empty()) return;
+    stack_t none{};
+    none.ss_flags = SS_DISABLE;
+    ::sigaltstack(&none, nullptr);
+  }
+  HandlerStack(const HandlerStack&) = delete;
+  HandlerStack& operator=(const HandlerStack&) = delete;
+
+ private:
+  static constexpr std::size_t kBytes = 65536;  // the kernel puts all registers there, 11 KB with AMX
+
+  std::vector<std::byte> bytes_;
+};
 
 // The signal has its default action again (SA_RESETHAND).
 void end_crashed(int signal) {
@@ -91,6 +124,11 @@ std::string hdf5_crash_line(const std::string& where) {
                       "file again, or write it anew"));
 }
 
+void keep_handler_stack() {
+  if (!wants_own_stack(SIGSEGV)) return;
+  static thread_local const HandlerStack stack;
+}
+
 void watch_hdf5_reads(const Hdf5Reads& reads) { reads_now = &reads; }
 
 Hdf5Call::Hdf5Call(const std::string& path)
@@ -99,6 +137,7 @@ Hdf5Call::Hdf5Call(const std::string& path)
           one_line(cat("weir: ", path, ": the HDF5 library came to no end at it in ", longest_ms / 1000,
                        " s of computing; the file is damaged, or the library has a fault: copy the file again, or "
                        "write it anew"))) {
+  keep_handler_stack();
   line_now = &line_;
   stall_line_now = &stall_line_;
   timer_ = start_timer();
@@ -125,7 +164,7 @@ void report_hdf5_crashes(std::chrono::milliseconds longest) {
     if (::sigaction(signal, nullptr, &now) != 0 || now.sa_handler != SIG_DFL) continue;
     struct sigaction action {};
     action.sa_handler = end_crashed;
-    action.sa_flags = static_cast<int>(SA_RESETHAND);
+    action.sa_flags = static_cast<int>(SA_RESETHAND) | SA_ONSTACK;
     ::sigemptyset(&action.sa_mask);
     ::sigaction(signal, &action, nullptr);
   }

@@ -22,6 +22,10 @@ struct Hdf5Reads {
 /// Makes report_hdf5_crashes() look there, too: a driver has its own. `reads` must live as long as the program.
 void watch_hdf5_reads(const Hdf5Reads& reads);
 
+/// Gives the calling thread, for as long as it runs, a stack for handlers that want one of their own, as that of
+/// report_hdf5_crashes() does: the thread's is used up where the library follows damaged metadata in a circle.
+void keep_handler_stack();
+
 /// While one exists, the thread that made it is in the library for the metadata of the file `path`. One at a time in a
 /// thread.
 class Hdf5Call {

@@ -22,6 +22,7 @@ Hdf5Reads& reads() {
 Hdf5Lock::Hdf5Lock() : guard_(library_mutex()) { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
 Hdf5ReadLock::Hdf5ReadLock(const std::string& crash_line) {
+  keep_handler_stack();
   reads().line = &crash_line;
   reads().thread = ::gettid();
 }

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "format/base/text.h"
+#include "ingest/hdf5/filters/library_lzf.h"
 
 namespace weir {
 namespace {
@@ -24,7 +25,7 @@ constexpr std::array kFilters{
     FilterEntry{H5Z_FILTER_SCALEOFFSET, "scaleoffset", ""},
     FilterEntry{305, "lzo", ""},
     FilterEntry{307, "bzip2", "hdf5-filter-plugin"},
-    FilterEntry{32000, "lzf", ""},
+    FilterEntry{kLzfFilter, "lzf", ""},
     FilterEntry{32001, "blosc", "hdf5-filter-plugin-blosc-serial"},
     FilterEntry{32004, "lz4", "hdf5-filter-plugin"},
     FilterEntry{32008, "bitshuffle", ""},

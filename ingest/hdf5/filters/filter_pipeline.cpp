@@ -7,12 +7,11 @@
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "ingest/chunks/unshuffle.h"
+#include "ingest/hdf5/filters/library_lzf.h"
 #include "ingest/hdf5/filters/undo_filters.h"
 
 namespace weir {
 namespace {
-
-constexpr H5Z_filter_t kLzf = 32000;  // registered by h5py
 
 bool applied(FilterMask left_out, std::size_t i) { return i >= 32 || (left_out >> i & 1U) == 0; }
 
@@ -40,7 +39,7 @@ std::optional<FilterPipeline> own_pipeline(hid_t creation_properties) {
                                            parameters.data(), 0, nullptr, nullptr);
     if (id == H5Z_FILTER_DEFLATE && !std::exchange(packs, true)) {
       pipeline.push_back({FilterKind::deflate, 1});
-    } else if (id == kLzf && !std::exchange(packs, true)) {
+    } else if (id == kLzfFilter && !std::exchange(packs, true)) {
       pipeline.push_back({FilterKind::lzf, 1});
     } else if (id == H5Z_FILTER_SHUFFLE && parameter_count == 1 && parameters[0] > 0) {
       pipeline.push_back({FilterKind::shuffle, parameters[0]});

@@ -101,6 +101,11 @@ std::int64_t unwritten_elements(hid_t scale, std::int64_t extent) {
   return std::max<std::int64_t>(static_cast<std::int64_t>(elements) - extent, 0);
 }
 
+// The library unpacks a chunk whole, however few elements of it there are.
+bool has_too_large_chunks(const Storage& storage) {
+  return storage.chunk.size() == 1 && !storage.filters.empty() && storage.chunk[0] > kMaxCoordinateChunk;
+}
+
 void place_by_scale(hid_t scale, bool grows, AxisPlace& axis) {
   const std::string name = last_part(scale);
   if (axis.label.empty()) axis.label = name;
@@ -115,6 +120,11 @@ void place_by_scale(hid_t scale, bool grows, AxisPlace& axis) {
       {name, axis.units, first_text_attribute(scale, "axis"), first_text_attribute(scale, "standard_name"), grows});
   axis.points_down = is_down(first_text_attribute(scale, "positive"));
   if (axis.spacing) return;
+  if (const Storage storage = storage_of(scale); has_too_large_chunks(storage)) {
+    axis.note = cat("its coordinates lie in packed chunks of ", storage.chunk[0], ", and at most ", kMaxCoordinateChunk,
+                    " are read, taken as indices");
+    return;
+  }
   std::vector<double> coordinates = coordinate_values(scale);
   if (std::cmp_equal(coordinates.size(), axis.extent + axis.unwritten)) {
     coordinates.resize(static_cast<std::size_t>(axis.extent));  // which are those of the first records
@@ -144,6 +154,8 @@ std::vector<double> coordinate_values(hid_t dataset) {
       points > static_cast<hssize_t>(kMaxCoordinates)) {
     return {};
   }
+  const Storage storage = storage_of(dataset);
+  if (has_too_large_chunks(storage)) return {};
   const auto count = static_cast<std::size_t>(points);
   const auto stored = stored_type(type.get());
   if (!stored) {
@@ -153,12 +165,14 @@ std::vector<double> coordinate_values(hid_t dataset) {
     return values;
   }
   const StoredType meant = type_as_meant(dataset, *stored);
-  const Storage storage = storage_of(dataset);
   const ValueMeaning meaning = value_meaning(
       dataset, meant, storage.fill_is_set ? std::span<const std::byte>(storage.fill) : std::span<const std::byte>());
   if (!meaning.unpacks) return {};
   std::vector<std::byte> bytes(count * scalar_bytes(meant.scalar));
-  if (H5Dread(dataset, type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data()) < 0) throw cut_short(hdf5_reason());
+  if (H5Dread(dataset, type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data()) < 0) {
+    if (storage.obstacle.empty()) throw cut_short(hdf5_reason());
+    throw input_error(object_text(dataset), cat("its coordinates cannot be read: ", storage.obstacle));
+  }
   std::vector<double> values = decode_doubles(bytes, meant.scalar, meant.big_endian, meaning.mapping);
   if (std::none_of(values.begin(), values.end(), [](double v) { return std::isnan(v); })) return values;
   // What an attribute calls missing in the midst of a row that rises or falls is none.

@@ -24,8 +24,9 @@ void place_by_scales(hid_t dataset, std::span<AxisPlace> axes);
 bool is_bare_dimension(hid_t dataset);
 
 /// The numbers of a dataset of up to kMaxCoordinates of them, in one axis or none, as its attributes mean them
-/// (value_meaning()): unpacked, NaN where one is missing. Empty where it is another, or an attribute leaves their
-/// meaning open. Throws Error(input) where they cannot be read. The caller holds Hdf5Lock.
+/// (value_meaning()): unpacked, NaN where one is missing. Empty where it is another, its packed chunks have more than
+/// kMaxCoordinateChunk, or an attribute leaves their meaning open. Throws Error(input) where they cannot be read. The
+/// caller holds Hdf5Lock.
 std::vector<double> coordinate_values(hid_t dataset);
 
 }  // namespace weir

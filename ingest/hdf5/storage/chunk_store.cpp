@@ -7,6 +7,7 @@
 #include "format/base/text.h"
 #include "ingest/hdf5/file/hdf5_error.h"
 #include "ingest/hdf5/file/hdf5_handle.h"
+#include "ingest/hdf5/storage/storage.h"
 
 namespace weir {
 namespace {
@@ -17,6 +18,23 @@ constexpr std::string_view kNotAllocated = "chunk storage is not allocated";
 
 std::string chunk_place(const std::string& name, std::span<const hsize_t> corner) {
   return cat(name, ": chunk at ", corner_text(corner));
+}
+
+// Of chunks without filters, whose length the library tells by their extents, and of which it reads as many bytes as
+// the index says: a B-tree of version 1 has a length for each. Other indices have none.
+void check_lengths(hid_t dataset, hid_t space, const std::vector<hsize_t>& chunk, const std::string& name) {
+  H5D_chunk_index_t index = H5D_CHUNK_IDX_BTREE;
+  H5Dget_chunk_index_type(dataset, &index);
+  if (index != H5D_CHUNK_IDX_BTREE) return;
+  const Hdf5Handle type(H5Dget_type(dataset));
+  hsize_t chunks = 0;
+  if (H5Dget_num_chunks(dataset, space, &chunks) < 0) throw hdf5_error(name, kUncountedChunks);
+  hsize_t bytes = chunks * H5Tget_size(type.get());
+  for (const hsize_t elements : chunk) bytes *= elements;
+  const hsize_t by_index = H5Dget_storage_size(dataset);
+  if (by_index == bytes) return;
+  throw Error(ErrorKind::input, cat(name, ": its ", chunks, chunks == 1 ? " chunk takes " : " chunks take ", by_index,
+                                    " bytes by the index, and must take ", bytes, "; the file is damaged"));
 }
 
 }  // namespace
@@ -60,6 +78,7 @@ ChunkStore::ChunkStore(hid_t dataset, std::string name)
   }
   layout_.partial_unfiltered = (options & H5D_CHUNK_DONT_FILTER_PARTIAL_CHUNKS) != 0;
   pipeline_ = std::move(*pipeline);
+  if (pipeline_.empty()) check_lengths(dataset_, space.get(), layout_.chunk, name_);
 }
 
 std::optional<ChunkStore::Chunk> ChunkStore::fetch(std::span<const hsize_t> corner, std::span<std::byte> into) const {

@@ -41,7 +41,7 @@ hsize_t stored_chunk_bytes(hid_t dataset, std::span<const hsize_t> corner, const
 class ChunkStore {
  public:
   /// `dataset` is open, chunked and outlives the store; messages begin with `name`. Throws Error(input)
-  /// where the library cannot say how it is cut.
+  /// where the library cannot say how it is cut, and where chunks without filters have other lengths than all have.
   ChunkStore(hid_t dataset, std::string name);
 
   const std::string& name() const { return name_; }

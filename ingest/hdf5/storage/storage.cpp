@@ -8,6 +8,7 @@
 #include "ingest/hdf5/file/hdf5_handle.h"
 #include "ingest/hdf5/filters/filter_names.h"
 #include "ingest/hdf5/filters/filter_pipeline.h"
+#include "ingest/hdf5/filters/library_lzf.h"
 
 namespace weir {
 namespace {
@@ -35,7 +36,8 @@ void look_at_filters(hid_t creation, Storage& storage) {
     const H5Z_filter_t id = H5Pget_filter2(creation, static_cast<unsigned>(i), &flags, &values, nullptr,
                                            name.size() - 1, name.data(), nullptr);
     storage.filters.push_back(filter_name(id, name.data()));
-    if (!own && storage.obstacle.empty() && H5Zfilter_avail(id) <= 0) {
+    if (own && id == kLzfFilter) offer_lzf();
+    if (!own && storage.obstacle.empty() && !library_undoes(id)) {
       storage.obstacle = cat("packed by the filter ", storage.filters.back(), " (", id,
                              "), and no plugin for it is found; ", filter_remedy(id));
     }

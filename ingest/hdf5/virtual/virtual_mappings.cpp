@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "ingest/hdf5/file/hdf5_error.h"
 #include "ingest/hdf5/file/hdf5_file.h"
+#include "ingest/hdf5/file/hdf5_type.h"
 #include "ingest/hdf5/file/side_files.h"
+#include "ingest/hdf5/meaning/value_meaning.h"
 #include "ingest/hdf5/storage/chunk_store.h"
 #include "ingest/hdf5/storage/storage.h"
 #include "ingest/hdf5/storage/unwritten_chunks.h"
@@ -210,11 +213,16 @@ class MappingReader {
     Hdf5Handle source = open_virtual_source(dataset_, found.file, found.dataset, where_);
     const Storage storage = storage_of(source.get());
     const auto refuse = [&](const std::string& what) { return error(source_text(found) + what); };
-    if (!storage.obstacle.empty()) throw refuse(storage.obstacle);
+    const Hdf5Handle type(H5Dget_type(source.get()));
+    const auto number = stored_type(type.get());
+    // As of such a dataset that is read alone (dataset_facts.cpp).
+    found.all_fill = storage.is_all_fill && number && !may_be_netcdf_fill(source.get(), *number, storage.fill);
+    if (!storage.obstacle.empty() && !found.all_fill) throw refuse(storage.obstacle);
     if (storage.kind == StorageKind::mapped || storage.kind == StorageKind::external) {
       throw refuse("is spread over other files itself; write it as one with h5repack");
     }
     found.chunk = storage.chunk;
+    found.value_bytes = H5Tget_size(type.get());
     found.in_source = Hdf5Handle(H5Dget_space(source.get()));
     const bool endless = MappedSlab::of(mapping.in_source.get()).value_or(MappedSlab(0)).endless.has_value();
     if (!endless) {
@@ -226,8 +234,6 @@ class MappingReader {
         throw refuse(cat("has extents ", list_text(dims_of(found.in_source.get())), ", fewer than the mapping needs"));
       }
     }
-    const Hdf5Handle type(H5Dget_type(source.get()));
-    found.value_bytes = H5Tget_size(type.get());
     return source;
   }
 
@@ -249,17 +255,21 @@ class MappingReader {
 
   // What of the source is not read may well be unwritten: other steps of a simulation that goes on.
   UnwrittenInSources unwritten_in(hid_t source, const VirtualMapping& found) const {
-    if (found.chunk.empty()) return {};
+    if (found.chunk.empty() && !found.all_fill) return {};
     std::vector<hsize_t> count;
     for (std::size_t axis = 0; axis < wanted_.lo.size(); ++axis) count.push_back(wanted_.hi[axis] - wanted_.lo[axis]);
     const Hdf5Handle wanted(H5Scopy(space_.get()));
     H5Sselect_hyperslab(wanted.get(), H5S_SELECT_SET, wanted_.lo.data(), nullptr, count.data(), nullptr);
     const Hdf5Handle read(H5Sselect_project_intersection(found.in_virtual.get(), found.in_source.get(), wanted.get()));
     if (H5Sget_select_npoints(read.get()) <= 0) return {};
+    const auto placed = [&](std::span<const hsize_t> first) {
+      return cat(corner_text(first), " of ", source_name(found));
+    };
+    if (found.chunk.empty()) return {1, placed(std::vector<hsize_t>(dims_of(read.get()).size()))};
     const UnwrittenChunks unwritten =
         unwritten_chunks(source, found.chunk, read.get(), cat(where_, ": its source ", source_name(found)));
     if (unwritten.first.empty()) return {unwritten.count, {}};
-    return {unwritten.count, cat(corner_text(unwritten.first), " of ", source_name(found))};
+    return {unwritten.count, placed(unwritten.first)};
   }
 
   hid_t dataset_;

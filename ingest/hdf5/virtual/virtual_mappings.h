@@ -23,10 +23,11 @@ struct VirtualMapping {
   AxisBox bounds;               ///< of the elements in the virtual dataset
   std::vector<hsize_t> chunk;   ///< of the source dataset, slowest axis first; empty where it has none
   std::size_t value_bytes = 0;  ///< of the source's type
+  bool all_fill = false;        ///< no value was ever written to the source, and all are its fill value
 };
 
 /// Chunks of sources that elements of the volume lie in and that nobody has written: the library gives the source's
-/// fill value for them.
+/// fill value for them. A source without chunks counts as one.
 struct UnwrittenInSources {
   std::uint64_t count = 0;  ///< once for each mapping that reads it
   std::string first;        ///< "0, 0, 8 of PATH: DATASET"; empty where it was not looked up
@@ -43,8 +44,9 @@ struct VirtualMappings {
 /// The mappings of `dataset` (in the file `parent`) that have elements in `wanted`, in the file's order; those
 /// that go on without end are cut to what there is, those with a block number in the source's name become one
 /// for each block. Every source is opened once and closed again. Throws Error(input), beginning with `where`:
-/// naming the source where it is missing, too small, never written, behind a missing filter, or itself spread over
-/// files; and where no element of `wanted` has a mapping. The caller holds Hdf5Lock.
+/// naming the source where it is missing, too small, never written and without a fill value of its writer, behind a
+/// missing filter, or itself spread over files; and where no element of `wanted` has a mapping. The caller holds
+/// Hdf5Lock.
 VirtualMappings virtual_mappings(hid_t dataset, const AxisBox& wanted, const std::string& parent,
                                  const std::string& where);
 

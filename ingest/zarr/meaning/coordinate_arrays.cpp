@@ -64,9 +64,9 @@ ReadableArray readable(const ZarrStore& store, const ZarrNode& node) {
   const std::string where = store.shown(node.key);
   if (!values.obstacle.empty()) throw input_error(where, values.obstacle);
   const std::int64_t chunk = array.unit().empty() ? 1 : array.unit().front();
-  if (std::cmp_greater(chunk, 2 * kMaxCoordinates)) {
+  if (std::cmp_greater(chunk, kMaxCoordinateChunk)) {
     throw input_error(where,
-                      cat("its chunks have ", chunk, " elements, and at most ", 2 * kMaxCoordinates, " are read"));
+                      cat("its chunks have ", chunk, " elements, and at most ", kMaxCoordinateChunk, " are read"));
   }
   return {std::move(array), std::move(values.mapping)};
 }

@@ -12,6 +12,7 @@
 #include <fstream>
 #include <string>
 
+#include "tests/ingest/support/deep_stack.h"
 #include "tests/support/sanitized.h"
 #include "tests/support/temporary_directory.h"
 
@@ -37,6 +38,18 @@ TEST_P(Hdf5Crash, WithinTheLibrary_EndsWithALineAndExitCode3) {
       "^weir: /data/a\\?b\\.h5: the HDF5 library crashed at it; the file is damaged, or the library has a fault: copy "
       "the "
       "file again, or write it anew\n$");
+}
+
+TEST(Hdf5StackUsedUp, WithinTheLibrary_EndsWithALineAndExitCode3) {
+  if (kSanitized) GTEST_SKIP() << "the sanitizer handles these signals";
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(
+      {
+        report_hdf5_crashes();
+        const Hdf5Call call("/data/a.h5");
+        ::_exit(use_up_stack(1));
+      },
+      ::testing::ExitedWithCode(3), "^weir: /data/a\\.h5: the HDF5 library crashed at it; .*\n$");
 }
 
 // Computes so long on this thread.

@@ -2,6 +2,7 @@
 // each in a process of its own.
 #include <gtest/gtest.h>
 #include <hdf5.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <string>
@@ -11,6 +12,7 @@
 #include "ingest/drivers/hdf5_crash.h"
 #include "ingest/hdf5/file/hdf5_lock.h"
 #include "ingest/hdf5/hdf5_source.h"
+#include "tests/ingest/support/deep_stack.h"
 #include "tests/support/sanitized.h"
 #include "tests/support/temporary_directory.h"
 
@@ -67,6 +69,20 @@ TEST_F(Hdf5ReadCrash, OfAThread_EndsWithALineAndExitCode3) {
       ::testing::ExitedWithCode(3),
       "^weir: .*/a\\.h5: /d: the HDF5 library crashed at it; the file is damaged, or the library has a fault: copy the "
       "file again, or write it anew\n$");
+}
+
+TEST_F(Hdf5ReadCrash, ByAThreadsStackThatIsUsedUp_EndsWithALineAndExitCode3) {
+  EXPECT_EXIT(
+      {
+        report_hdf5_crashes();
+        watch_hdf5_reads(hdf5_reads());
+        const std::string line = hdf5_crash_line("a.h5: /d");
+        std::thread([&] {
+          const Hdf5ReadLock lock(line);
+          ::_exit(use_up_stack(1));
+        }).join();
+      },
+      ::testing::ExitedWithCode(3), "^weir: a\\.h5: /d: the HDF5 library crashed at it; .*\n$");
 }
 
 TEST_F(Hdf5ReadCrash, OfAnotherThreadMeanwhile_EndsByTheSignal) {

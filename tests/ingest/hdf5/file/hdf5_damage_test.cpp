@@ -2,6 +2,7 @@
 // only listed is said.
 #include <algorithm>
 
+#include "format/base/text.h"
 #include "ingest/hdf5/hdf5_source.h"
 #include "tests/ingest/hdf5/support/h5py_file.h"
 
@@ -167,6 +168,25 @@ open("a.h5", "wb").write(b)
   EXPECT_EQ(message, scratch_.path("a.h5") +
                          ": /d: chunk at 8, 8, 8: is not in the file's index, which has as many as there must be; the "
                          "file is damaged");
+}
+
+// The library reads as many bytes as the index says, into memory of a chunk's size.
+TEST_F(Hdf5Damage, ChunkOfAnotherLengthInTheIndex_IsAnErrorAndIsNotRead) {
+  for (const std::string bytes : {"0", "1024", "4096", "2000000"}) {
+    write_by_h5py(scratch_, cat(R"(
+import struct
+with h5py.File("a.h5", "w") as f:
+    f.create_dataset("d", data=np.ones((16, 16, 16), "f4"), chunks=(8, 8, 8))
+    f["behind"] = np.zeros(2000000, "u1")
+b = bytearray(open("a.h5", "rb").read())
+struct.pack_into("<I", b, b.find(b"TREE\1") + 24 + 48, )",
+                                bytes, R"()
+open("a.h5", "wb").write(b)
+)"));
+    EXPECT_EQ(refused("a.h5", dataset_options("d")),
+              cat(scratch_.path("a.h5"), ": /d: its 8 chunks take ", 7 * 2048 + std::stoi(bytes),
+                  " bytes by the index, and must take 16384; the file is damaged"));
+  }
 }
 
 TEST_F(Hdf5Damage, IndexOfChunksThatCannotBeRead_IsNotCalledUnwritten) {

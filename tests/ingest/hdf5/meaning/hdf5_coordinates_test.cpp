@@ -1,6 +1,7 @@
 // Coordinate variables that are packed, damaged or of another length than their axis.
 #include "ingest/hdf5/hdf5_source.h"
 #include "tests/ingest/hdf5/support/h5py_file.h"
+#include "tests/support/sanitized.h"
 
 namespace weir::hdf5_coordinates_test {
 namespace {
@@ -39,6 +40,36 @@ n.close()
   EXPECT_TRUE(info.details.axes[1].reversed);
   ASSERT_TRUE(info.details.time.has_value());
   EXPECT_EQ(info.details.time->value, 7);
+}
+
+TEST_F(Hdf5Coordinates, BehindAFilterThatIsNotThere_AreAnErrorThatNamesIt) {
+  const LeaksOfLibraries of_plugins;
+  write_by_h5py(scratch_, R"(
+with h5py.File("a.nc", "w") as f:
+    f["t"] = values("f4")
+    made = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
+    made.set_chunk((5,)); made.set_filter(32028, h5py.h5z.FLAG_OPTIONAL, ())
+    z = h5py.Dataset(h5py.h5d.create(f.id, b"z", h5py.h5t.IEEE_F32LE, h5py.h5s.create_simple((5,)), made))
+    z.id.write_direct_chunk((0,), np.arange(5, dtype="f4").tobytes(), filter_mask=0)
+    z.make_scale("z"); f["t"].dims[0].attach_scale(z)
+)");
+  EXPECT_EQ(message_of_error(ErrorKind::input, [&] { info_of("t"); }),
+            scratch_.path("a.nc") +
+                ": /z: its coordinates cannot be read: packed by the filter sperr (32028), and no plugin for it is "
+                "found; set HDF5_PLUGIN_PATH to the directory that has it");
+}
+
+TEST_F(Hdf5Coordinates, InPackedChunksBeyondMemory_AreNotReadAndSaid) {
+  write_by_h5py(scratch_, R"(
+with h5py.File("a.nc", "w") as f:
+    f["t"] = values("f4")
+    z = f.create_dataset("z", data=np.arange(5.0) * 2, maxshape=(None,), chunks=(2097153,), compression="gzip")
+    z.make_scale("z"); f["t"].dims[0].attach_scale(z)
+)");
+  const SourceInfo info = info_of("t");
+  EXPECT_EQ(info.spacing[2], 1);
+  EXPECT_EQ(info.details.axes[2].note,
+            "its coordinates lie in packed chunks of 2097153, and at most 2097152 are read, taken as indices");
 }
 
 TEST_F(Hdf5Coordinates, ThatGiveNoPlacesAreSaid) {

@@ -185,6 +185,41 @@ with h5py.File("a.h5", "w") as f:
                 ": d), and with --missing-chunks error all must be; write them, or use --missing-chunks fill");
 }
 
+TEST_F(VirtualDataset, SourcesThatWereNeverWritten_ReadAsTheFillValueThatTheirWriterSet) {
+  write_by_h5py(scratch_, R"(
+with h5py.File("source.h5", "w") as f:
+    f["d"] = values("f4", (2, 4, 4))
+    f.create_dataset("whole", (2, 4, 4), "f4", fillvalue=7)
+    f.create_dataset("chunks", (2, 4, 4), "f4", chunks=(1, 4, 4), fillvalue=-2)
+    f.create_dataset("netcdf", (2, 4, 4), "f4", fillvalue=np.float32(9.9692099683868690e36))
+def virtual(name):
+    layout = h5py.VirtualLayout((4, 4, 4), "f4")
+    for at, d in ((0, "d"), (2, name)): layout[at:at + 2] = h5py.VirtualSource("source.h5", d, (2, 4, 4))
+    f.create_virtual_dataset(name, layout, fillvalue=5)
+    expect(name, f[name][()])
+with h5py.File("a.h5", "w") as f:
+    for name in ("whole", "chunks", "netcdf"): virtual(name)
+)");
+  const std::string path = scratch_.path("a.h5");
+  const std::string source = scratch_.path("source.h5");
+  const auto note = [&](const SourceOptions& options) {
+    return open_source(path, options)->info().details.chunks_note;
+  };
+  expect_reads(scratch_, "a.h5", dataset_options("whole"), "whole");
+  expect_reads(scratch_, "a.h5", dataset_options("chunks"), "chunks");
+  EXPECT_EQ(note(dataset_options("whole")), "1 chunk of its sources was never written and reads as a fill value");
+  EXPECT_EQ(note(dataset_options("chunks")), "2 chunks of its sources were never written and read as fill values");
+  SourceOptions all = dataset_options("whole");
+  all.missing_chunks = MissingChunks::error;
+  EXPECT_EQ(refused("a.h5", all),
+            path + ": /whole: 1 chunk of its sources was never written (the first at 0, 0, 0 of " + source +
+                ": whole), and with --missing-chunks error all must be; write them, or use "
+                "--missing-chunks fill");
+  EXPECT_EQ(refused("a.h5", dataset_options("netcdf")),
+            path + ": /netcdf: its source " + source +
+                ": netcdf: no value was ever written to it; convert it when its values are there");
+}
+
 TEST_F(VirtualDataset, NamesTheSourceOrTheElementThatIsMissing) {
   const LeaksOfLibraries of_plugins;
   write_by_h5py(scratch_, R"(
