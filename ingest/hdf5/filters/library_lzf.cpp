@@ -30,18 +30,24 @@ std::size_t undo_lzf(unsigned flags, std::size_t parameters, const unsigned* par
   return bytes;
 }
 
+// Whether the library has weir's decoder, which packs nothing.
+bool is_offered() {
+  unsigned how = 0;
+  return H5Zget_filter_info(kLzfFilter, &how) >= 0 && (how & H5Z_FILTER_CONFIG_ENCODE_ENABLED) == 0;
+}
+
 }  // namespace
 
 void offer_lzf() {
-  if (H5Zfilter_avail(kLzfFilter) > 0) return;
+  unsigned how = 0;
+  if (H5Zget_filter_info(kLzfFilter, &how) >= 0) return;  // known, and no plugin is looked for
   const H5Z_class2_t filter{H5Z_CLASS_T_VERS, kLzfFilter, 0, 1, "lzf", nullptr, nullptr, undo_lzf};
   H5Zregister(&filter);
 }
 
 bool library_undoes(H5Z_filter_t id) {
-  unsigned how = 0;
-  if (H5Zfilter_avail(id) <= 0 || H5Zget_filter_info(id, &how) < 0) return false;
-  return id != kLzfFilter || (how & H5Z_FILTER_CONFIG_ENCODE_ENABLED) != 0;
+  if (id == kLzfFilter && is_offered()) H5Zunregister(id);  // refused while a dataset needs it; else a plugin is found
+  return H5Zfilter_avail(id) > 0 && !(id == kLzfFilter && is_offered());
 }
 
 }  // namespace weir

@@ -8,7 +8,7 @@ namespace weir {
 
 inline constexpr H5Z_filter_t kLzfFilter = 32000;  ///< as h5py has registered it
 
-/// Gives the library weir's decoder where it finds none. The caller holds Hdf5Lock.
+/// Gives the library weir's decoder where it has none. The caller holds Hdf5Lock.
 void offer_lzf();
 
 /// Whether the library can undo the filter `id` of chunks that also went through filters which weir does not know. Not
