@@ -47,7 +47,7 @@ TEST(Hdf5StackUsedUp, WithinTheLibrary_EndsWithALineAndExitCode3) {
       {
         report_hdf5_crashes();
         const Hdf5Call call("/data/a.h5");
-        ::_exit(use_up_stack(1));
+        ::_exit(use_up_stack());
       },
       ::testing::ExitedWithCode(3), "^weir: /data/a\\.h5: the HDF5 library crashed at it; .*\n$");
 }

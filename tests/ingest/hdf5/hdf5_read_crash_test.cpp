@@ -79,7 +79,7 @@ TEST_F(Hdf5ReadCrash, ByAThreadsStackThatIsUsedUp_EndsWithALineAndExitCode3) {
         const std::string line = hdf5_crash_line("a.h5: /d");
         std::thread([&] {
           const Hdf5ReadLock lock(line);
-          ::_exit(use_up_stack(1));
+          ::_exit(use_up_stack());
         }).join();
       },
       ::testing::ExitedWithCode(3), "^weir: a\\.h5: /d: the HDF5 library crashed at it; .*\n$");
