@@ -227,17 +227,10 @@ void Journal::save() {
   const bool waits = options_.interval_s == 0 || (options_.cancel != nullptr && *options_.cancel);
   std::vector<std::shared_ptr<File>> open;
   for (const auto& [name, file] : open_) open.push_back(file);
-  const auto work = [this, open = std::move(open), text = to_text(state)] { write(open, text); };
-  if (!waits) {
-    try {
-      saving_ = std::async(std::launch::async, work);
-      return;
-    } catch (const std::system_error&) {
-      // No thread for it.
-    }
-  }
-  saving_ = std::async(std::launch::deferred, work);
-  wait();
+  // Deferred where there is no thread for it.
+  saving_ = std::async(waits ? std::launch::deferred : std::launch::async | std::launch::deferred,
+                       [this, open = std::move(open), text = to_text(state)] { write(open, text); });
+  if (saving_.wait_for(std::chrono::seconds(0)) == std::future_status::deferred) wait();
 }
 
 void Journal::save_now() {

@@ -45,9 +45,6 @@ void offer_lzf() {
   H5Zregister(&filter);
 }
 
-bool library_undoes(H5Z_filter_t id) {
-  if (id == kLzfFilter && is_offered()) H5Zunregister(id);  // refused while a dataset needs it; else a plugin is found
-  return H5Zfilter_avail(id) > 0 && !(id == kLzfFilter && is_offered());
-}
+bool library_undoes(H5Z_filter_t id) { return H5Zfilter_avail(id) > 0 && !(id == kLzfFilter && is_offered()); }
 
 }  // namespace weir
