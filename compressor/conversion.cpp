@@ -21,7 +21,9 @@
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "format/io/file_id.h"
+#include "format/io/memory_file_system.h"
 #include "format/io/output_names.h"
+#include "format/io/reused_pages.h"
 #include "format/process/fork_guard.h"
 #include "format/process/process_memory.h"
 #include "ingest/drivers/hdf5_crash.h"
@@ -96,6 +98,15 @@ void forget_damaged(Journal& journal, const SurveyStores& stores, const std::opt
   if (damaged) journal.forget(cat(journal.path_of(std::string(*damaged)), " is damaged"));
 }
 
+// What the process holds already. Pages of earlier files are among it, of which only the volumes on a device have a
+// use.
+std::uint64_t held_bytes(VolumeSource& source, const ConversionOptions& options) {
+  constexpr std::uint64_t kPart = 8;
+  ReusedPages& pages = ReusedPages::of_process();
+  if (source.resident() == nullptr || pages.held_bytes() > options.memory / kPart) pages.clear();
+  return resident_bytes();
+}
+
 // All of it but what comes after an error.
 Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const ConversionControl& control,
                    OutputFiles& output, WorkDirectory& work, Journal* journal, Team& team, std::uint64_t held) {
@@ -122,7 +133,10 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
     reading = std::move(shares.reading);
     cache_bytes = shares.cache_bytes;
   });
-  work.hold_records(memory.record_bytes > 0);
+  if (memory.record_bytes > 0) {
+    using PagesOf = MemoryFileSystem::PagesOf;
+    work.hold_records(source.resident() == nullptr ? PagesOf::the_system : PagesOf::earlier_files);
+  }
   if (journal == nullptr && team.alone() && threads == workers.threads) reserve_ahead(output, options, control, domain);
   StreamOptions stream = stream_options(control);
   // Of use to the survey, whose blocks are smaller; where threads are few, one has to do for reading.
@@ -218,7 +232,8 @@ Sidecar convert_volume(VolumeSource& source, const ConversionOptions& options, c
   const Hdf5CrashRemoval at_crash(std::move(begun));
   try {
     team.lead([&] { check_certified(source.info(), control); });
-    Sidecar sidecar = convert_to(source, options, control, output, work, journal.get(), team, resident_bytes());
+    Sidecar sidecar =
+        convert_to(source, options, control, output, work, journal.get(), team, held_bytes(source, options));
     if (journal) journal->discard();
     return sidecar;
   } catch (const Error& error) {

@@ -13,9 +13,9 @@ namespace {
 template <typename Hash>
 void hash_pieces(std::vector<Digest>& pieces, const Share& own, std::uint64_t bytes, const DigestAdvanced& advanced,
                  const Hash& hash) {
-  constexpr std::int64_t kBatch = 32;  // pieces between two calls of `advanced`
-  for (std::int64_t begin = own.begin; begin < own.end; begin += kBatch) {
-    const std::int64_t end = std::min(begin + kBatch, own.end);
+  const std::int64_t batch = advanced ? 32 : own.end - own.begin;  // pieces between two calls
+  for (std::int64_t begin = own.begin; begin < own.end; begin += batch) {
+    const std::int64_t end = std::min(begin + batch, own.end);
     tbb::parallel_for(static_cast<std::size_t>(begin), static_cast<std::size_t>(end),
                       [&](std::size_t i) { pieces[i] = hash(i); });
     if (advanced) advanced(std::min(bytes, static_cast<std::uint64_t>(end - own.begin) * kDigestPieceBytes));

@@ -22,6 +22,7 @@
 #include "compressor/refused_values.h"
 #include "compressor/result_notices.h"
 #include "compressor/select/file_size.h"
+#include "compressor/select/fixed_bytes.h"
 #include "compressor/select/leaf_gain.h"
 #include "compressor/select/leaf_reach.h"
 #include "compressor/survey/background.h"
@@ -31,6 +32,7 @@
 #include "format/base/text.h"
 #include "format/layout/nvdb_type.h"
 #include "format/output/written_volume.h"
+#include "format/packed/block_coder.h"
 #include "format/packed/block_encode.h"
 #include "format/process/process_memory.h"
 #include "ingest/files/file_state.h"
@@ -166,6 +168,8 @@ class SurveyedConversion {
         sidecar_(describe_source(info_, survey, options_)) {}
 
   Sidecar run() {
+    const std::jthread memory =
+        beside_resident([this](ResidentVolume& resident) { resident.expect_streams(region_count(info_.domain())); });
     FileRequest request = prepare();
     sidecar_.timing.survey_s = seconds_since(started_);
     const Clock::time_point encoding = Clock::now();
@@ -173,11 +177,12 @@ class SurveyedConversion {
     // Most of the file goes to the device while the rest is made.
     const std::jthread writeback = start_beside([this] { parts_.output.volume().start_writeback(); });
     const std::jthread release = released(stores_.rows.give_up_cache());
-    const std::jthread unmap = released(std::move(encoded.mapped));
+    const std::jthread free = beside_resident([](ResidentVolume& resident) { resident.free_memory(); });
     write_inner_nodes(encoded);
     describe_file(sidecar_, info_, survey_, options_, background_, head_, encoded, shown_);
     say_result(sidecar_, options_, parts_.control.notice);
     digest(encoded);
+    const std::jthread unmap = released(std::move(encoded.mapped));
     sidecar_.timing.encode_s = seconds_since(encoding);
     if (options_.certify == Certify::gradient) certify_gradient();
     commit(encoded);
@@ -185,6 +190,14 @@ class SurveyedConversion {
   }
 
  private:
+  // Does meanwhile what packing a volume on a device needs; nothing for others.
+  template <class Work>
+  std::jthread beside_resident(Work work) {
+    ResidentVolume* const resident = parts_.source.resident();
+    if (resident == nullptr || options_.encoding != Encoding::packed) return {};
+    return start_beside([resident, work = std::move(work)] { work(*resident); });
+  }
+
   // All that selection needs.
   FileRequest prepare() {
     const TraceSpan span(parts_.control.trace, "background");
@@ -310,9 +323,8 @@ class SurveyedConversion {
     head_.voxel_size = info_.spacing;
     head_.origin = info_.origin;
     team_.lead([&] {
-      checksum_ = write_tree({*file.tree, stores_.rows, *file.choices, *encoded.records, file.fill, file.plan.layout,
-                              encoded.packed.get()},
-                             head_, parts_.output.volume());
+      checksum_ = encoded.regions ? encoded.regions->tree().finish(head_)
+                                  : TreeWriter(tree_parts(encoded, stores_.rows), volume_of(encoded)).finish(head_);
     });
     team_.follow(checksum_);
     team_.publish(parts_.output.volume());
@@ -322,10 +334,13 @@ class SurveyedConversion {
   void digest(const EncodedFile& encoded) {
     const std::uint64_t bytes = encoded.file.size.bytes;
     const TraceSpan span(parts_.control.trace, "digest", bytes);
-    // Reads the finished bytes back: what is hashed is what the file system holds.
-    sidecar_.file = {bytes, encoded.file.plan.layout.grid, checksum_,
-                     digest_of_file(parts_.output.volume(), team_).hex()};
+    // Of the finished bytes: what is hashed is what the file system holds.
+    const Digest digest = encoded.mapped ? digest_of_mapping(encoded.mapped->memory(), nullptr)
+                                         : digest_of_file(parts_.output.volume(), team_);
+    sidecar_.file = {bytes, encoded.file.plan.layout.grid, checksum_, digest.hex()};
   }
+
+  File& volume_of(const EncodedFile& encoded) { return encoded.mapped ? *encoded.mapped : parts_.output.volume(); }
 
   // Of the file as it will be read: blocks that were dropped, and the steps from one block to the next, count too.
   void certify_gradient() {

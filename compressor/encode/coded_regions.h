@@ -38,6 +38,8 @@ class CodedRegion {
   /// Of a resident region: its chunk from the first group on, up to the last stream that was asked for. What is not of
   /// those that were coded the caller has to set. Empty where nothing was.
   std::span<std::byte> chunk() const { return made_ ? made_->bytes : std::span<std::byte>(); }
+  /// Of a resident region: the records of those that were asked for, in the order of the file.
+  std::span<const LeafRecord> records() const { return made_ ? made_->records : std::span<const LeafRecord>(); }
 
  private:
   static constexpr std::int32_t kNone = -1;

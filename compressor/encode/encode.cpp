@@ -116,9 +116,13 @@ void for_each_layer(const EncodeTarget& target, const SourceInfo& info, const Bl
 
 }  // namespace
 
+bool encodes_by_regions(VolumeSource& source, bool packed, const Team& team, bool resumes) {
+  return source.resident() != nullptr && packed && team.alone() && !resumes;
+}
+
 void encode_leaves(VolumeSource& source, const BlockPlan& plan, const EncodeTarget& target,
                    const StreamOptions& options, Reading reading, EncodedState* state, const Pauses& pauses) {
-  if (source.resident() != nullptr && target.packed != nullptr && target.rows.team().alone() && state == nullptr) {
+  if (encodes_by_regions(source, target.packed != nullptr, target.rows.team(), state != nullptr)) {
     return encode_resident(*source.resident(), source, target, options);
   }
   const TreeRegions& tree = target.tree;

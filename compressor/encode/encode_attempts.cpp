@@ -93,12 +93,20 @@ FilePlan select_file(const EncodeJob& job, FileRequest& request) {
   }
 }
 
+// Whether a region's part of the tree is written once it is encoded, and no records are kept. The macrocells of all
+// regions are held meanwhile, for which there is room where there is for records.
+bool finishes_regions(const EncodeJob& job, const FilePlan& file) {
+  return job.work.holds_records() &&
+         encodes_by_regions(job.source, file.packed.has_value(), job.rows.team(), job.journal != nullptr);
+}
+
 // For the streams that a device makes of a volume in a memory file system, whose space is reserved. Null where what is
 // left of the memory would not hold it, beside the records.
 std::unique_ptr<MappedWrites> mapped_writes(const EncodeJob& job, const FilePlan& file) {
   if (job.source.resident() == nullptr || !job.rows.team().alone()) return nullptr;
   constexpr std::uint64_t kBeside = std::uint64_t{256} << 20U;
-  const std::uint64_t needed = file.size.bytes + file.plan.kept * sizeof(LeafRecord) + kBeside;
+  const std::uint64_t records = finishes_regions(job, file) ? 0 : file.plan.kept * sizeof(LeafRecord);
+  const std::uint64_t needed = file.size.bytes + records + kBeside;
   if (resident_bytes() + needed > job.memory || !job.output.in_memory()) return nullptr;
   return MappedWrites::of(job.output.volume(), file.size.bytes);
 }
@@ -107,8 +115,9 @@ EncodedFile encode_once(const EncodeJob& job, FileRequest& request) {
   EncodedFile encoded;
   encoded.file = select_file(job, request);
   const FilePlan& file = encoded.file;
+  const bool by_regions = finishes_regions(job, file);
   const std::shared_ptr<File> records = open_targets(job, file);
-  encoded.records = std::make_unique<RecordStore>(records, file.plan.kept);
+  if (!by_regions) encoded.records = std::make_unique<RecordStore>(records, file.plan.kept);
   if (file.packed) {
     const bool bounded = request.budget.kind == Budget::Kind::max_error;
     encoded.packed = std::make_unique<PackedTarget>(
@@ -125,6 +134,9 @@ EncodedFile encode_once(const EncodeJob& job, FileRequest& request) {
     return reserved;
   };
   if (job.journal == nullptr && reserve()) encoded.mapped = mapped_writes(job, file);
+  File& out = encoded.mapped ? *encoded.mapped : job.output.volume();
+  const ChoiceStore* const seen_by = request.rule.visibility == nullptr ? nullptr : file.choices.get();
+  if (by_regions) encoded.regions = std::make_unique<FinishedRegions>(tree_parts(encoded, job.rows), out, seen_by);
   const Fit fit = request.budget.kind == Budget::Kind::max_error ? Fit::largest : Fit::squares;
   const EncodeTarget target{*file.tree,
                             *file.choices,
@@ -132,12 +144,13 @@ EncodedFile encode_once(const EncodeJob& job, FileRequest& request) {
                             file.fill,
                             grid_type_of(file.encoding),
                             fit,
-                            encoded.mapped ? *encoded.mapped : job.output.volume(),
-                            *encoded.records,
+                            out,
+                            encoded.records.get(),
                             job.rows,
                             job.stream.trace,
                             encoded.packed.get(),
-                            job.journal != nullptr};
+                            job.journal != nullptr,
+                            encoded.regions.get()};
   if (job.journal != nullptr) {
     check_written(job, target, *records);
     reserve();
@@ -151,11 +164,15 @@ EncodedFile encode_once(const EncodeJob& job, FileRequest& request) {
     encode_leaves(job.source, job.plan, target, job.stream, job.reading,
                   job.journal == nullptr ? nullptr : &job.journal->state.encoded, pauses);
   });
+  if (by_regions) {
+    encoded.errors = encoded.regions->errors();
+    encoded.seen_errors = encoded.regions->seen_errors();
+    return encoded;
+  }
   encoded.records->publish(team);
   encoded.errors = sum_leaf_errors(*file.tree, *encoded.records, nullptr, team);
-  encoded.seen_errors = request.rule.visibility == nullptr
-                            ? encoded.errors
-                            : sum_leaf_errors(*file.tree, *encoded.records, file.choices.get(), team);
+  encoded.seen_errors =
+      seen_by == nullptr ? encoded.errors : sum_leaf_errors(*file.tree, *encoded.records, seen_by, team);
   return encoded;
 }
 
@@ -304,6 +321,11 @@ double planned_share(Encoding encoding) {
 }
 
 }  // namespace
+
+TreeParts tree_parts(const EncodedFile& encoded, const RowStore& rows) {
+  const FilePlan& file = encoded.file;
+  return {*file.tree, rows, *file.choices, encoded.records.get(), file.fill, file.plan.layout, encoded.packed.get()};
+}
 
 EncodedFile encode_file(const EncodeJob& job, FileRequest request) {
   request.planned_error = planned_share(request.encoding) * request.squared_error;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "compressor/encode/finished_regions.h"
 #include "compressor/encode/layer_encoder.h"
 #include "compressor/encode/leaf_errors.h"
 #include "compressor/encode/leaf_record.h"
@@ -24,12 +25,16 @@ namespace weir {
 /// A file whose leaves are written, and what they lose.
 struct EncodedFile {
   FilePlan file;
-  std::unique_ptr<RecordStore> records;
   std::unique_ptr<PackedTarget> packed;  ///< of a packed file
   DecodedErrors errors;
   DecodedErrors seen_errors;             ///< of those that can be seen
-  std::unique_ptr<MappedWrites> mapped;  ///< of the volume, no longer needed; null where it was not mapped
+  std::unique_ptr<MappedWrites> mapped;  ///< the volume, to be written and read by; null where it is not mapped
+  std::unique_ptr<RecordStore> records;  ///< of the leaves; null where `regions` are finished
+  std::unique_ptr<FinishedRegions> regions;
 };
+
+/// Of a file whose leaves are written.
+TreeParts tree_parts(const EncodedFile& encoded, const RowStore& rows);
 
 /// What the attempts work with; all of it outlives them.
 struct EncodeJob {

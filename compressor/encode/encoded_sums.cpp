@@ -94,7 +94,7 @@ class WrittenSums {
   void add_records() {
     if (ordinals_.empty()) return;
     const auto count = static_cast<std::uint32_t>(ordinals_.back() - ordinals_.front() + 1);  // of one layer
-    const std::vector<LeafRecord> records = target_.records.read(ordinals_.front(), count);
+    const std::vector<LeafRecord> records = target_.records->read(ordinals_.front(), count);
     for (const std::uint64_t ordinal : ordinals_) {
       records_ += record_checksum(ordinal, records[static_cast<std::size_t>(ordinal - ordinals_.front())]);
     }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "compressor/encode/leaf_record.h"
 #include "compressor/leaf/fill.h"
@@ -34,6 +35,18 @@ struct PackedTarget {
   BlockCoder* coder = nullptr;      ///< encodes many blocks at a time, where there is one
 };
 
+/// Takes the records of a region once all of them are there. Thread-safe for different regions.
+class RegionSink {
+ public:
+  RegionSink() = default;
+  virtual ~RegionSink() = default;
+  RegionSink(const RegionSink&) = delete;
+  RegionSink& operator=(const RegionSink&) = delete;
+
+  /// `records` are those of its kept leaves, one at least, in their order.
+  virtual void take(std::int64_t region, std::span<const LeafRecord> records) = 0;
+};
+
 struct EncodeTarget {
   const TreeRegions& tree;
   const ChoiceStore& choices;
@@ -42,11 +55,12 @@ struct EncodeTarget {
   GridType type;  ///< float32 or quantised
   Fit fit;        ///< of quantised leaves
   File& out;
-  RecordStore& records;
+  RecordStore* records;  ///< null where `regions` takes them
   const RowStore& rows;  ///< of the survey; each rank of its team encodes the leaves of its own regions
   Trace* trace = nullptr;
   const PackedTarget* packed = nullptr;  ///< where blocks are packed; then `type` and `fit` mean nothing
   bool sums = true;                      ///< whether LayerEncoder::sums() is asked for, as a journal does
+  RegionSink* regions = nullptr;         ///< of a volume on a device: takes the records in place of a store
 };
 
 /// Where the kept blocks of a region lie.

@@ -57,7 +57,7 @@ class LeafEncoder final : public LayerEncoder {
       } while (end < leaves_.size() && leaves_[end].ordinal == leaves_[end - 1].ordinal + 1);
       const TraceSpan span(target_.trace, "write", size);
       target_.out.write_at(leaves_[first].offset, bytes.subspan(at, size));
-      target_.records.write(leaves_[first].ordinal, std::span(records_).subspan(first, end - first));
+      target_.records->write(leaves_[first].ordinal, std::span(records_).subspan(first, end - first));
       at += size;
       first = end;
     }

@@ -33,13 +33,24 @@ inline std::uint64_t record_checksum(std::uint64_t ordinal, const LeafRecord& re
   return placed_checksum(ordinal, std::as_bytes(std::span(&record, 1)));
 }
 
-/// Records by leaf ordinal. Thread-safe for different leaves.
-class RecordStore {
+/// Takes records by leaf ordinal. Thread-safe for different leaves.
+class RecordSink {
+ public:
+  RecordSink() = default;
+  virtual ~RecordSink() = default;
+  RecordSink(const RecordSink&) = delete;
+  RecordSink& operator=(const RecordSink&) = delete;
+
+  virtual void write(std::uint64_t first, std::span<const LeafRecord> records) = 0;
+};
+
+/// Keeps all of them.
+class RecordStore final : public RecordSink {
  public:
   RecordStore(std::shared_ptr<File> file, std::uint64_t leaves) : file_(std::move(file)) {
     file_->preallocate(leaves * sizeof(LeafRecord));
   }
-  void write(std::uint64_t first, std::span<const LeafRecord> records) {
+  void write(std::uint64_t first, std::span<const LeafRecord> records) override {
     file_->write_at(first * sizeof(LeafRecord), std::as_bytes(records));
   }
   std::vector<LeafRecord> read(std::uint64_t first, std::uint32_t count) const {

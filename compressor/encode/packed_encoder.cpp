@@ -56,10 +56,12 @@ class PackedEncoder final : public PackedLayerEncoder {
   }
 
   void add_layer(std::int64_t region_index, const RegionPlaces& of_region, const SurveyedLeaves& surveyed,
-                 std::int64_t x, const CodedRegion& coded, const LeftLeaves& left) override {
+                 std::int64_t x, const CodedRegion& coded, const LeftLeaves& left, RecordSink& records) override {
+    records_.write_to(records);
     const Box box = target_.tree.leaf_box(region_index);
     const StreamPlaces& places = *of_region.streams;
     chunk_ = {coded.chunk(), chunk_offset(target_, region_index) + places.base(0)};
+    surveyed.expect_layer(x);
     for_each_kept(region_index, places, box, x, [&](const Index3& leaf, const KeptPlace& place) {
       if (const std::optional<CodedStream> known = coded.find(leaf)) {
         surveyed.check(leaf, *known->source);

@@ -12,9 +12,9 @@ namespace weir {
 class PackedLayerEncoder : public LayerEncoder {
  public:
   /// The kept leaves of one x layer of a region that lies on a device; `left` has the values of those that are not
-  /// coded.
+  /// coded. `records` gets theirs, until finish().
   virtual void add_layer(std::int64_t region, const RegionPlaces& places, const SurveyedLeaves& surveyed,
-                         std::int64_t x, const CodedRegion& coded, const LeftLeaves& left) = 0;
+                         std::int64_t x, const CodedRegion& coded, const LeftLeaves& left, RecordSink& records) = 0;
   using LayerEncoder::add_layer;
 };
 

@@ -35,7 +35,7 @@ void RecordBatch::flush() {
 
 void RecordBatch::write(std::uint64_t first, std::span<const LeafRecord> records) {
   if (records.empty()) return;
-  records_.write(first, records);
+  records_->write(first, records);
   for (std::size_t i = 0; sums_ && i < records.size(); ++i) sum_ += record_checksum(first + i, records[i]);
 }
 

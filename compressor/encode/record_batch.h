@@ -16,9 +16,11 @@ namespace weir {
 /// One per thread.
 class RecordBatch {
  public:
-  /// `sums`: whether sum() is asked for.
-  explicit RecordBatch(RecordStore& records, bool sums = true) : records_(records), sums_(sums) {}
+  /// `records` may be null until write_to(); `sums`: whether sum() is asked for.
+  explicit RecordBatch(RecordSink* records, bool sums = true) : records_(records), sums_(sums) {}
 
+  /// Where further ones go, after flush().
+  void write_to(RecordSink& records) { records_ = &records; }
   void add(std::uint64_t ordinal, const LeafValues& decoded, const Box& node, const Box& inside,
            const DecodedErrors& loss);
   /// One that is known already, and stays until flush().
@@ -34,7 +36,7 @@ class RecordBatch {
   void compute();
   void write(std::uint64_t first, std::span<const LeafRecord> records);
 
-  RecordStore& records_;
+  RecordSink* records_;
   bool sums_;
   std::size_t count_ = 0;  // leaves whose statistics are not yet computed
   std::array<LeafValues, kLeafBatch> values_{};

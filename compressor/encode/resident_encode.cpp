@@ -4,9 +4,12 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "compressor/encode/coded_regions.h"
@@ -18,6 +21,26 @@
 
 namespace weir {
 namespace {
+
+// The records of one region's leaves.
+class RegionRecords final : public RecordSink {
+ public:
+  RegionRecords(std::uint64_t first, std::uint32_t count) : first_(first), records_(count) {}
+  void write(std::uint64_t first, std::span<const LeafRecord> records) override {
+    std::ranges::copy(records, records_.begin() + static_cast<std::ptrdiff_t>(first - first_));
+  }
+  std::span<const LeafRecord> all() const { return records_; }
+
+ private:
+  std::uint64_t first_;
+  std::vector<LeafRecord> records_;
+};
+
+// Where they are had otherwise.
+class NoRecords final : public RecordSink {
+ public:
+  void write(std::uint64_t, std::span<const LeafRecord>) override {}
+};
 
 class ResidentEncode {
  public:
@@ -68,15 +91,35 @@ class ResidentEncode {
 
   void end(Part& part) {
     take(part);
-    tbb::parallel_for(part.box.lo.x, part.box.hi.x, [&](std::int64_t x) {
-      const TraceSpan span(target_.trace, "encode");
-      PackedLayerEncoder& encoder = *encoders_.local();
-      encoder.add_layer(part.region, places_of(part), *part.surveyed, x, coded_of(part), part.left);
-      encoder.finish();
-    });
+    if (target_.regions == nullptr) {
+      encode(part, *target_.records);
+    } else if (part.left.leaves().empty()) {  // the device has made all records
+      NoRecords none;
+      encode(part, none);
+      finish_region(part, coded_of(part).records());
+    } else {
+      const Region& region = target_.tree.regions[static_cast<std::size_t>(part.region)];
+      RegionRecords records(region.first_leaf, region.leaves);
+      encode(part, records);
+      finish_region(part, records.all());
+    }
     const std::lock_guard lock(progress_);
     done_ += target_.tree.leaves.voxels(part.box).voxels();
     if (options_.progress) options_.progress(done_, target_.tree.leaves.domain.voxels());
+  }
+
+  void encode(const Part& part, RecordSink& records) {
+    tbb::parallel_for(part.box.lo.x, part.box.hi.x, [&](std::int64_t x) {
+      const TraceSpan span(target_.trace, "encode");
+      PackedLayerEncoder& encoder = *encoders_.local();
+      encoder.add_layer(part.region, places_of(part), *part.surveyed, x, coded_of(part), part.left, records);
+      encoder.finish();
+    });
+  }
+
+  void finish_region(const Part& part, std::span<const LeafRecord> records) {
+    const TraceSpan span(target_.trace, "finish");
+    target_.regions->take(part.region, records);
   }
 
   const RegionPlaces& places_of(const Part& part) const { return part.batch->regions().front().places; }

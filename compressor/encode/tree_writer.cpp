@@ -1,6 +1,7 @@
 #include "compressor/encode/tree_writer.h"
 
 #include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <atomic>
@@ -39,17 +40,38 @@ class TableStatistics {
   std::uint64_t active_tiles_ = 0;
 };
 
-// Writes lower nodes and gathers macrocells, some layers of regions at a time.
-class LowerWriter {
+}  // namespace
+
+// Writes lower nodes and gathers macrocells: some layers of regions at a time, or of all together.
+class TreeWriter::Lowers {
  public:
-  LowerWriter(const TreeParts& parts, File& out)
+  Lowers(const TreeParts& parts, File& out)
       : parts_(parts),
         out_(out),
         statistics_(parts.tree.regions.size()),
         macrocells_(parts.tree.leaves.domain, parts.fill.background),
-        images_(NodeImage(NodeImage::Level::lower, parts.fill.background)) {}
+        images_(NodeImage(NodeImage::Level::lower, parts.fill.background)) {
+    const NodeLattice& lattice = parts.tree.region_lattice;
+    if (parts.records == nullptr) macrocells_.begin_layers(lattice.first.z, lattice.count.z);
+  }
 
-  void run() {
+  // One whose kept leaves have these records; none where it has none.
+  void add(std::int64_t index, std::span<const LeafRecord> records) {
+    RowBuffers buffers;
+    write_region(index, read_region(parts_.rows, parts_.tree.leaf_box(index), buffers), records);
+  }
+
+  // Those without kept leaves, once all others were added.
+  void add_rest() {
+    const std::vector<Region>& regions = parts_.tree.regions;
+    tbb::parallel_for(std::size_t{0}, regions.size(), [&](std::size_t i) {
+      if (regions[i].leaves == 0) add(static_cast<std::int64_t>(i), {});
+    });
+    write_macrocells(true);
+  }
+
+  // All, by their records in the store.
+  void add_all() {
     const NodeLattice& lattice = parts_.tree.region_lattice;
     constexpr std::int64_t kRegions = 256;  // whose macrocells are 1 MiB: a layer may have more
     const std::int64_t layers = std::max<std::int64_t>(1, kRegions / (lattice.count.x * lattice.count.y));
@@ -57,12 +79,14 @@ class LowerWriter {
       const std::int64_t end = std::min(z + layers, lattice.count.z);
       macrocells_.begin_layers(lattice.first.z + z, end - z);
       for_each_region(parts_.tree, parts_.rows, {{0, 0, z}, {lattice.count.x, lattice.count.y, end}},
-                      [&](std::int64_t region, const RegionRows& rows) { write_region(region, rows); });
-      std::int64_t first = 0;
-      const std::vector<MinMax> cells = macrocells_.take_finished(end == lattice.count.z, first);
-      const Index3 count = macrocells_.lattice().count;
-      out_.write_at(parts_.layout.blind_data + static_cast<std::uint64_t>(first * count.x * count.y) * sizeof(MinMax),
-                    std::as_bytes(std::span(cells)));
+                      [&](std::int64_t index, const RegionRows& rows) {
+                        const Region& region = parts_.tree.regions[static_cast<std::size_t>(index)];
+                        std::vector<LeafRecord> room;
+                        write_region(index, rows,
+                                     region.leaves == 0 ? std::span<const LeafRecord>()
+                                                        : parts_.records->view(region.first_leaf, region.leaves, room));
+                      });
+      write_macrocells(end == lattice.count.z);
     }
   }
 
@@ -73,15 +97,23 @@ class LowerWriter {
   const MinMax& decoded() const { return decoded_; }
 
  private:
-  void write_region(std::int64_t index, const RegionRows& rows) {
+  void write_macrocells(bool last) {
+    std::int64_t first = 0;
+    const std::vector<MinMax> cells = macrocells_.take_finished(last, first);
+    const Index3 count = macrocells_.lattice().count;
+    out_.write_at(parts_.layout.blind_data + static_cast<std::uint64_t>(first * count.x * count.y) * sizeof(MinMax),
+                  std::as_bytes(std::span(cells)));
+  }
+
+  void write_region(std::int64_t index, const RegionRows& rows, std::span<const LeafRecord> records) {
     const TreeRegions& tree = parts_.tree;
     const Region& region = tree.regions[static_cast<std::size_t>(index)];
     const Index3 at = tree.region_lattice.position(index);
     RegionCells cells(tree.region_lattice.first + at);
     if (parts_.packed != nullptr) {
-      write_packed(index, region, rows, cells);
+      write_packed(index, region, rows, records, cells);
     } else if (region.open) {
-      write_lower(index, region, rows, cells);
+      write_lower(index, region, rows, records, cells);
     } else {
       const Upper& upper = tree.uppers[static_cast<std::size_t>(tree.upper_of(index))];
       cells.add_tile(tree.region_lattice.voxels(at), tile_value(parts_.fill, upper.open ? region.sums : upper.sums));
@@ -89,11 +121,10 @@ class LowerWriter {
     macrocells_.merge(cells);
   }
 
-  void write_lower(std::int64_t index, const Region& region, const RegionRows& rows, RegionCells& cells) {
+  void write_lower(std::int64_t index, const Region& region, const RegionRows& rows,
+                   std::span<const LeafRecord> records, RegionCells& cells) {
     const TreeRegions& tree = parts_.tree;
     const LeafChoices choices = parts_.choices.read(index);
-    std::vector<LeafRecord> room;
-    const std::span<const LeafRecord> records = parts_.records.view(region.first_leaf, region.leaves, room);
     const std::uint64_t node = parts_.layout.lower_offset(region.node);
     NodeImage& image = images_.local();
     image.reset();
@@ -123,7 +154,8 @@ class LowerWriter {
   }
 
   // The region's directory, and its lower node where the tree has the preview.
-  void write_packed(std::int64_t index, const Region& region, const RegionRows& rows, RegionCells& cells) {
+  void write_packed(std::int64_t index, const Region& region, const RegionRows& rows,
+                    std::span<const LeafRecord> records, RegionCells& cells) {
     const TreeRegions& tree = parts_.tree;
     if (!region.open) {
       write_empty_region(parts_.layout, index, region.packed_value, out_);
@@ -133,8 +165,6 @@ class LowerWriter {
     }
     const StreamPlaces places(parts_.packed->streams.read_allocated(index));
     write_directory(parts_.layout, tree.regions.size(), index, region, places, out_);
-    std::vector<LeafRecord> room;
-    const std::span<const LeafRecord> records = parts_.records.view(region.first_leaf, region.leaves, room);
     MinMax decoded = kNoBounds;
     for_each_in_file_order(rows.leaf_box(), [&](const Index3& leaf) {
       const std::size_t position = tree.mask_position(leaf);
@@ -210,6 +240,8 @@ class LowerWriter {
   MinMax decoded_ = kNoBounds;
 };
 
+namespace {
+
 // One upper node; returns its statistics and adds its active tiles to `active_tiles`.
 NodeStatistics write_upper(const TreeParts& parts, std::int64_t index, const std::vector<NodeStatistics>& lowers,
                            NodeImage& image, File& out, std::uint64_t& active_tiles) {
@@ -240,14 +272,20 @@ NodeStatistics write_upper(const TreeParts& parts, std::int64_t index, const std
 
 }  // namespace
 
-std::uint32_t write_tree(const TreeParts& parts, GridHead head, File& out) {
-  LowerWriter lowers(parts, out);
-  lowers.run();
+TreeWriter::TreeWriter(const TreeParts& parts, File& out)
+    : parts_(parts), out_(out), lowers_(std::make_unique<Lowers>(parts_, out)) {}
+TreeWriter::~TreeWriter() = default;
+
+void TreeWriter::add(std::int64_t region, std::span<const LeafRecord> records) { lowers_->add(region, records); }
+
+std::uint32_t TreeWriter::finish(GridHead head) {
+  Lowers& lowers = *lowers_;
+  parts_.records == nullptr ? lowers.add_rest() : lowers.add_all();
   head.active_tiles = {lowers.active_tiles(), 0, 0};
 
-  const TreeRegions& tree = parts.tree;
-  const bool has_nodes = parts.packed == nullptr || parts.packed->rule.preview;
-  NodeImage image(NodeImage::Level::upper, parts.fill.background);
+  const TreeRegions& tree = parts_.tree;
+  const bool has_nodes = parts_.packed == nullptr || parts_.packed->rule.preview;
+  NodeImage image(NodeImage::Level::upper, parts_.fill.background);
   NodeStatistics total;
   tree.for_each_upper([&](std::int64_t u) {
     const Upper& upper = tree.uppers[static_cast<std::size_t>(u)];
@@ -255,11 +293,11 @@ std::uint32_t write_tree(const TreeParts& parts, GridHead head, File& out) {
     RootTile tile;
     tile.origin = tree.upper_lattice.node_box(at).lo;
     if (upper.open && has_nodes) {
-      tile.child = parts.layout.upper_offset(upper.node);
-      total.add(write_upper(parts, u, lowers.statistics(), image, out, head.active_tiles[1]));
+      tile.child = parts_.layout.upper_offset(upper.node);
+      total.add(write_upper(parts_, u, lowers.statistics(), image, out_, head.active_tiles[1]));
     } else {
-      tile.value = tile_value(parts.fill, upper.sums);
-      tile.active = has_nodes && parts.fill.active(upper.sums.valued) && !tree.upper_lattice.overhangs(at);
+      tile.value = tile_value(parts_.fill, upper.sums);
+      tile.active = has_nodes && parts_.fill.active(upper.sums.valued) && !tree.upper_lattice.overhangs(at);
       if (tile.active) {
         total.add_tile(tile.value, static_cast<std::uint64_t>(kUpperDim * kUpperDim * kUpperDim),
                        tree.upper_lattice.node_box(at));
@@ -268,9 +306,9 @@ std::uint32_t write_tree(const TreeParts& parts, GridHead head, File& out) {
     }
     head.tiles.push_back(tile);
   });
-  head.background = parts.fill.background;
-  if (parts.packed != nullptr) {
-    write_packed_head(*parts.packed, tree, parts.layout, out);
+  head.background = parts_.fill.background;
+  if (parts_.packed != nullptr) {
+    write_packed_head(*parts_.packed, tree, parts_.layout, out_);
     // The box is the domain, the range that of decoded values, whatever the tree holds of them.
     total.bbox = tree.leaves.domain;
     const MinMax& decoded = lowers.decoded();
@@ -280,10 +318,10 @@ std::uint32_t write_tree(const TreeParts& parts, GridHead head, File& out) {
     }
   }
   head.statistics = total;
-  out.write_at(parts.layout.blind_meta, encode_blind_records(parts.layout));
-  const std::vector<std::byte> bytes = encode_head(head, parts.layout);
-  out.write_at(0, bytes);
-  return load<std::uint32_t>(bytes, parts.layout.grid + nvdb::grid::kChecksum);
+  out_.write_at(parts_.layout.blind_meta, encode_blind_records(parts_.layout));
+  const std::vector<std::byte> bytes = encode_head(head, parts_.layout);
+  out_.write_at(0, bytes);
+  return load<std::uint32_t>(bytes, parts_.layout.grid + nvdb::grid::kChecksum);
 }
 
 }  // namespace weir

@@ -21,79 +21,58 @@
 namespace weir {
 namespace {
 
-/// The steps of sampled blocks by the regions that these lie in: which regions have a lower node.
-class SampledRegions {
- public:
-  explicit SampledRegions(const NodeLattice& leaves)
-      : leaves_(leaves), lattice_(make_lattice(leaves.domain, kLowerDim)) {
-    for (const Box& box : BlockSample(leaves).rows()) {
-      for (std::int64_t i = 0; i < box.voxels(); ++i) ++regions_[region_of(box.lo + index_at(i, box.extent()))].sampled;
-    }
-  }
-  /// `leaf` is a linear index.
-  void add(std::int64_t leaf, const LeafStep& step) {
-    steps_.push_back({region_of(leaves_.position(leaf)), step.key, step.gain, static_cast<double>(step.bytes)});
-  }
-  /// How many regions of the volume pay for a node of `node_bytes` by their steps of `key` or a higher one, as far as
-  /// their samples tell, by the share of those that were sampled.
-  double open(double key, double node_bytes) const {
-    std::map<std::int64_t, Sums> sums = regions_;
-    for (const Step& step : steps_) {
-      if (!(step.key >= key)) continue;
-      Sums& of_region = sums[step.region];
-      of_region.gain += step.gain;
-      of_region.bytes += step.bytes;
-    }
-    std::size_t open = 0;
-    for (const auto& [region, found] : sums) {
-      const double blocks = static_cast<double>(lattice_.voxels(lattice_.position(region)).voxels()) / kLeafVoxels;
-      const double scale = blocks / static_cast<double>(found.sampled);
-      if (found.gain * scale >= key * (node_bytes + found.bytes * scale) && found.gain > 0) ++open;
-    }
-    return static_cast<double>(lattice_.size()) * static_cast<double>(open) / static_cast<double>(sums.size());
-  }
-
- private:
-  struct Sums {
-    std::int64_t sampled = 0;
-    double gain = 0;
-    double bytes = 0;
-  };
-  struct Step {
-    std::int64_t region;
-    double key;
-    double gain;
-    double bytes;
-  };
-  std::int64_t region_of(const Index3& leaf) const {
-    return lattice_.linear(floor_div(leaves_.first + leaf, kLowerLeaves) - lattice_.first);
-  }
-
-  const NodeLattice& leaves_;
-  NodeLattice lattice_;
-  std::map<std::int64_t, Sums> regions_;
-  std::vector<Step> steps_;
-};
-
 /// The sampled blocks whose values are all finite.
 struct Sample {
   struct Leaf {
-    std::size_t sampled_row;
+    std::size_t row;     // of the sample
+    std::size_t region;  // of `regions`
     std::int64_t linear;
     std::int64_t voxels;
-    LeafRow row;
+    LeafRow found;
+  };
+  struct RegionPart {
+    std::int64_t index;    // in the lattice of regions
+    std::int64_t sampled;  // blocks of it, whatever their values
   };
   std::vector<Leaf> leaves;  // but for those of one value
-  std::int64_t count = 0;    // those too
+  std::vector<RegionPart> regions;
+  std::int64_t count = 0;  // those too
   std::int64_t left_out = 0;
   std::uint64_t voxels = 0;
   std::size_t rows = 0;
   MinMax range = kNoBounds;
 };
 
+/// Numbers the regions that are sampled.
+class RegionNumbers {
+ public:
+  RegionNumbers(const NodeLattice& leaves, std::vector<Sample::RegionPart>& regions)
+      : leaves_(leaves), lattice_(make_lattice(leaves.domain, kLowerDim)), regions_(regions) {}
+
+  /// The number of the leaf's region, of which it is one more block.
+  std::size_t add(const Index3& leaf) {
+    const std::int64_t index = lattice_.linear(floor_div(leaves_.first + leaf, kLowerLeaves) - lattice_.first);
+    if (regions_.empty() || regions_[last_].index != index) {  // else as the last one's
+      const auto [found, is_new] = numbers_.try_emplace(index, regions_.size());
+      if (is_new) regions_.push_back({index, 0});
+      last_ = found->second;
+    }
+    ++regions_[last_].sampled;
+    return last_;
+  }
+
+ private:
+  const NodeLattice& leaves_;
+  NodeLattice lattice_;
+  std::vector<Sample::RegionPart>& regions_;
+  std::map<std::int64_t, std::size_t> numbers_;
+  std::size_t last_ = 0;
+};
+
 Sample read_sample(const RowStore& rows) {
   const NodeLattice& leaves = rows.leaves();
   Sample sample;
+  RegionNumbers regions(leaves, sample.regions);
   std::vector<LeafRow> found;
   for (const Box& box : BlockSample(leaves).rows()) {
     rows.read_box(box, found);
@@ -101,6 +80,7 @@ Sample read_sample(const RowStore& rows) {
       const Index3 leaf = box.lo + index_at(i, box.extent());
       const LeafRow& row = found[static_cast<std::size_t>(i)];
       const std::int64_t voxels = leaves.voxels(leaf).voxels();
+      const std::size_t region = regions.add(leaf);
       if (row.finite < voxels) {
         ++sample.left_out;
         continue;
@@ -108,24 +88,18 @@ Sample read_sample(const RowStore& rows) {
       ++sample.count;
       sample.voxels += static_cast<std::uint64_t>(voxels);
       widen(sample.range, {row.min, row.max});
-      if (!row.uniform()) sample.leaves.push_back({sample.rows, leaves.linear(leaf), voxels, row});
+      if (!row.uniform()) sample.leaves.push_back({sample.rows, region, leaves.linear(leaf), voxels, row});
     }
     ++sample.rows;
   }
   return sample;
 }
 
-struct StepOfLeaf {
-  const Sample::Leaf* leaf;
-  bool ordered;  // its exact kind is that of floats in order
-  LeafStep step;
-};
-using StepsOfLeaves = std::vector<StepOfLeaf>;
 constexpr std::size_t kLeavesTogether = 128;  // by one thread
 
-StepsOfLeaves steps_of(std::span<const Sample::Leaf> leaves, const GainRule& rule, const StreamLengths& lengths,
-                       const MeanRange& range, const RowStore& rows) {
-  StepsOfLeaves steps;
+SampledSteps::Part steps_of(std::span<const Sample::Leaf> leaves, const GainRule& rule, const StreamLengths& lengths,
+                            const MeanRange& range, const RowStore& rows) {
+  SampledSteps::Part steps;
   RegionGains gains;
   for (const Sample::Leaf& sampled : leaves) {
     PackedLadder ladder;
@@ -133,37 +107,52 @@ StepsOfLeaves steps_of(std::span<const Sample::Leaf> leaves, const GainRule& rul
     MinMax reach;
     if (rule.visibility != nullptr) rows.reaches()->read(sampled.linear, std::span(&reach, 1));
     // Alone in its region, its mean the value of blocks without a stream.
-    const SharedValues region{sampled.row.mean, range};
+    const SharedValues region{sampled.found.mean, range};
     LeafGain leaf;
     gains.clear();
     gains.begin(leaf);
-    rule.add_packed_steps(ladder, region, lengths, sampled.row, sampled.voxels,
+    rule.add_packed_steps(ladder, region, lengths, sampled.found, sampled.voxels,
                           rule.visibility == nullptr ? nullptr : &reach, leaf, gains);
-    for (const LeafStep& step : leaf.all_steps()) steps.push_back({&sampled, ladder.exact == ExactKind::ordered, step});
+    const SampledBlock block{sampled.row, sampled.region, is_sparse(sampled.found), ladder.exact == ExactKind::ordered};
+    for (const LeafStep& step : leaf.all_steps()) steps.add(block, step);
   }
   return steps;
 }
 
-std::vector<StepsOfLeaves> steps_of(const Sample& sample, const GainRule& rule, const MeanRange& range,
-                                    const RowStore& rows) {
+SampledSteps steps_of(const Sample& sample, const GainRule& rule, const MeanRange& range, const RowStore& rows) {
   const StreamLengths lengths(range, *rule.packed);
-  std::vector<StepsOfLeaves> steps((sample.leaves.size() + kLeavesTogether - 1) / kLeavesTogether);
-  tbb::parallel_for(std::size_t{0}, steps.size(), [&](std::size_t part) {
+  std::vector<SampledSteps::Part> parts((sample.leaves.size() + kLeavesTogether - 1) / kLeavesTogether);
+  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
     const std::size_t first = kLeavesTogether * part;
     const std::size_t count = std::min(kLeavesTogether, sample.leaves.size() - first);
-    steps[part] = steps_of(std::span(sample.leaves).subspan(first, count), rule, lengths, range, rows);
+    parts[part] = steps_of(std::span(sample.leaves).subspan(first, count), rule, lengths, range, rows);
   });
-  return steps;
+  return {range.high - range.low, sample.rows, std::move(parts)};
 }
 
-// Bytes of the lower nodes of a file that keeps the steps of `key` and higher ones. Frees the steps.
-double preview_bytes(std::vector<StepsOfLeaves>& steps, const NodeLattice& leaves, double key) {
+// Bytes of the lower nodes of a file that keeps the steps of `key` and higher ones: of regions that pay for theirs, as
+// far as their samples tell, by the share of those that were sampled.
+double preview_bytes(const SampledSteps& steps, const Sample& sample, const NodeLattice& leaves, double key) {
   constexpr auto kNodeBytes = static_cast<double>(nvdb::kLowerBytes);
-  SampledRegions regions(leaves);
-  for (StepsOfLeaves& part : steps) {
-    for (const StepOfLeaf& of_leaf : std::exchange(part, {})) regions.add(of_leaf.leaf->linear, of_leaf.step);
+  struct Sums {
+    double gain = 0;
+    double bytes = 0;
+  };
+  std::vector<Sums> sums(sample.regions.size());
+  steps.for_each_from(key, [&](std::size_t region, double gain, double bytes) {
+    sums[region].gain += gain;
+    sums[region].bytes += bytes;
+  });
+  const NodeLattice lattice = make_lattice(leaves.domain, kLowerDim);
+  std::size_t open = 0;
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    const Sample::RegionPart& region = sample.regions[i];
+    const double blocks = static_cast<double>(lattice.voxels(lattice.position(region.index)).voxels()) / kLeafVoxels;
+    const double scale = blocks / static_cast<double>(region.sampled);
+    if (sums[i].gain * scale >= key * (kNodeBytes + sums[i].bytes * scale) && sums[i].gain > 0) ++open;
   }
-  return regions.open(key, kNodeBytes) * kNodeBytes;
+  const double share = static_cast<double>(open) / static_cast<double>(sums.size());
+  return static_cast<double>(lattice.size()) * share * kNodeBytes;
 }
 
 BudgetOutlook judge(const FileRequest& request, const RowStore& rows) {
@@ -172,13 +161,7 @@ BudgetOutlook judge(const FileRequest& request, const RowStore& rows) {
   const MeanRange range{sample.range.min, sample.range.max};
   GainRule rule = request.rule;
   rule.packed = PackedRule{false, coarsest_step(range.low, range.high)};
-  std::vector<StepsOfLeaves> found = steps_of(sample, rule, range, rows);
-  SampledSteps steps(range.high - range.low, sample.rows);
-  for (const StepsOfLeaves& part : found) {
-    for (const auto& [leaf, ordered, step] : part) {
-      steps.add({leaf->sampled_row, is_sparse(leaf->row), ordered}, step);
-    }
-  }
+  const SampledSteps steps = steps_of(sample, rule, range, rows);
   const double share = static_cast<double>(sample.count) / static_cast<double>(rows.leaves().size());
   const Budget& budget = request.budget;
   BudgetOutlook outlook;
@@ -189,8 +172,8 @@ BudgetOutlook judge(const FileRequest& request, const RowStore& rows) {
       constexpr double kClearly = 2;
       outlook.near = bought->near;
       outlook.window = bought->window;
-      outlook.short_of_preview =
-          kClearly * bought->bytes / share < kLeastOfPreview * preview_bytes(found, rows.leaves(), bought->least_key);
+      outlook.short_of_preview = kClearly * bought->bytes / share <
+                                 kLeastOfPreview * preview_bytes(steps, sample, rows.leaves(), bought->least_key);
     }
   } else {
     const auto dense = static_cast<std::uint64_t>(request.domain.voxels()) * sizeof(float);

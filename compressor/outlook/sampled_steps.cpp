@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "compressor/select/step_keys.h"
 
@@ -22,39 +23,62 @@ NearBlocks BoughtBytes::near() const {
   return near_sparse > least ? NearBlocks::sparse : NearBlocks::none;
 }
 
-void SampledSteps::add(const Block& block, const LeafStep& step) {
-  const std::uint64_t at = key_bits(step.key) >> kDropped;
-  Bucket& bucket = buckets_[at];
-  const auto bytes = static_cast<double>(step.bytes);
-  bucket.bytes.all += bytes;
-  bucket.gain += step.gain;
-  steps_.push_back({static_cast<std::uint32_t>(at), static_cast<std::uint32_t>(block.row), bytes});
-  const bool exact = step.level == kExactLevel;
-  if (!(exact ? block.ordered : step.level >= kFirstNearLevel)) return;
-  (block.sparse ? bucket.bytes.near_sparse : bucket.bytes.near_other) += bytes;
+void SampledSteps::Part::add(const SampledBlock& block, const LeafStep& step) {
+  const bool near = step.level == kExactLevel ? block.ordered : step.level >= kFirstNearLevel;
+  steps_.push_back({step.gain, step.bytes, static_cast<std::uint32_t>(bucket_of(step.key)),
+                    static_cast<std::uint32_t>(block.row), static_cast<std::uint32_t>(block.region),
+                    !near          ? Near::no
+                    : block.sparse ? Near::of_sparse
+                                   : Near::of_other});
+}
+
+SampledSteps::SampledSteps(float width, std::size_t rows, std::vector<Part> parts)
+    : width_(width), rows_(rows), parts_(std::move(parts)) {
+  std::size_t least = std::numeric_limits<std::size_t>::max();
+  std::size_t most = 0;
+  for (const Part& part : parts_) {
+    for (const Part::Step& step : part.steps_) {
+      least = std::min<std::size_t>(least, step.bucket);
+      most = std::max<std::size_t>(most, step.bucket);
+    }
+  }
+  if (least > most) return;
+  first_ = least;
+  buckets_.resize(most - least + 1);
+  for (const Part& part : parts_) {
+    for (const Part::Step& step : part.steps_) {
+      Bucket& bucket = buckets_[step.bucket - first_];
+      const auto bytes = static_cast<double>(step.bytes);
+      bucket.bytes.all += bytes;
+      bucket.gain += step.gain;
+      if (step.near == Part::Near::of_sparse) bucket.bytes.near_sparse += bytes;
+      if (step.near == Part::Near::of_other) bucket.bytes.near_other += bytes;
+    }
+  }
 }
 
 SampledCut SampledSteps::within_bytes(double bytes) const {
   BoughtBytes bought;
-  std::size_t cut = buckets_.size();
-  while (cut > 0 && bought.all <= bytes) bought.add(buckets_[--cut].bytes);
-  SampledCut found{bought.near(), std::nullopt, bought.all, key_of(cut)};
-  if (bought.all > bytes) found.window = KeyWindow::about(key_of(cut), width_, reach_at(cut, bytes));
-  return found;
+  std::size_t cut = end();
+  while (cut > first_ && bought.all <= bytes) bought.add(bucket(--cut).bytes);
+  if (bought.all <= bytes) return {bought.near(), std::nullopt, bought.all, 0};
+  return {bought.near(), KeyWindow::about(key_of(cut), width_, reach_at(cut, bytes)), bought.all, key_of(cut)};
 }
 
 std::optional<SampledCut> SampledSteps::within_error(double squared_error) const {
   double left = 0;
-  for (std::size_t cut = 0; cut < buckets_.size(); ++cut) {
-    left += buckets_[cut].gain;
+  for (std::size_t cut = first_; cut < end(); ++cut) {
+    left += bucket(cut).gain;
     if (left <= squared_error) continue;
     BoughtBytes bought;
-    for (std::size_t i = cut; i < buckets_.size(); ++i) bought.add(buckets_[i].bytes);
+    for (std::size_t i = cut; i < end(); ++i) bought.add(bucket(i).bytes);
     // The range of the values, which the error is a part of, is known too roughly for a narrower window.
     return SampledCut{bought.near(), KeyWindow::about(key_of(cut), width_), bought.all, key_of(cut)};
   }
   return std::nullopt;
 }
+
+std::size_t SampledSteps::bucket_of(double key) { return key_bits(key) >> kDropped; }
 
 double SampledSteps::key_of(std::size_t bucket) {
   return std::bit_cast<double>(static_cast<std::uint64_t>(bucket) << kDropped);
@@ -67,10 +91,10 @@ double SampledSteps::reach_at(std::size_t cut, double bytes) const {
   const double off = kDeviations * deviation_at(cut);
   if (!(off < bytes)) return KeyWindow::kMostReach;
   double bought = 0;
-  std::size_t bucket = buckets_.size();
+  std::size_t at = end();
   const auto key_at = [&](double most) {
-    while (bucket > 0 && bought <= most) bought += buckets_[--bucket].bytes.all;
-    return bought > most ? key_of(bucket) : 0;
+    while (at > first_ && bought <= most) bought += bucket(--at).bytes.all;
+    return bought > most ? key_of(at) : 0;
   };
   const double high = key_at(bytes - off);
   const double low = key_at(bytes + off);
@@ -83,8 +107,10 @@ double SampledSteps::reach_at(std::size_t cut, double bytes) const {
 double SampledSteps::deviation_at(std::size_t cut) const {
   if (rows_ < 2) return std::numeric_limits<double>::infinity();
   std::vector<double> bytes(rows_);
-  for (const Step& step : steps_) {
-    if (step.bucket >= cut) bytes[step.row] += step.bytes;
+  for (const Part& part : parts_) {
+    for (const Part::Step& step : part.steps_) {
+      if (step.bucket >= cut) bytes[step.row] += static_cast<double>(step.bytes);
+    }
   }
   double squares = 0;
   for (std::size_t row = 1; row < rows_; ++row) squares += std::pow(bytes[row] - bytes[row - 1], 2);

@@ -31,46 +31,77 @@ struct SampledCut {
   double least_key = 0;               ///< that it has, about
 };
 
-/// The steps of a sample's blocks, counted by their keys.
+/// A sampled block.
+struct SampledBlock {
+  std::size_t row;     ///< of the sample
+  std::size_t region;  ///< of those that were sampled
+  bool sparse;
+  bool ordered;  ///< its exact kind is that of floats in order
+};
+
+/// The steps of some blocks, counted by their keys.
 class SampledSteps {
  public:
-  /// Of a sample of so many rows of blocks, whose values lie in a range of that width.
-  SampledSteps(float width, std::size_t rows) : width_(width), rows_(rows) {}
+  /// Steps that one thread finds.
+  class Part {
+   public:
+    void add(const SampledBlock& block, const LeafStep& step);
 
-  struct Block {
-    std::size_t row;  ///< of the sample
-    bool sparse;
-    bool ordered;  ///< its exact kind is that of floats in order
+   private:
+    friend class SampledSteps;
+    enum class Near : std::uint8_t { no, of_sparse, of_other };
+    struct Step {
+      double gain;
+      std::uint32_t bytes;
+      std::uint32_t bucket;
+      std::uint32_t row;
+      std::uint32_t region;
+      Near near;
+    };
+    std::vector<Step> steps_;
   };
-  void add(const Block& block, const LeafStep& step);
+
+  /// Of a sample of so many rows of blocks, whose values lie in a range of that width. What is found does not depend on
+  /// the threads as long as the parts do not.
+  SampledSteps(float width, std::size_t rows, std::vector<Part> parts);
 
   /// Of what is bought for so many bytes.
   SampledCut within_bytes(double bytes) const;
   /// Of what must be bought so that no more than that error is left; nullopt where nothing must.
   std::optional<SampledCut> within_error(double squared_error) const;
 
+  /// Calls visit(region, gain, bytes) for each step of `key`, which is a cut's, or a higher one.
+  template <typename Visit>
+  void for_each_from(double key, const Visit& visit) const {
+    const std::size_t cut = bucket_of(key);
+    for (const Part& part : parts_) {
+      for (const Part::Step& step : part.steps_) {
+        if (step.bucket >= cut) visit(step.region, step.gain, static_cast<double>(step.bytes));
+      }
+    }
+  }
+
  private:
   struct Bucket {
     BoughtBytes bytes{};
     double gain = 0;
   };
-  struct Step {
-    std::uint32_t bucket;
-    std::uint32_t row;
-    double bytes;
-  };
   static constexpr int kDropped = 48;  // bits of a key: 16 to an octave remain
 
+  static std::size_t bucket_of(double key);
   static double key_of(std::size_t bucket);
   // By which factor the cut of the volume may differ from the key of bucket `cut`, at which so many bytes are bought.
   double reach_at(std::size_t cut, double bytes) const;
   // Standard deviation of the bytes bought there, among samples of this many rows.
   double deviation_at(std::size_t cut) const;
+  std::size_t end() const { return first_ + buckets_.size(); }
+  const Bucket& bucket(std::size_t i) const { return buckets_[i - first_]; }
 
   float width_;
   std::size_t rows_;
-  std::vector<Step> steps_;
-  std::vector<Bucket> buckets_ = std::vector<Bucket>(std::size_t{1} << (64 - kDropped));
+  std::vector<Part> parts_;
+  std::size_t first_ = 0;  // no step's bucket is lower
+  std::vector<Bucket> buckets_;
 };
 
 }  // namespace weir

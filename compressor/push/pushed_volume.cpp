@@ -64,7 +64,7 @@ struct PushedFiles {
               const MemoryPlan& memory, FileSystem& files)
       : output(files, options.output, options.overwrite), work(files, options.output, options.work_dir) {
     if (remove_leftovers(files, options.output) && control.notice) control.notice(leftovers_notice(options.output));
-    work.hold_records(memory.record_bytes > 0);
+    if (memory.record_bytes > 0) work.hold_records(MemoryFileSystem::PagesOf::the_system);
     const NodeLattice leaves = make_lattice(info.domain(), kLeafDim);
     stores.emplace(SurveyStores{RowStore(work.spill_records(), leaves, memory.selection), {}, {}});
     if (faces) stores->faces.emplace(work.spill_records(), leaves);

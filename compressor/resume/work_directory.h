@@ -30,16 +30,16 @@ class WorkDirectory {
   const std::string& path() const { return path_; }
   std::unique_ptr<File> spill() { return files_.create_unnamed(path_); }
   /// For the records of a conversion's leaves.
-  std::unique_ptr<File> spill_records() { return records_in_memory_ ? memory_.create_unnamed(path_) : spill(); }
-  /// Whether the next of those files are memory, which the conversion's ceiling has to hold (MemoryPlan::record_bytes).
-  void hold_records(bool in_memory) { records_in_memory_ = in_memory; }
+  std::unique_ptr<File> spill_records() { return memory_ ? memory_->create_unnamed(path_) : spill(); }
+  bool holds_records() const { return memory_ != nullptr; }
+  /// The next of those files are memory, which the conversion's ceiling has to hold (MemoryPlan::record_bytes).
+  void hold_records(MemoryFileSystem::PagesOf pages) { memory_ = std::make_unique<MemoryFileSystem>(pages); }
 
  private:
   FileSystem& files_;
   std::string path_;
   bool made_ = false;
-  MemoryFileSystem memory_;
-  bool records_in_memory_ = false;
+  std::unique_ptr<MemoryFileSystem> memory_;  // null: records are spilled
 };
 
 }  // namespace weir

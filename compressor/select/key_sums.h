@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 
@@ -22,10 +23,18 @@ struct PurchaseSum {
   }
 };
 
-/// A saved error in units of `unit`, an error too.
-inline PurchaseSum::Weight gain_weight(double gain, double unit) {
-  return static_cast<PurchaseSum::Weight>(std::max(0.0, gain) / unit);
+/// The whole part of a number from 0 to below 2^128, by its bits: a conversion by the compiler is a call.
+inline PurchaseSum::Weight whole_part(double value) {
+  constexpr int kMantissaBits = 52;
+  const auto bits = std::bit_cast<std::uint64_t>(value);
+  const int shift = static_cast<int>(bits >> kMantissaBits) - 1023 - kMantissaBits;
+  if (shift < -kMantissaBits) return 0;  // below 1
+  const std::uint64_t digits = (bits & ((std::uint64_t{1} << kMantissaBits) - 1)) | std::uint64_t{1} << kMantissaBits;
+  return shift < 0 ? digits >> -shift : PurchaseSum::Weight{digits} << shift;
 }
+
+/// A saved error in units of `unit`, an error too.
+inline PurchaseSum::Weight gain_weight(double gain, double unit) { return whole_part(std::max(0.0, gain) / unit); }
 
 /// Of purchases whose keys are not in a range.
 struct OutsideSums {

@@ -21,8 +21,10 @@ void for_each_row_piece(const RowStore& store, std::int64_t begin, std::int64_t 
   tbb::enumerable_thread_specific<std::vector<LeafRow>> pieces;
   tbb::parallel_for(std::int64_t{0}, (end - begin + kPiece - 1) / kPiece, [&](std::int64_t index) {
     const std::int64_t first = begin + index * kPiece;
+    const auto rows = static_cast<std::size_t>(std::min(kPiece, end - first));
+    if (store.held() != nullptr) return visit(first, std::span(store.held() + first, rows));
     std::vector<LeafRow>& piece = pieces.local();
-    piece.resize(static_cast<std::size_t>(std::min(kPiece, end - first)));
+    piece.resize(rows);
     store.read(first, piece);
     visit(first, std::span<const LeafRow>(piece));
   });

@@ -29,6 +29,7 @@ class MappedWrites final : public File {
   void sync() override { file_.sync(); }
   std::uint64_t size() override { return file_.size(); }
   int descriptor() const override { return file_.descriptor(); }
+  std::span<const std::byte> memory() const override { return mapped_; }
   bool exclusive() const override { return file_.exclusive(); }
 
  private:

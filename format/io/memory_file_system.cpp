@@ -11,6 +11,7 @@
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "format/io/reused_pages.h"
 #include "format/process/page_size.h"
 #include "format/process/process_memory.h"
 
@@ -20,7 +21,7 @@ namespace weir {
 // the bytes.
 class MemoryFileSystem::Pages {
  public:
-  Pages() = default;
+  explicit Pages(PagesOf pages) : pages_(pages) {}
   ~Pages() { unmap(); }
   Pages(const Pages&) = delete;
   Pages& operator=(const Pages&) = delete;
@@ -51,6 +52,10 @@ class MemoryFileSystem::Pages {
     if (bytes > capacity_) {
       constexpr std::uint64_t kLeast = std::uint64_t{1} << 20U;
       const std::uint64_t wanted = ahead ? std::max({bytes, capacity_ + capacity_ / 2, kLeast}) : bytes;
+      if (begin_ == nullptr && pages_ == PagesOf::earlier_files && take_earlier(wanted)) {
+        size_ = bytes;
+        return;
+      }
       const std::uint64_t capacity = round_up_to_page(wanted);
       void* const moved = begin_ == nullptr ? ::mmap(nullptr, capacity, PROT_READ | PROT_WRITE,
                                                      MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0)
@@ -76,13 +81,26 @@ class MemoryFileSystem::Pages {
   }
 
  private:
+  bool take_earlier(std::uint64_t bytes) {
+    const std::span<std::byte> earlier = ReusedPages::of_process().take(bytes);
+    if (earlier.empty()) return false;
+    begin_ = earlier.data();
+    capacity_ = earlier.size();
+    return true;
+  }
+
   void unmap() {
-    if (begin_ != nullptr) ::munmap(begin_, capacity_);
+    if (pages_ == PagesOf::earlier_files) {
+      ReusedPages::of_process().give_back({begin_, capacity_});
+    } else if (begin_ != nullptr) {
+      ::munmap(begin_, capacity_);
+    }
     begin_ = nullptr;
     capacity_ = 0;
     size_ = 0;
   }
 
+  const PagesOf pages_;
   mutable std::shared_mutex mutex_;
   std::byte* begin_ = nullptr;
   std::uint64_t capacity_ = 0;  // bytes mapped
@@ -113,7 +131,7 @@ class MemoryFileSystem::PagesFile final : public File {
   std::string path_;
 };
 
-MemoryFileSystem::MemoryFileSystem() = default;
+MemoryFileSystem::MemoryFileSystem(PagesOf pages) : pages_(pages) {}
 MemoryFileSystem::~MemoryFileSystem() = default;
 
 std::shared_ptr<MemoryFileSystem::Pages> MemoryFileSystem::find(const std::string& path) const {
@@ -136,7 +154,7 @@ std::unique_ptr<File> MemoryFileSystem::create(const std::string& path) {
 std::unique_ptr<File> MemoryFileSystem::open(const std::string& path) {
   const std::scoped_lock lock(mutex_);
   std::shared_ptr<Pages>& pages = files_[path];
-  if (pages == nullptr) pages = std::make_shared<Pages>();
+  if (pages == nullptr) pages = std::make_shared<Pages>(pages_);
   return std::make_unique<PagesFile>(pages, path);
 }
 
@@ -146,7 +164,7 @@ std::unique_ptr<File> MemoryFileSystem::open_to_read(const std::string& path) {
 }
 
 std::unique_ptr<File> MemoryFileSystem::create_unnamed(const std::string& directory) {
-  return std::make_unique<PagesFile>(std::make_shared<Pages>(), directory + " (temporary file in memory)");
+  return std::make_unique<PagesFile>(std::make_shared<Pages>(pages_), directory + " (temporary file in memory)");
 }
 
 void MemoryFileSystem::rename(const std::string& from, const std::string& to) {

@@ -18,7 +18,11 @@ namespace weir {
 /// just that. Thread-safe.
 class MemoryFileSystem final : public FileSystem {
  public:
-  MemoryFileSystem();
+  /// What files are made of: pages that read zero where nothing was written, or those of earlier files of this kind,
+  /// which read anything there and need not be made (ReusedPages).
+  enum class PagesOf { the_system, earlier_files };
+
+  explicit MemoryFileSystem(PagesOf pages = PagesOf::the_system);
   ~MemoryFileSystem() override;
 
   /// The bytes of a file, until it is written to, removed or replaced, or the file system ends. Throws Error(io) where
@@ -47,6 +51,7 @@ class MemoryFileSystem final : public FileSystem {
 
   std::shared_ptr<Pages> find(const std::string& path) const;
 
+  const PagesOf pages_;
   mutable std::mutex mutex_;
   std::map<std::string, std::shared_ptr<Pages>> files_;
 };

@@ -246,6 +246,12 @@ class ResidentVolume {
   /// Nullopt where that has failed.
   virtual std::optional<std::vector<std::uint64_t>> count(int exponent, double base, std::size_t bins) = 0;
 
+  /// Gets the memory for streams of so many regions of 128^3 voxels, as far as they are asked for together: to be
+  /// called while there is nothing else to do for it. A hint, no error.
+  virtual void expect_streams(std::size_t regions) = 0;
+  /// Frees what is not in use; later calls get it again.
+  virtual void free_memory() = 0;
+
   /// Values over a box inside it, x fastest. Throws Error(io).
   virtual void read(const Box& box, std::span<float> values) = 0;
 

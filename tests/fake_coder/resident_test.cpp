@@ -90,6 +90,19 @@ TEST_F(Resident, ValuesOfALargerVolumeStayOnTheDevice) {
   }
 }
 
+// The device's memory is freed once a file is encoded, and got again.
+TEST_F(Resident, OneVolumeIsConvertedTwice) {
+  MemoryVolume volume = turbulence();
+  const std::unique_ptr<VolumeSource> source = on_device(volume);
+  for (const double rate : {8.0, 30.0}) {
+    ConversionOptions options = with(budget_of(Budget::Kind::rate, rate));
+    options.resume = Resume::off;
+    const Result expected = convert_by(nullptr, volume, options);
+    const Result result = convert_by(nullptr, *source, options);
+    EXPECT_EQ(result.file == expected.file, true) << "rate " << rate;
+  }
+}
+
 // Budgets that buy all near rungs and floats in order, and those of a window.
 TEST_F(Resident, NearlyLosslessBlocksOfACloudStayOnTheDevice) {
   MemoryVolume volume = cloud({{0, 0, 0}, {272, 208, 160}});

@@ -8,10 +8,8 @@
 #include <functional>
 #include <memory>
 #include <utility>
-#include <vector>
 
 #include "format/base/error.h"
-#include "format/packed/block_encode.h"
 #include "gpu/cuda/encode/digest_steps.h"
 #include "gpu/cuda/encode/encode_call.h"
 #include "gpu/cuda/encode/encoder_tables.h"
@@ -50,21 +48,30 @@ struct StreamMemory {
   GrowingArray<LeafRecord> records;
   GrowingArray<Digest> sources;
   GrowingPinned pinned;
+
+  /// Room for the streams of so many blocks, of so many bytes, but for what comes back to the host; `resident`: also
+  /// for their records. Throws Error(io).
+  void hold(std::size_t blocks, std::size_t bytes, bool resident) {
+    asks.at_least(blocks);
+    states.at_least(blocks);
+    coded.at_least(512 * blocks);
+    words.at_least(bytes / 2 + blocks + 1);
+    decoded.at_least(512 * blocks);
+    out.at_least(bytes);
+    made.at_least(blocks);
+    if (!resident) return;
+    records.at_least(blocks);
+    sources.at_least(blocks);
+  }
+  /// The same for most regions of a resident volume: one has more streams than the next, and it seldom grows.
+  static constexpr std::size_t kRegionBlocks = 4096;
+  static constexpr std::size_t kRegionBytes = std::size_t{2} << 20U;  // four bits a voxel
 };
 
 struct CoderState {
   /// On `device`, the current one, and in the calling thread's context, whichever thread calls later. `most_boxes` are
   /// worked on at a time, at most. What goes wrong is told to `say`, once. Throws Error(io).
-  CoderState(int device, std::size_t most_boxes, std::function<void(const Error&)> say)
-      : context(device), failed(std::move(say)), costs(1), codes(1), digests(1), boxes(most_boxes) {
-    std::vector<CostTables> host_costs(1);
-    std::vector<CodeTables> host_codes(1);
-    make_encoder_tables(built_in_tables(), host_costs[0], host_codes[0]);
-    costs.upload(host_costs);
-    codes.upload(host_codes);
-    digests.upload(std::vector<DigestTables>(1));
-  }
-
+  CoderState(int device, std::size_t most_boxes, std::function<void(const Error&)> say);
   ~CoderState() {
     free_on(context, [&] {
       boxes.clear();

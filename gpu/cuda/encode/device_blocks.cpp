@@ -43,27 +43,26 @@ class DeviceStreams final : public PendingStreams {
       : coder_(std::move(coder)), memory_(coder_->context, coder_->streams, coder_->streams.take()) {
     const std::size_t count = asks.size();
     const std::size_t bytes = std::size_t{asks.back().offset} + asks.back().bytes;
-    // Resident blocks come by regions, of which one has more streams than the next: room for most, so that it seldom
-    // grows.
-    const std::size_t most = place ? std::max(count, std::size_t{kRegionBlocks}) : count;
-    const std::size_t most_bytes = place ? std::max(bytes, kOftenEnough) : bytes;
+    // Resident blocks come by regions.
+    memory_->hold(place ? std::max(count, StreamMemory::kRegionBlocks) : count,
+                  place ? std::max(bytes, StreamMemory::kRegionBytes) : bytes, place.has_value());
     EncodeCall call;
     call.box = box;
     call.constants = constants;
     call.constants.tables = nullptr;
     call.tables = coder_->costs.data();
     call.codes = coder_->codes.data();
-    StreamAsk* const asked = memory_->asks.at_least(most);
+    StreamAsk* const asked = memory_->asks.data();
     call.asks = asked;
     call.count = static_cast<std::uint32_t>(count);
     call.on_lattices = std::any_of(asks.begin(), asks.end(),
                                    [](const StreamAsk& ask) { return ask.kind != StreamAskKind::transform; });
-    call.states = memory_->states.at_least(most);
-    call.coded = memory_->coded.at_least(512 * most);
-    call.words = memory_->words.at_least(most_bytes / 2 + most + 1);
-    call.decoded = memory_->decoded.at_least(512 * most);
-    call.out = memory_->out.at_least(most_bytes);
-    call.made = memory_->made.at_least(most);
+    call.states = memory_->states.data();
+    call.coded = memory_->coded.data();
+    call.words = memory_->words.data();
+    call.decoded = memory_->decoded.data();
+    call.out = memory_->out.data();
+    call.made = memory_->made.data();
     const std::size_t of_host = place ? 0 : 512 * count;  // decoded values
     const std::size_t recorded = place ? count : 0;
     if (pinned == nullptr) pinned = &memory_->pinned;
@@ -81,8 +80,8 @@ class DeviceStreams final : public PendingStreams {
     launch_encode(call, stream);
     const char* const what = "encoding on the device";
     if (place) {
-      LeafRecord* const found = memory_->records.at_least(most);
-      Digest* const digests = memory_->sources.at_least(most);
+      LeafRecord* const found = memory_->records.data();
+      Digest* const digests = memory_->sources.data();
       launch_records({box, *place, coder_->digests.data(), asked, call.count, call.decoded, found, digests}, stream);
       copy_back(records, found, stream, what);
       copy_back(sources, digests, stream, what);
@@ -102,8 +101,6 @@ class DeviceStreams final : public PendingStreams {
   }
 
  private:
-  static constexpr std::size_t kOftenEnough = std::size_t{2} << 20U;  // four bits a voxel
-
   std::shared_ptr<CoderState> coder_;
   Lent<StreamMemory> memory_;
   MadeStreams found_;

@@ -1,8 +1,13 @@
 #include "gpu/cuda/encode/resident_volume.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -45,6 +50,28 @@ class DeviceVolume final : public ResidentVolume {
                    cudaStreamPerThread);
       const std::vector<unsigned long long> found = counts.download();
       return std::vector<std::uint64_t>(found.begin(), found.end());
+    });
+  }
+
+  void expect_streams(std::size_t regions) override {
+    try {
+      const KeptDevice kept(state_->context);
+      std::array<std::unique_ptr<StreamMemory>, kMostResidentBoxes> held;
+      const auto taken = std::span(held).first(std::min(regions, held.size()));
+      for (std::unique_ptr<StreamMemory>& memory : taken) {
+        memory = state_->streams.take();
+        memory->hold(StreamMemory::kRegionBlocks, StreamMemory::kRegionBytes, true);
+      }
+      for (std::unique_ptr<StreamMemory>& memory : taken) state_->streams.give_back(std::move(memory));
+    } catch (const Error&) {
+      // Whoever needs it will see.
+    }
+  }
+
+  void free_memory() override {
+    free_on(state_->context, [&] {
+      state_->boxes.clear();
+      state_->streams.clear();
     });
   }
 

@@ -29,6 +29,7 @@ class GrowingArray {
     }
     return array_.data();
   }
+  T* data() const { return array_.data(); }
 
  private:
   DeviceArray<T> array_;

@@ -15,7 +15,7 @@ namespace {
 TEST(RecordBatch, WritesWhatEachLeafAloneGives) {
   constexpr std::uint64_t kRecords = 3000;
   RecordStore store(test::CrashFileSystem().create_unnamed("records"), kRecords);
-  RecordBatch batch(store);
+  RecordBatch batch(&store);
   std::mt19937 random(5);
   std::vector<std::pair<std::uint64_t, LeafRecord>> expected;
   for (std::uint64_t ordinal = 0; ordinal < kRecords; ++ordinal) {
@@ -44,7 +44,7 @@ TEST(RecordBatch, WritesWhatEachLeafAloneGives) {
 TEST(RecordBatch, WritesKnownRecordsAmongOthers) {
   constexpr std::uint64_t kRecords = 500;
   RecordStore store(test::CrashFileSystem().create_unnamed("records"), kRecords);
-  RecordBatch batch(store);
+  RecordBatch batch(&store);
   std::vector<LeafRecord> known(2 * kRecords);
   std::vector<LeafRecord> expected(kRecords);
   std::vector<bool> added(kRecords);

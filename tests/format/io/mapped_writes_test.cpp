@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <thread>
 #include <vector>
 
@@ -40,6 +41,8 @@ TEST(MappedWrites, AreTheFilesBytes_WhatLiesBehindTheMappingToo) {
   std::vector<std::byte> found(all.size());
   file->read_at(0, found);
   EXPECT_EQ(found == all, true);
+  EXPECT_EQ(mapped->memory().size(), kMapped);
+  EXPECT_EQ(std::ranges::equal(mapped->memory(), std::span(all).first(kMapped)), true);
 }
 
 TEST(MappedWrites, AreNotOfAFileWithoutADescriptor) {
