@@ -103,6 +103,24 @@ TEST_F(Resident, OneVolumeIsConvertedTwice) {
   }
 }
 
+// What can be seen has a certificate of its own.
+TEST_F(Resident, ASceneGivesTheSameFileAndTheSameErrorOfWhatIsSeen) {
+  MemoryVolume volume = turbulence();
+  Scene scene;
+  scene.volume.range = {-60, 60};
+  scene.volume.opacity = {{0, 0}, {0.55, 0}, {0.7, 0.3}, {1, 1}};
+  ConversionOptions options = with(budget_of(Budget::Kind::rate, 12));
+  options.scene = SceneFile{scene, "s.toml"};
+  options.resume = Resume::off;
+  const Result expected = convert_by(nullptr, volume, options);
+  const Result result = convert_by(nullptr, *on_device(volume), options);
+  EXPECT_EQ(result.file == expected.file, true);
+  ASSERT_TRUE(result.sidecar.visible && expected.sidecar.visible);
+  EXPECT_LT(result.sidecar.visible->error.max_abs, result.sidecar.error.max_abs);
+  EXPECT_EQ(result.sidecar.visible->error.max_abs, expected.sidecar.visible->error.max_abs);
+  EXPECT_EQ(result.sidecar.visible->error.rmse, expected.sidecar.visible->error.rmse);
+}
+
 // Budgets that buy all near rungs and floats in order, and those of a window.
 TEST_F(Resident, NearlyLosslessBlocksOfACloudStayOnTheDevice) {
   MemoryVolume volume = cloud({{0, 0, 0}, {272, 208, 160}});
