@@ -98,19 +98,29 @@ void forget_damaged(Journal& journal, const SurveyStores& stores, const std::opt
   if (damaged) journal.forget(cat(journal.path_of(std::string(*damaged)), " is damaged"));
 }
 
-// What the process holds already. Pages of earlier files are among it, of which only the volumes on a device have a
-// use.
-std::uint64_t held_bytes(VolumeSource& source, const ConversionOptions& options) {
-  constexpr std::uint64_t kPart = 8;
-  ReusedPages& pages = ReusedPages::of_process();
-  if (source.resident() == nullptr || pages.held_bytes() > options.memory / kPart) pages.clear();
-  return resident_bytes();
+// Files of a volume that is packed on a device may have the pages of earlier ones.
+bool reuses_pages(VolumeSource& source, const ConversionOptions& options) {
+  return source.resident() != nullptr && options.encoding == Encoding::packed;
 }
+
+// Unmaps pages of earlier files, which count as the process's, where there is no use for them, or too little memory
+// beside them: they are planned for as if none of them were used again.
+void clear_pages(VolumeSource& source, const ConversionOptions& options) {
+  constexpr std::uint64_t kTimes = 5;
+  ReusedPages& pages = ReusedPages::of_process();
+  const std::uint64_t needed = resident_bytes() + kTimes * pages.held_bytes();
+  if (!reuses_pages(source, options) || needed > options.memory) pages.clear();
+}
+
+// What counts besides what a conversion takes.
+enum class Held { by_the_process, by_nobody };
 
 // All of it but what comes after an error.
 Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const ConversionControl& control,
-                   OutputFiles& output, WorkDirectory& work, Journal* journal, Team& team, std::uint64_t held) {
+                   OutputFiles& output, WorkDirectory& work, Journal* journal, Team& team, Held counted) {
   const ForkGuard forks;
+  clear_pages(source, options);
+  const std::uint64_t held = counted == Held::by_the_process ? resident_bytes() : 0;
   const auto started = std::chrono::steady_clock::now();
   const SourceInfo& info = source.info();
   say_axes(info, control.notice);
@@ -135,7 +145,7 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
   });
   if (memory.record_bytes > 0) {
     using PagesOf = MemoryFileSystem::PagesOf;
-    work.hold_records(source.resident() == nullptr ? PagesOf::the_system : PagesOf::earlier_files);
+    work.hold_records(reuses_pages(source, options) ? PagesOf::earlier_files : PagesOf::the_system);
   }
   if (journal == nullptr && team.alone() && threads == workers.threads) reserve_ahead(output, options, control, domain);
   StreamOptions stream = stream_options(control);
@@ -232,8 +242,7 @@ Sidecar convert_volume(VolumeSource& source, const ConversionOptions& options, c
   const Hdf5CrashRemoval at_crash(std::move(begun));
   try {
     team.lead([&] { check_certified(source.info(), control); });
-    Sidecar sidecar =
-        convert_to(source, options, control, output, work, journal.get(), team, held_bytes(source, options));
+    Sidecar sidecar = convert_to(source, options, control, output, work, journal.get(), team, Held::by_the_process);
     if (journal) journal->discard();
     return sidecar;
   } catch (const Error& error) {
@@ -248,7 +257,7 @@ Sidecar convert_volume(VolumeSource& source, const ConversionOptions& options, c
 
 Sidecar convert_into(OutputFiles& output, WorkDirectory& work, VolumeSource& source, const ConversionOptions& options,
                      const ConversionControl& control, Team& team) {
-  return convert_to(source, options, control, output, work, nullptr, team, 0);
+  return convert_to(source, options, control, output, work, nullptr, team, Held::by_nobody);
 }
 
 }  // namespace weir

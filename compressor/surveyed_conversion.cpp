@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
-#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -27,6 +26,7 @@
 #include "compressor/select/leaf_reach.h"
 #include "compressor/survey/background.h"
 #include "compressor/survey/ladder_completion.h"
+#include "compressor/work_beside.h"
 #include "format/base/error.h"
 #include "format/base/seconds_since.h"
 #include "format/base/text.h"
@@ -92,23 +92,6 @@ bool raises_default(const ConversionOptions& options, const Box& domain) {
          options.metric == Metric::sse && options.encoding != Encoding::fp4;
 }
 
-// Does meanwhile what may be left undone; nothing where there is no thread for it.
-template <class Work>
-std::jthread start_beside(Work work) {
-  try {
-    return std::jthread(std::move(work));
-  } catch (const std::system_error&) {
-    return {};
-  }
-}
-
-// Frees its memory meanwhile, which takes a second for 5 GB; at once where there is no thread for it.
-template <class T>
-std::jthread released(std::unique_ptr<T> memory) {
-  if (memory == nullptr) return {};
-  return start_beside([memory = std::move(memory)]() mutable { memory.reset(); });
-}
-
 // What the squares over `finite` voxels may sum up to for a PSNR.
 double allowed_error(const Budget& budget, const Survey& survey, std::uint64_t finite) {
   const double range = static_cast<double>(survey.max) - static_cast<double>(survey.min);
@@ -168,7 +151,7 @@ class SurveyedConversion {
         sidecar_(describe_source(info_, survey, options_)) {}
 
   Sidecar run() {
-    const std::jthread memory =
+    memory_ =
         beside_resident([this](ResidentVolume& resident) { resident.expect_streams(region_count(info_.domain())); });
     FileRequest request = prepare();
     sidecar_.timing.survey_s = seconds_since(started_);
@@ -177,14 +160,17 @@ class SurveyedConversion {
     // Most of the file goes to the device while the rest is made.
     const std::jthread writeback = start_beside([this] { parts_.output.volume().start_writeback(); });
     const std::jthread release = released(stores_.rows.give_up_cache());
-    const std::jthread free = beside_resident([](ResidentVolume& resident) { resident.free_memory(); });
+    memory_ = beside_resident([](ResidentVolume& resident) { resident.free_memory(); });
     write_inner_nodes(encoded);
     describe_file(sidecar_, info_, survey_, options_, background_, head_, encoded, shown_);
     say_result(sidecar_, options_, parts_.control.notice);
     digest(encoded);
-    const std::jthread unmap = released(std::move(encoded.mapped));
+    std::jthread unmap = released(std::move(encoded.mapped));
     sidecar_.timing.encode_s = seconds_since(encoding);
-    if (options_.certify == Certify::gradient) certify_gradient();
+    if (options_.certify == Certify::gradient) {
+      if (unmap.joinable()) unmap.join();  // there is no room for both
+      certify_gradient();
+    }
     commit(encoded);
     return sidecar_;
   }
@@ -292,18 +278,22 @@ class SurveyedConversion {
   EncodedFile encode(FileRequest request) {
     check();
     const auto voxels = static_cast<std::uint64_t>(info_.domain().voxels());
-    EncodedFile encoded =
-        encode_file({parts_.source, reading_.encode, reading_.reading, stores_.rows, parts_.work, parts_.output,
-                     parts_.journal, options_.scene ? visible_values(options_.scene->scene) : "", stream_,
-                     [&] { team_.run([&] { start_pass(parts_.control, "encode", voxels); }); }, parts_.control.notice,
-                     parts_.control.planned, [&](FileRequest& outside, double cut) { move_window(outside, cut); },
-                     parts_.control.coder, options_.memory},
-                    std::move(request));
+    EncodedFile encoded = encode_file(
+        {parts_.source, reading_.encode, reading_.reading, stores_.rows, parts_.work, parts_.output, parts_.journal,
+         options_.scene ? visible_values(options_.scene->scene) : "", stream_, [&] { start_encoding(voxels); },
+         parts_.control.notice, parts_.control.planned,
+         [&](FileRequest& outside, double cut) { move_window(outside, cut); }, parts_.control.coder, options_.memory},
+        std::move(request));
     const Message& notice = encoded.file.size.notice;
     // Of a lossless file that nobody asked for say_result says all.
     const bool own_choice = options_.budget.kind == Budget::Kind::automatic && encoded.file.size.kind == "lossless";
     if (!notice.empty() && !own_choice && parts_.control.notice) parts_.control.notice(notice);
     return encoded;
+  }
+
+  void start_encoding(std::uint64_t voxels) {
+    if (memory_.joinable()) memory_.join();
+    team_.run([&] { start_pass(parts_.control, "encode", voxels); });
   }
 
   // All of the file but its leaves.
@@ -393,6 +383,7 @@ class SurveyedConversion {
   Shown shown_;
   GridHead head_;
   std::uint32_t checksum_ = 0;
+  std::jthread memory_;  // gets or frees that of the device
 };
 
 }  // namespace

@@ -53,7 +53,8 @@ WEIR_API weir_status weir_push_slab_device(weir_push* push, int64_t z0, int64_t 
  * (options->encoding packed, options->backend not WEIR_BACKEND_CPU, options->memory 1 GiB or more), its values stay
  * there: weir_push_end surveys and encodes them on that device, which takes 0.5 to 1 GB more of its memory (the most
  * where all is kept without loss), and only streams and figures cross the bus. The file has the same bytes. Of the
- * host's page-locked memory up to 96 MiB stay with the process, for the next step. */
+ * host's page-locked memory up to 96 MiB stay with the process, for the next step, and up to 1 GiB that the system
+ * takes back where it needs memory (MADV_FREE). */
 WEIR_API weir_status weir_push_device_memory(weir_push* push, uint64_t bytes, weir_error* error);
 /* weir_convert for values on the device, after the work queued in `stream`: begins a push, takes one slab and ends.
  * Where the device does the work (weir_push_device_memory) and values have no gaps, they are coded where they are. */

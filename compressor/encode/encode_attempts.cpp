@@ -100,7 +100,7 @@ bool finishes_regions(const EncodeJob& job, const FilePlan& file) {
          encodes_by_regions(job.source, file.packed.has_value(), job.rows.team(), job.journal != nullptr);
 }
 
-// For the streams that a device makes of a volume in a memory file system, whose space is reserved. Null where what is
+// For all that is written of a volume on a device to a memory file system, whose space is reserved. Null where what is
 // left of the memory would not hold it, beside the records.
 std::unique_ptr<MappedWrites> mapped_writes(const EncodeJob& job, const FilePlan& file) {
   if (job.source.resident() == nullptr || !job.rows.team().alone()) return nullptr;

@@ -19,8 +19,13 @@ class RecordBatch {
   /// `records` may be null until write_to(); `sums`: whether sum() is asked for.
   explicit RecordBatch(RecordSink* records, bool sums = true) : records_(records), sums_(sums) {}
 
-  /// Where further ones go, after flush().
-  void write_to(RecordSink& records) { records_ = &records; }
+  /// Where further ones go, after flush(). What an exception has kept from it is dropped: it is not theirs.
+  void write_to(RecordSink& records) {
+    records_ = &records;
+    count_ = 0;
+    held_.clear();
+    known_ = {};
+  }
   void add(std::uint64_t ordinal, const LeafValues& decoded, const Box& node, const Box& inside,
            const DecodedErrors& loss);
   /// One that is known already, and stays until flush().

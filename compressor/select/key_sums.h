@@ -23,11 +23,12 @@ struct PurchaseSum {
   }
 };
 
-/// The whole part of a number from 0 to below 2^128, by its bits: a conversion by the compiler is a call.
+/// The whole part of a number from 0, of either sign, to below 2^128, by its bits: a conversion by the compiler is a
+/// call.
 inline PurchaseSum::Weight whole_part(double value) {
   constexpr int kMantissaBits = 52;
   const auto bits = std::bit_cast<std::uint64_t>(value);
-  const int shift = static_cast<int>(bits >> kMantissaBits) - 1023 - kMantissaBits;
+  const int shift = static_cast<int>(bits >> kMantissaBits & 0x7FFU) - 1023 - kMantissaBits;
   if (shift < -kMantissaBits) return 0;  // below 1
   const std::uint64_t digits = (bits & ((std::uint64_t{1} << kMantissaBits) - 1)) | std::uint64_t{1} << kMantissaBits;
   return shift < 0 ? digits >> -shift : PurchaseSum::Weight{digits} << shift;

@@ -13,7 +13,7 @@ namespace weir {
 
 /// The first bytes of a file, whose space is reserved, so that no write finds the file system full. While it is there
 /// the pages that are written count as the process's memory; a process that truncates the file meanwhile ends this one
-/// by SIGBUS, as with any mapping. All other calls are the file's.
+/// by SIGBUS, as with any mapping. memory() is the mapping; all other calls are the file's.
 class MappedWrites final : public File {
  public:
   /// `file` must outlive the object. Null where it cannot be mapped.

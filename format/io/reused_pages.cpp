@@ -31,35 +31,41 @@ void ReusedPages::give_back(std::span<std::byte> mapping) noexcept {
   if (mapping.empty()) return;
   const bool held = mapping.size() >= kLeast && mapping.size() <= kMostHeld &&
                     ::madvise(mapping.data(), mapping.size(), MADV_FREE) == 0;
-  const std::lock_guard lock(mutex_);
-  try {
-    if (held) {
-      while (bytes_ + mapping.size() > kMostHeld) unmap_oldest();
-      mappings_.push_back(mapping);
-      bytes_ += mapping.size();
-      return;
-    }
-  } catch (const std::exception&) {
-    // No memory for the list.
-  }
-  ::munmap(mapping.data(), mapping.size());
+  if (!held || !hold(mapping)) ::munmap(mapping.data(), mapping.size());
+  unmap_down_to(kMostHeld);
 }
 
-void ReusedPages::clear() {
+bool ReusedPages::hold(std::span<std::byte> mapping) noexcept {
   const std::lock_guard lock(mutex_);
-  while (!mappings_.empty()) unmap_oldest();
+  try {
+    mappings_.push_back(mapping);
+  } catch (const std::exception&) {  // no memory for the list
+    return false;
+  }
+  bytes_ += mapping.size();
+  return true;
 }
+
+void ReusedPages::clear() { unmap_down_to(0); }
 
 std::size_t ReusedPages::held_bytes() const {
   const std::lock_guard lock(mutex_);
   return bytes_;
 }
 
-void ReusedPages::unmap_oldest() {
-  const std::span<std::byte> oldest = mappings_.front();
-  mappings_.pop_front();
-  bytes_ -= oldest.size();
-  ::munmap(oldest.data(), oldest.size());
+void ReusedPages::unmap_down_to(std::size_t bytes) noexcept {
+  const auto take_oldest = [&]() -> std::span<std::byte> {
+    const std::lock_guard lock(mutex_);
+    if (bytes_ <= bytes) return {};
+    const std::span<std::byte> oldest = mappings_.front();
+    mappings_.pop_front();
+    bytes_ -= oldest.size();
+    return oldest;
+  };
+  // Which takes long, and not under the lock.
+  for (std::span<std::byte> oldest = take_oldest(); !oldest.empty(); oldest = take_oldest()) {
+    ::munmap(oldest.data(), oldest.size());
+  }
 }
 
 }  // namespace weir

@@ -36,7 +36,8 @@ class ReusedPages {
   std::size_t held_bytes() const;
 
  private:
-  void unmap_oldest();
+  bool hold(std::span<std::byte> mapping) noexcept;
+  void unmap_down_to(std::size_t bytes) noexcept;
 
   mutable std::mutex mutex_;
   std::deque<std::span<std::byte>> mappings_;  // the oldest first

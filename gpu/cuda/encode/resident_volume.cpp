@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <memory>
 #include <optional>
 #include <span>
@@ -63,7 +64,7 @@ class DeviceVolume final : public ResidentVolume {
         memory->hold(StreamMemory::kRegionBlocks, StreamMemory::kRegionBytes, true);
       }
       for (std::unique_ptr<StreamMemory>& memory : taken) state_->streams.give_back(std::move(memory));
-    } catch (const Error&) {
+    } catch (const std::exception&) {
       // Whoever needs it will see.
     }
   }

@@ -83,5 +83,28 @@ TEST(RecordBatch, WritesKnownRecordsAmongOthers) {
   EXPECT_EQ(batch.sum(), sum);
 }
 
+// An exception keeps a thread's records from being flushed; the next region may be this thread's all the same.
+TEST(RecordBatch, DropsWhatWasNotFlushedWhereFurtherRecordsGoElsewhere) {
+  std::vector<LeafRecord> known(3);
+  known[0].mean = 5;
+  known[2].mean = 7;
+  LeafValues values;
+  values.fill(3);
+  const Box node{{0, 0, 0}, {8, 8, 8}};
+  for (const bool knows : {true, false}) {
+    SCOPED_TRACE(knows);
+    RecordStore first(test::CrashFileSystem().create_unnamed("records"), 4);
+    RecordStore second(test::CrashFileSystem().create_unnamed("records"), 4);
+    RecordBatch batch(&first);
+    knows ? batch.add(0, known[0]) : batch.add(0, values, node, node, {});
+    batch.write_to(second);
+    batch.add(2, known[2]);
+    batch.flush();
+    EXPECT_EQ(first.read(0, 1).front().mean, 0);
+    EXPECT_EQ(second.read(0, 1).front().mean, 0);
+    EXPECT_EQ(second.read(2, 1).front().mean, 7);
+  }
+}
+
 }  // namespace
 }  // namespace weir::record_batch_test
