@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <vector>
 
+#include "compressor/outlook/budget_outlook.h"
+#include "format/base/index.h"
+
 namespace weir {
 
 double scaled_time(double sample_s, double sample_voxels, std::span<const double> parts_s, double part_voxels,
@@ -15,6 +18,10 @@ double scaled_time(double sample_s, double sample_voxels, std::span<const double
   if (part_s >= sample_s) return in_proportion;
   const double each = (sample_s - part_s) / (sample_voxels - part_voxels);
   return std::min(in_proportion, sample_s + each * (voxels - sample_voxels));
+}
+
+bool are_like_volume(Encoding encoding, double part_voxels) {
+  return encoding != Encoding::packed || part_voxels >= static_cast<double>(kLeastForecastBlocks * kLeafVoxels);
 }
 
 double pass_time(double work_s, std::size_t threads, double voxels, const ReadCost& cost) {

@@ -28,6 +28,12 @@ TEST(WorkTime, WithoutUsefulParts_IsInProportion) {
   EXPECT_DOUBLE_EQ(scaled_time(3, 100, nothing, 10, 1000), 30);
 }
 
+TEST(WorkTime, PackedPartsOfFewBlocks_AreNotLikeTheVolume) {
+  EXPECT_FALSE(are_like_volume(Encoding::packed, 16383 * 512.0));
+  EXPECT_TRUE(are_like_volume(Encoding::packed, 16384 * 512.0));
+  EXPECT_TRUE(are_like_volume(Encoding::automatic, 512.0));
+}
+
 TEST(WorkTime, Pass_WaitsForTheSlowerOfReadingAndWork) {
   EXPECT_DOUBLE_EQ(pass_time(5, 4, 1000, {0, 0, 4}), 5);
   EXPECT_DOUBLE_EQ(pass_time(5, 4, 1000, {0.012, 0, 4}), 12);
