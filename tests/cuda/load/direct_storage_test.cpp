@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "gpu/cuda/load/cufile.h"
+#include "tests/cuda/support/device_reads.h"
 #include "tests/support/temporary_directory.h"
 
 namespace weir::direct_storage_test {
@@ -44,7 +45,7 @@ TEST(DirectStorage, FailedRead_SaysTheErrorOfTheSystemOrOfCuFile) {
   EXPECT_EQ(cufile::read_failure(-5027, 0), "cuFile error 5027");
 }
 
-TEST(DirectStorage, RefusedRead_EndsThoseOfAllPieces) {
+void expect_end_of_reads(int threads) {
   const TemporaryDirectory directory;
   const std::string path = directory / "grid.nvdb";
   std::ofstream(path, std::ios::binary) << std::string(kPieces * kPiece, 'v');
@@ -52,14 +53,20 @@ TEST(DirectStorage, RefusedRead_EndsThoseOfAllPieces) {
   std::vector<std::byte> target(kPieces * kPiece);
   CopyTask task{file, 0, target.size(), target.data()};
   task.chunk_bytes = kPiece;
-  for (const int threads : {1, 4}) {
-    reads = 0;
-    task.threads = threads;
-    const std::string refusal = DirectStorage(refusing_library()).copy(task).refusal;
-    if (refusal.find("no direct reads of") != std::string::npos) GTEST_SKIP() << refusal;
-    EXPECT_EQ(refusal, "GPUDirect Storage: reading " + path + ": cuFile error 5027");
-    EXPECT_LE(reads, threads);
-  }
+  task.threads = threads;
+  reads = 0;
+  const std::string refusal = DirectStorage(refusing_library()).copy(task).refusal;
+  if (refusal.find("no direct reads of") != std::string::npos) GTEST_SKIP() << refusal;
+  EXPECT_EQ(refusal, "GPUDirect Storage: reading " + path + ": cuFile error 5027");
+  EXPECT_LE(reads, threads);
+}
+
+TEST(DirectStorage, RefusedRead_EndsThoseOfAllPieces) { expect_end_of_reads(1); }
+
+// Other threads enter the caller's context: without a device they fail, before or after the read does.
+TEST(DirectStorage, RefusedReadOfOneThread_EndsThoseOfAllThreads) {
+  WEIR_NEEDS_DEVICE();
+  expect_end_of_reads(4);
 }
 
 }  // namespace
