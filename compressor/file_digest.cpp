@@ -26,11 +26,13 @@ void hash_pieces(std::vector<Digest>& pieces, const Share& own, std::uint64_t by
 
 Digest digest_of_file(File& file, Team& team, const DigestAdvanced& advanced) {
   const std::uint64_t bytes = file.size();
+  const std::span<const std::byte> memory = file.memory();
   std::vector<Digest> pieces(piece_count(bytes));
   tbb::enumerable_thread_specific<std::vector<std::byte>> scratch{std::vector<std::byte>(kDigestScratchBytes)};
   const Share own = team.share(static_cast<std::int64_t>(pieces.size()));
   team.run([&] {
     hash_pieces(pieces, own, bytes, advanced, [&](std::size_t i) {
+      if (memory.size() == bytes) return piece_digest(file_piece(memory, i));
       const std::uint64_t offset = i * kDigestPieceBytes;
       return piece_digest(file, offset, std::min(kDigestPieceBytes, bytes - offset), scratch.local());
     });

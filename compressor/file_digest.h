@@ -17,7 +17,7 @@ namespace weir {
 /// ends the work.
 using DigestAdvanced = std::function<void(std::uint64_t bytes)>;
 
-/// Of all of `file`, each rank reading its share.
+/// Of all of `file`, each rank reading its share; nothing is read of one that lies in memory.
 Digest digest_of_file(File& file, Team& team, const DigestAdvanced& advanced = {});
 
 /// Of a file that is mapped, by this process alone; `trace`, where there is one, gets what each thread hashes.

@@ -325,9 +325,7 @@ class SurveyedConversion {
     const std::uint64_t bytes = encoded.file.size.bytes;
     const TraceSpan span(parts_.control.trace, "digest", bytes);
     // Of the finished bytes: what is hashed is what the file system holds.
-    const Digest digest = encoded.mapped ? digest_of_mapping(encoded.mapped->memory(), nullptr)
-                                         : digest_of_file(parts_.output.volume(), team_);
-    sidecar_.file = {bytes, encoded.file.plan.layout.grid, checksum_, digest.hex()};
+    sidecar_.file = {bytes, encoded.file.plan.layout.grid, checksum_, digest_of_file(volume_of(encoded), team_).hex()};
   }
 
   File& volume_of(const EncodedFile& encoded) { return encoded.mapped ? *encoded.mapped : parts_.output.volume(); }

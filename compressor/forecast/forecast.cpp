@@ -265,10 +265,11 @@ class Forecaster {
     std::vector<double> survey_s;
     std::vector<double> encode_s;
     const double part_voxels = parts.empty() ? 0 : parts.front().voxels;
-    for (const Part& part : parts) {
-      if (!are_like_volume(options_.encoding, part_voxels)) break;
-      survey_s.push_back(part.trial.survey_s);
-      encode_s.push_back(part.trial.encode_s);
+    if (are_like_volume(options_.encoding, part_voxels)) {
+      for (const Part& part : parts) {
+        survey_s.push_back(part.trial.survey_s);
+        encode_s.push_back(part.trial.encode_s);
+      }
     }
     f.survey_s =
         pass_time(scaled_time(trial.survey_s, sampled, survey_s, part_voxels, voxels), f.threads, voxels, cost);

@@ -15,16 +15,7 @@ std::span<std::byte> ReusedPages::take(std::size_t bytes) {
   constexpr std::size_t kMostTimes = 2;
   if (bytes < kLeast) return {};
   const std::lock_guard lock(mutex_);
-  auto best = mappings_.end();
-  for (auto mapping = mappings_.begin(); mapping != mappings_.end(); ++mapping) {
-    if (mapping->size() < bytes || mapping->size() / kMostTimes > bytes) continue;
-    if (best == mappings_.end() || mapping->size() < best->size()) best = mapping;
-  }
-  if (best == mappings_.end()) return {};
-  const std::span<std::byte> taken = *best;
-  mappings_.erase(best);
-  bytes_ -= taken.size();
-  return taken;
+  return held_.take(bytes, kMostTimes, [](const auto&) { return true; }).value_or(std::span<std::byte>());
 }
 
 void ReusedPages::give_back(std::span<std::byte> mapping) noexcept {
@@ -38,11 +29,10 @@ void ReusedPages::give_back(std::span<std::byte> mapping) noexcept {
 bool ReusedPages::hold(std::span<std::byte> mapping) noexcept {
   const std::lock_guard lock(mutex_);
   try {
-    mappings_.push_back(mapping);
+    held_.add(mapping.size(), mapping);
   } catch (const std::exception&) {  // no memory for the list
     return false;
   }
-  bytes_ += mapping.size();
   return true;
 }
 
@@ -50,22 +40,16 @@ void ReusedPages::clear() { unmap_down_to(0); }
 
 std::size_t ReusedPages::held_bytes() const {
   const std::lock_guard lock(mutex_);
-  return bytes_;
+  return held_.bytes();
 }
 
 void ReusedPages::unmap_down_to(std::size_t bytes) noexcept {
-  const auto take_oldest = [&]() -> std::span<std::byte> {
+  const auto take_oldest = [&] {
     const std::lock_guard lock(mutex_);
-    if (bytes_ <= bytes) return {};
-    const std::span<std::byte> oldest = mappings_.front();
-    mappings_.pop_front();
-    bytes_ -= oldest.size();
-    return oldest;
+    return held_.bytes() > bytes ? held_.take_oldest() : std::nullopt;
   };
   // Which takes long, and not under the lock.
-  for (std::span<std::byte> oldest = take_oldest(); !oldest.empty(); oldest = take_oldest()) {
-    ::munmap(oldest.data(), oldest.size());
-  }
+  while (const auto oldest = take_oldest()) ::munmap(oldest->data(), oldest->size());
 }
 
 }  // namespace weir

@@ -3,9 +3,10 @@
 #pragma once
 
 #include <cstddef>
-#include <deque>
 #include <mutex>
 #include <span>
+
+#include "format/base/held_pieces.h"
 
 namespace weir {
 
@@ -40,8 +41,7 @@ class ReusedPages {
   void unmap_down_to(std::size_t bytes) noexcept;
 
   mutable std::mutex mutex_;
-  std::deque<std::span<std::byte>> mappings_;  // the oldest first
-  std::size_t bytes_ = 0;                      // of all
+  HeldPieces<std::span<std::byte>> held_;
 };
 
 }  // namespace weir

@@ -42,18 +42,9 @@ std::optional<PinnedPool::Piece> PinnedPool::take(std::size_t bytes, std::string
 std::optional<PinnedPool::Piece> PinnedPool::take_held(std::size_t bytes, std::uint64_t context) {
   constexpr std::size_t kMostTimes = 4;
   const std::lock_guard lock(mutex_);
-  auto best = pieces_.end();
-  for (auto piece = pieces_.begin(); piece != pieces_.end(); ++piece) {
-    if (piece->context != context || piece->bytes < bytes || piece->bytes > kMostTimes * bytes) continue;
-    if (best == pieces_.end() || piece->bytes < best->bytes) best = piece;
-  }
-  if (best == pieces_.end()) {
-    free_oldest();
-    return std::nullopt;
-  }
-  std::optional<Piece> taken(std::move(*best));
-  pieces_.erase(best);
-  bytes_ -= taken->bytes;
+  std::optional<Piece> taken =
+      held_.take(bytes, kMostTimes, [context](const Piece& piece) { return piece.context == context; });
+  if (!taken) free_oldest();
   return taken;
 }
 
@@ -61,31 +52,27 @@ void PinnedPool::give_back(Piece piece) noexcept {
   if (piece.context == 0) return;
   if (piece.bytes > kMostHeld) return unlock(std::move(piece));
   const std::lock_guard lock(mutex_);
-  while (bytes_ + piece.bytes > kMostHeld) free_oldest();
+  const std::size_t bytes = piece.bytes;
+  while (held_.bytes() + bytes > kMostHeld) free_oldest();
   try {
-    pieces_.push_back(std::move(piece));
-    bytes_ += pieces_.back().bytes;
+    held_.add(bytes, std::move(piece));
   } catch (const std::exception&) {  // no memory: it is freed
     return;
   }
 }
 
 void PinnedPool::free_oldest() {
-  if (pieces_.empty()) return;
-  Piece oldest = std::move(pieces_.front());
-  pieces_.pop_front();
-  bytes_ -= oldest.bytes;
-  unlock(std::move(oldest));
+  if (std::optional<Piece> oldest = held_.take_oldest()) unlock(std::move(*oldest));
 }
 
 void PinnedPool::clear() {
   const std::lock_guard lock(mutex_);
-  while (!pieces_.empty()) free_oldest();
+  while (held_.bytes() > 0) free_oldest();
 }
 
 std::size_t PinnedPool::held_bytes() const {
   const std::lock_guard lock(mutex_);
-  return bytes_;
+  return held_.bytes();
 }
 
 }  // namespace weir

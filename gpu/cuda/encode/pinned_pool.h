@@ -4,11 +4,11 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <mutex>
 #include <optional>
 #include <string>
 
+#include "format/base/held_pieces.h"
 #include "gpu/cuda/load/pinned_memory.h"
 
 namespace weir {
@@ -41,8 +41,7 @@ class PinnedPool {
   void free_oldest();
 
   mutable std::mutex mutex_;
-  std::deque<Piece> pieces_;  // the oldest first
-  std::size_t bytes_ = 0;     // of all
+  HeldPieces<Piece> held_;
 };
 
 }  // namespace weir
