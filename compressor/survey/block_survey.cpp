@@ -287,21 +287,18 @@ void BlockSurvey::add(const Block& block, const Box& leaf_box, Sharing sharing) 
   tallies_.local().loss.add(block.loss);
 }
 
-bool BlockSurvey::take(const SurveyedBlocks& found, FoundLeaves& leaves, std::size_t at) {
-  const BlockSummary& summary = found.summaries[at];
-  const Index3 leaf = leaves.leaf(at);
-  if (summary.finite < kLeafVoxels || rows_.leaves().voxels(leaf).voxels() < kLeafVoxels) return false;
-  LeafRow& row = leaves.rows[at];
+bool BlockSurvey::take(const SurveyedBlock& found, const BlockSummary& summary, const Index3& leaf, Tally& tally,
+                       LeafRow& row, PackedLadder& ladder) const {
+  if (summary.finite < kLeafVoxels) return false;
   row = {};
   static_cast<BlockSummary&>(row) = summary;
-  Tally& tally = tallies_.local();
   if (row.uniform()) {
-    leaves.ladders[at] = LadderBuilder::uniform();
+    ladder = LadderBuilder::uniform();
   } else {
     const NearRungs near = ladders_->near_for(row, sample_.has(leaf));
-    const auto ladder = tally.builder(*ladders_).build_from(found.block(at), row, near);
-    if (!ladder) return false;
-    leaves.ladders[at] = *ladder;
+    const auto built = tally.builder(*ladders_).build_from(found, row, near);
+    if (!built) return false;
+    ladder = *built;
   }
   tally.finite += row.finite;
   tally.min = std::min(tally.min, row.min);
@@ -309,40 +306,51 @@ bool BlockSurvey::take(const SurveyedBlocks& found, FoundLeaves& leaves, std::si
   return true;
 }
 
-void BlockSurvey::take(const SurveyedBlocks& found, FoundLeaves& leaves) {
-  std::vector<std::uint8_t> taken(leaves.rows.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, taken.size(), 256), [&](const auto& range) {
+std::vector<std::uint32_t> BlockSurvey::take(const SurveyedBlocks& found, const Box& leaf_box) {
+  constexpr std::int64_t kRun = 128;  // rows and ladders of so many leaves stay in a core's cache
+  const NodeLattice& lattice = rows_.leaves();
+  const Index3 extent = leaf_box.extent();
+  const Index3 runs{ceil_div(extent.x, kRun), extent.y, extent.z};
+  tbb::enumerable_thread_specific<std::vector<std::uint32_t>> left;
+  tbb::parallel_for(tbb::blocked_range<std::int64_t>(0, volume(runs), 2), [&](const auto& range) {
     const TraceSpan span(trace_, "survey");
-    for (std::size_t at = range.begin(); at < range.end(); ++at) taken[at] = take(found, leaves, at) ? 1 : 0;
+    std::array<LeafRow, kRun> rows;
+    std::array<PackedLadder, kRun> ladders;
+    Tally& tally = tallies_.local();
+    for (std::int64_t run = range.begin(); run < range.end(); ++run) {
+      const Index3 place = index_at(run, runs);
+      const Index3 first{place.x * kRun, place.y, place.z};
+      const auto count = static_cast<std::size_t>(std::min(kRun, extent.x - first.x));
+      const auto begin = static_cast<std::size_t>(linear_index(first, extent));
+      for (std::size_t i = 0; i < count; ++i) {
+        const Index3 leaf = leaf_box.lo + first + Index3{static_cast<std::int64_t>(i), 0, 0};
+        const std::size_t at = begin + i;
+        const bool whole = lattice.voxels(leaf).voxels() == kLeafVoxels;
+        if (whole && take(found.block(at), found.summaries[at], leaf, tally, rows[i], ladders[i])) continue;
+        left.local().push_back(static_cast<std::uint32_t>(at));
+      }
+      const std::int64_t linear = lattice.linear(leaf_box.lo + first);
+      rows_.write(linear, std::span(rows).first(count));
+      rows_.ladders()->write(linear, std::span(ladders).first(count));
+    }
   });
-  for (std::size_t at = 0; at < taken.size(); ++at) {
-    if (taken[at] == 0) leaves.left.push_back(static_cast<std::uint32_t>(at));
-  }
+  std::vector<std::uint32_t> all;
+  for (const std::vector<std::uint32_t>& some : left) all.insert(all.end(), some.begin(), some.end());
+  return all;
 }
 
-void BlockSurvey::survey_left(FoundLeaves& leaves, std::uint32_t at, const float* block) {
+void BlockSurvey::survey_left(const Index3& leaf, const float* block) {
   const NodeLattice& lattice = rows_.leaves();
-  const Index3 leaf = leaves.leaf(at);
   const Box leaf_box{leaf, leaf + Index3{1, 1, 1}};
   const Box inside = lattice.voxels(leaf);
   LeafValues own;
   const Block alone{0, inside, in_domain_values(block, lattice.node_box(leaf), inside, own), {}};
-  const Leaves one(*this, alone, leaf_box, {&leaves.rows[at], 1}, {}, {&leaves.ladders[at], 1});
+  LeafRow row;
+  PackedLadder ladder;
+  const Leaves one(*this, alone, leaf_box, {&row, 1}, {}, {&ladder, 1});
   one.run(0, 1, tallies_.local());
-}
-
-void BlockSurvey::write(const FoundLeaves& leaves) {
-  const Box& box = leaves.leaf_box;
-  constexpr std::int64_t kRows = 8;
-  for (std::int64_t z = box.lo.z; z < box.hi.z; ++z) {
-    tbb::parallel_for(tbb::blocked_range<std::int64_t>(box.lo.y, box.hi.y, kRows), [&](const auto& range) {
-      const TraceSpan span(trace_, "write");
-      const Box part{{box.lo.x, range.begin(), z}, {box.hi.x, range.end(), z + 1}};
-      const auto at = static_cast<std::size_t>(linear_index(part.lo - box.lo, box.extent()));
-      rows_.write_box(part, std::span(leaves.rows).subspan(at));
-      rows_.ladders()->write_box(part, std::span(leaves.ladders).subspan(at));
-    });
-  }
+  rows_.write(lattice.linear(leaf), {&row, 1});
+  rows_.ladders()->write(lattice.linear(leaf), {&ladder, 1});
 }
 
 SurveyTally BlockSurvey::tally() const {

@@ -39,28 +39,11 @@ class BlockSurvey {
   /// Surveys all leaves of `leaf_box` (lattice positions), whose in-domain voxels are those of `block`. Each leaf once.
   void add(const Block& block, const Box& leaf_box, Sharing sharing);
 
-  /// The leaves of a box whose blocks a device has: take() fills what it can by what was found of them, and lists the
-  /// others, positions in the box, each of which is then surveyed by its 512 values in the order of a leaf, in any
-  /// order and by several threads; write() keeps all. Values are not counted: add_counts() does that.
-  struct FoundLeaves {
-    /// Of that box; what was there is overwritten.
-    void begin(const Box& box) {
-      leaf_box = box;
-      rows.resize(static_cast<std::size_t>(box.voxels()));
-      ladders.resize(rows.size());
-      left.clear();
-    }
-    Index3 leaf(std::size_t at) const {
-      return leaf_box.lo + index_at(static_cast<std::int64_t>(at), leaf_box.extent());
-    }
-    Box leaf_box;
-    std::vector<LeafRow> rows;
-    std::vector<PackedLadder> ladders;
-    std::vector<std::uint32_t> left;
-  };
-  void take(const SurveyedBlocks& found, FoundLeaves& leaves);
-  void survey_left(FoundLeaves& leaves, std::uint32_t at, const float* block);
-  void write(const FoundLeaves& leaves);
+  /// The leaves of a box whose blocks a device has: take() keeps what is found of them where that is enough, and gives
+  /// the others, positions in the box, each of which is then surveyed by its 512 values in the order of a leaf, in any
+  /// order and by several threads. Values are not counted: add_counts() does that.
+  std::vector<std::uint32_t> take(const SurveyedBlocks& found, const Box& leaf_box);
+  void survey_left(const Index3& leaf, const float* block);
   /// Takes the counts of all finite values of a volume whose blocks a device has.
   void add_counts(const RangeHistogram& histogram) { tallies_.local().histogram.merge(histogram); }
 
@@ -90,8 +73,9 @@ class BlockSurvey {
     std::unique_ptr<LadderBuilder> ladders;  // made where first needed
   };
   class Leaves;
-  // Whether what was found of a leaf is enough.
-  bool take(const SurveyedBlocks& found, FoundLeaves& leaves, std::size_t at);
+  // A leaf that lies wholly in the volume, by what was found of it. False where that is not enough.
+  bool take(const SurveyedBlock& found, const BlockSummary& summary, const Index3& leaf, Tally& tally, LeafRow& row,
+            PackedLadder& ladder) const;
   static ValueTable value_table(const SourceInfo& info);
 
   RowStore& rows_;

@@ -68,27 +68,30 @@ class ResidentSurvey {
  private:
   // A box that the device works on, and what is kept of it. Used again, for the memory that it has.
   struct Begun {
-    BlockSurvey::FoundLeaves leaves{};
+    Box leaf_box;
     std::unique_ptr<ResidentBlocks> blocks{};  // null: to be read
     std::vector<float> read{};                 // values of leaves that the device does not give
+
+    Index3 leaf(std::size_t at) const {
+      return leaf_box.lo + index_at(static_cast<std::int64_t>(at), leaf_box.extent());
+    }
   };
 
   void begin(const Box& box, Begun& begun) {
     throw_if_cancelled(options_);
-    begun.leaves.begin(box);
+    begun.leaf_box = box;
     begun.blocks = resident_.open(leaves_.nodes_box(box));
     if (begun.blocks) begun.blocks->begin_survey(ask_);
   }
 
   void end(Begun& begun) {
-    const Box& box = begun.leaves.leaf_box;
+    const Box& box = begun.leaf_box;
     if (const auto found = begun.blocks ? begun.blocks->end_survey() : std::nullopt) {
-      survey_.take(*found, begun.leaves);
-      const std::span<const std::uint32_t> left(begun.leaves.left);
+      const std::vector<std::uint32_t> all_left = survey_.take(*found, box);
+      const std::span<const std::uint32_t> left(all_left);
       for (std::size_t at = 0; at < left.size(); at += kMostLeft) {
         survey_left(begun, left.subspan(at, std::min(kMostLeft, left.size() - at)));
       }
-      survey_.write(begun.leaves);
     } else {
       survey_read(box);
     }
@@ -103,7 +106,7 @@ class ResidentSurvey {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, left.size(), 16), [&](const auto& range) {
       const TraceSpan span(options_.trace, "survey");
       for (std::size_t k = range.begin(); k < range.end(); ++k) {
-        survey_.survey_left(begun.leaves, left[k], values.data() + kLeafVoxels * k);
+        survey_.survey_left(begun.leaf(left[k]), values.data() + kLeafVoxels * k);
       }
     });
   }
@@ -113,8 +116,8 @@ class ResidentSurvey {
     if (const auto values = begun.blocks->values(left)) return *values;
     begun.read.resize(kLeafVoxels * left.size());
     std::vector<Index3> leaves;
-    for (const std::uint32_t at : left) leaves.push_back(begun.leaves.leaf(at));
-    read_blocks(source_, leaves_, begun.leaves.leaf_box, leaves, begun.read);
+    for (const std::uint32_t at : left) leaves.push_back(begun.leaf(at));
+    read_blocks(source_, leaves_, begun.leaf_box, leaves, begun.read);
     return begun.read;
   }
 
