@@ -55,10 +55,10 @@ void CutSearch::for_each_key(const Begin& begin, double least_key) const {
 
 template <typename Begin>
 void CutSearch::for_each_held(const Begin& begin) const {
-  const std::vector<std::span<const HeldSteps::Step>> chunks = held_->chunks();
-  tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t i) {
+  const std::vector<std::span<const HeldSteps::Step>> pieces = held_->steps();
+  tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t i) {
     const auto visit = begin();
-    for (const HeldSteps::Step& step : chunks[i]) visit(step);
+    for (const HeldSteps::Step& step : pieces[i]) visit(step);
   });
 }
 

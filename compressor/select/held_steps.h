@@ -14,7 +14,7 @@
 #include "compressor/select/key_counts.h"
 #include "compressor/select/leaf_choice.h"
 #include "compressor/select/step_keys.h"
-#include "ingest/plan/page_buffer.h"
+#include "compressor/select/step_pieces.h"
 
 namespace weir {
 
@@ -62,15 +62,7 @@ class HeldSteps {
   /// is 0.
   HeldSteps(const KeyRange& range, std::uint64_t most_bytes, std::uint64_t region_bytes, bool counts = false,
             double unit = 0)
-      : range_(range),
-        most_chunks_(most_bytes / kChunkBytes),
-        region_bytes_(region_bytes),
-        counting_(counts),
-        unit_(unit) {}
-  ~HeldSteps();
-  HeldSteps(const HeldSteps&) = delete;
-  HeldSteps& operator=(const HeldSteps&) = delete;
-
+      : range_(range), pieces_(most_bytes), region_bytes_(region_bytes), counting_(counts), unit_(unit) {}
   /// Memory for so many steps of this machine's threads.
   static std::uint64_t bytes_for(std::uint64_t steps);
 
@@ -91,25 +83,25 @@ class HeldSteps {
       }
     }
     /// How many it holds: those of a region are added by one thread, one after the other.
-    std::size_t size() const { return chunks_.size() * kChunkSteps - room_; }
+    std::size_t size() const { return pieces_.size() * kPieceSteps - room_; }
     /// Calls visit(step) for those from `first` on, so many.
     template <typename Visit>
     void for_each(std::size_t first, std::size_t count, const Visit& visit) const {
       for (std::size_t i = first; i < first + count; ++i) {
-        visit(reinterpret_cast<const Step*>(chunks_[i / kChunkSteps].bytes().data())[i % kChunkSteps]);
+        visit(reinterpret_cast<const Step*>(pieces_[i / kPieceSteps].data())[i % kPieceSteps]);
       }
     }
 
    private:
     friend class HeldSteps;
     bool grow();
-    std::vector<std::span<const Step>> chunks() const;
+    std::vector<std::span<const Step>> steps() const;
     void count_into(KeyCounts& counts) const;
 
     HeldSteps* all_;
-    std::vector<PageBuffer> chunks_;
+    std::vector<std::span<std::byte>> pieces_;
     Step* next_ = nullptr;
-    std::size_t room_ = 0;  // steps that the last chunk still takes
+    std::size_t room_ = 0;  // steps that the last piece still takes
     OutsideSums outside_;
     OutsideSums outside_gains_;
     std::unique_ptr<KeyCounts> counts_;  // of the range, in place of steps
@@ -129,11 +121,10 @@ class HeldSteps {
   OutsideSums outside_gains() const { return sum_of(&Part::outside_gains_); }
   double unit() const { return unit_; }
   /// In no order.
-  std::vector<std::span<const Step>> chunks() const;
+  std::vector<std::span<const Step>> steps() const;
 
  private:
-  static constexpr std::uint64_t kChunkBytes = std::uint64_t{1} << 18U;
-  static constexpr std::size_t kChunkSteps = kChunkBytes / sizeof(Step);
+  static constexpr std::size_t kPieceSteps = StepPieces::kPieceBytes / sizeof(Step);
 
   OutsideSums sum_of(OutsideSums Part::*sums) const {
     OutsideSums sum;
@@ -142,11 +133,10 @@ class HeldSteps {
   }
 
   KeyRange range_;
-  std::uint64_t most_chunks_;
+  StepPieces pieces_;
   std::uint64_t region_bytes_;
   bool counting_;
   double unit_;
-  std::atomic<std::uint64_t> chunk_count_ = 0;
   std::atomic<bool> overflown_ = false;
   tbb::enumerable_thread_specific<Part> parts_{[this] { return Part(*this); }};
 };

@@ -37,6 +37,19 @@ double distance(Metric metric, const BrickRange& range, float background) {
   return 0;
 }
 
+// Rank of the brick of so many leaves along an axis that holds a leaf, in its region.
+template <std::int64_t kSide>
+std::uint32_t brick_of(const Index3& leaf) {
+  constexpr std::int64_t kBricks = kLowerLeaves / kSide;
+  const auto along = [](std::int64_t at) { return (at & (kLowerLeaves - 1)) / kSide; };
+  return static_cast<std::uint32_t>(
+      linear_index({along(leaf.x), along(leaf.y), along(leaf.z)}, {kBricks, kBricks, kBricks}));
+}
+
+std::uint32_t brick_of(const Index3& leaf, std::int64_t side) {
+  return side == 1 ? brick_of<1>(leaf) : side == 2 ? brick_of<2>(leaf) : brick_of<4>(leaf);
+}
+
 // The widths that an encoding may use for a leaf, narrowest first.
 std::span<const LeafWidth> widths_of(Encoding encoding) {
   static constexpr std::array kWidths{LeafWidth::bits1, LeafWidth::bits2,  LeafWidth::bits4,
@@ -246,7 +259,6 @@ void GainRule::add_steps(const LeafRow& row, std::int64_t voxels, float tile, co
 void GainRule::gains(const TreeRegions& tree, const RegionRows& rows, RegionGains& out, double least_key) const {
   const NodeLattice& leaves = tree.leaves;
   const std::int64_t side = metric == Metric::sse ? 1 : brick_leaves;
-  const std::int64_t bricks = kLowerLeaves / side;
   out.clear();
   const bool whole = are_whole(leaves, rows.leaf_box());
   SharedValues& region = out.shared;
@@ -256,13 +268,10 @@ void GainRule::gains(const TreeRegions& tree, const RegionRows& rows, RegionGain
     lengths.emplace(region.means, *packed);
   }
   rows.for_each([&](const Index3& leaf, const LeafRow& row) {
-    const Index3 node = leaves.first + leaf;
-    const Index3 entry{node.x & (kLowerLeaves - 1), node.y & (kLowerLeaves - 1), node.z & (kLowerLeaves - 1)};
     const std::int64_t voxels = whole ? kLeafVoxels : leaves.voxels(leaf).voxels();
     LeafGain gain;
     gain.position = static_cast<std::uint16_t>(tree.mask_position(leaf));
-    gain.brick = static_cast<std::uint32_t>(
-        linear_index({entry.x / side, entry.y / side, entry.z / side}, {bricks, bricks, bricks}));
+    gain.brick = brick_of(leaves.first + leaf, side);
     const bool corner = is_corner(leaves, leaf);
     const float tile = packed ? region.value : fill.leaf_value(row);
     gain.exact = fill.exact(row, voxels, tile);

@@ -51,6 +51,7 @@ void RegionKeys::summarize_region(std::int64_t index, const RegionRows& rows, co
   const std::optional<float> packed = rule_.packed ? std::optional(gains.shared.value) : std::nullopt;
   const float tile = packed ? *packed : tile_value(rule_.fill, builder.sums);
   region.packed_value = tile;
+  if (packed) region.packed_means = gains.shared.means;
   const auto dropped_value = [&](const LeafRow& row) { return packed ? *packed : rule_.fill.leaf_value(row); };
   const bool whole = are_whole(tree_.leaves, rows.leaf_box());
   bool exact = true;

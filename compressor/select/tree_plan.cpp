@@ -191,7 +191,7 @@ void plan_packed(const GainRule& rule, TreeRegions& tree, const RegionRows& rows
                  std::int64_t index, PlannedStreamsStore& streams) {
   Region& region = tree.regions[static_cast<std::size_t>(index)];
   if (!region.open) return;
-  const SharedValues shared = shared_values(rows, tree.leaves, rule.fill);
+  const SharedValues shared{region.packed_value, region.packed_means};
   auto planned = std::make_unique<PlannedStreams>(plan_streams(rows, tree, shared, *rule.packed, choices));
   streams.write(index, *planned);
   const StreamPlaces places(std::move(planned));

@@ -11,6 +11,7 @@
 #include "compressor/leaf/fill.h"
 #include "format/base/index.h"
 #include "format/leaf/bounds.h"
+#include "format/packed/block_constants.h"
 
 namespace weir {
 
@@ -74,6 +75,7 @@ struct Region {
   std::uint64_t first_byte = 0;  ///< of that leaf, from the first leaf of the file
   std::uint32_t leaf_bytes = 0;  ///< of its kept leaves; of a packed region its chunk
   float packed_value = 0;        ///< of a packed file: what its blocks read that have no stream
+  MeanRange packed_means;        ///< and the range of the others' means
   double squared_error = 0;      ///< of the finite voxels that read a tile
 };
 

@@ -41,18 +41,18 @@ TEST(HeldSteps, KeepsStepsOfItsRangeAndSumsTheBytesOfOthers) {
   part.add(HeldSteps::Step::opening(7, kRequiredKey, 1));
   part.add(step(8, 0, 7, 0));  // never bought
   ASSERT_TRUE(held.complete());
-  const auto chunks = held.chunks();
-  ASSERT_EQ(chunks.size(), 1U);
-  ASSERT_EQ(chunks[0].size(), 2U);
-  EXPECT_EQ(chunks[0][0].region, 3);
-  EXPECT_TRUE(chunks[0][0].opens());
-  EXPECT_EQ(chunks[0][0].bytes(kRegionBytes), kRegionBytes);
-  EXPECT_EQ(chunks[0][1].region, 4);
-  EXPECT_FALSE(chunks[0][1].opens());
-  EXPECT_EQ(chunks[0][1].bytes(kRegionBytes), 2144U);
-  EXPECT_EQ(chunks[0][1].position(), 4095U);
-  EXPECT_EQ(chunks[0][1].level(), kExactLevel);
-  EXPECT_EQ(chunks[0][1].gain, 0.25);
+  const auto pieces = held.steps();
+  ASSERT_EQ(pieces.size(), 1U);
+  ASSERT_EQ(pieces[0].size(), 2U);
+  EXPECT_EQ(pieces[0][0].region, 3);
+  EXPECT_TRUE(pieces[0][0].opens());
+  EXPECT_EQ(pieces[0][0].bytes(kRegionBytes), kRegionBytes);
+  EXPECT_EQ(pieces[0][1].region, 4);
+  EXPECT_FALSE(pieces[0][1].opens());
+  EXPECT_EQ(pieces[0][1].bytes(kRegionBytes), 2144U);
+  EXPECT_EQ(pieces[0][1].position(), 4095U);
+  EXPECT_EQ(pieces[0][1].level(), kExactLevel);
+  EXPECT_EQ(pieces[0][1].gain, 0.25);
   const OutsideSums outside = held.outside();
   EXPECT_TRUE(outside[OutsideSums::below].weight == 200U);
   EXPECT_EQ(outside[OutsideSums::below].items, 2U);
@@ -84,8 +84,8 @@ TEST(HeldSteps, HoldsWhatManyThreadsAdd) {
   ASSERT_TRUE(held.complete());
   std::vector<bool> seen(kSteps);
   std::int64_t count = 0;
-  for (const auto chunk : held.chunks()) {
-    for (const HeldSteps::Step& found : chunk) {
+  for (const auto piece : held.steps()) {
+    for (const HeldSteps::Step& found : piece) {
       EXPECT_FALSE(seen[static_cast<std::size_t>(found.region)]) << found.region;
       seen[static_cast<std::size_t>(found.region)] = true;
       ++count;
@@ -100,7 +100,7 @@ TEST(HeldSteps, TakesNoMoreThanItMay) {
   while (held.complete() && steps < 100'000) held.part().add(step(steps++, 1.5, 1, 1));
   constexpr std::int64_t kOfAMiB = 4 * (kMiB / 4 / sizeof(HeldSteps::Step));
   EXPECT_EQ(steps, kOfAMiB + 1);
-  EXPECT_TRUE(held.chunks().empty());
+  EXPECT_TRUE(held.steps().empty());
 }
 
 TEST(HeldSteps, CountsWhatItCannotHold) {
