@@ -144,7 +144,7 @@ void Service::run() {
   viewer_.configure(config_.service);
   runner_.resume_thumbnails();
   watch_trees();
-  history_.keep(config_.service.history_days);
+  history_.keep(config_.service.history_days, config_.watches);
   await_signal();
   feed_watchdog();
   checkpoint_when_due();
@@ -180,7 +180,7 @@ void Service::reload() {
   notifier_.send("READY=1");
 }
 
-// None where it is refused.
+// None where it is refused: then the log goes on in the file that it has, which may have been renamed.
 std::optional<DaemonConfig> Service::load_again() {
   try {
     DaemonConfig config = load_();
@@ -189,8 +189,17 @@ std::optional<DaemonConfig> Service::load_again() {
     return config;
   } catch (const Error& error) {
     ++state_.rejected_reloads;
+    reopen_log();
     log_.error("reload-rejected", {{"reason", error.what()}, {"notice", "the configuration before stays"}});
     return std::nullopt;
+  }
+}
+
+void Service::reopen_log() {
+  try {
+    log_.reopen(config_.service);
+  } catch (const Error& error) {  // the open one goes on
+    log_.error("reload-rejected", {{"reason", error.what()}, {"notice", "the log goes on in the file it has"}});
   }
 }
 
@@ -212,7 +221,7 @@ void Service::apply(DaemonConfig config) {
   runner_.configure(config_);
   viewer_.configure(config_.service);
   watch_trees();
-  history_.keep(config_.service.history_days);
+  history_.keep(config_.service.history_days, config_.watches);
   runner_.wake();
   log_.info("reload", {{"config", config_.path}, {"watches", trees_.size()}});
 }

@@ -46,6 +46,7 @@ class Service {
   void await_signal();
   void reload();
   std::optional<DaemonConfig> load_again();
+  void reopen_log();
   void apply(DaemonConfig config);
   void shut_down();
   void feed_watchdog();

@@ -2,7 +2,6 @@
 #include "daemon/config/config_names.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "daemon/jobs/conversion_task.h"
@@ -207,8 +206,7 @@ void WatchedTree::list_known_jobs() {
 void WatchedTree::look_at_known_jobs() {
   if (known_looked_at_ == known_.size()) return;
   // In a directory that is not there, as before it is mounted, all seems to be gone: then they are listed again.
-  std::error_code ignored;
-  if (!std::filesystem::is_directory(config_.directory, ignored)) {
+  if (!is_directory(config_.directory)) {
     known_looked_at_ = known_.size();
     return;
   }
@@ -216,7 +214,7 @@ void WatchedTree::look_at_known_jobs() {
   for (; known_looked_at_ < known_.size() && Clock::now() - begin < kTransactionTime; ++known_looked_at_) {
     const std::optional<Job> job = store_.job(known_[known_looked_at_]);
     if (!job || std::ranges::find(kForgottenStates, job->state) == kForgottenStates.end()) continue;
-    if (is_gone(job->source)) store_.remove(job->id);
+    if (is_gone_from(config_.directory, job->source)) store_.remove(job->id);
   }
 }
 
@@ -237,6 +235,7 @@ void WatchedTree::work_off(const std::vector<FileEvent>& events, std::size_t fir
       case FileEventKind::root_lost:
       case FileEventKind::root_back:
         known_listed_ = known_listed_ && event.kind != FileEventKind::root_back;
+        ready_ = ready_ || event.kind == FileEventKind::root_back;  // jobs waited for it
         log_.warn(
             "watch",
             {{"watch", config_.label},
@@ -383,6 +382,7 @@ void WatchedTree::gone(const std::string& path) {
   const auto job = store_.find(config_.label, path);
   // A done job is the record of its result; a running one finds out by itself.
   if (!job || job->state == JobState::done || job->state == JobState::running) return;
+  if (!is_directory(config_.directory)) return;  // once it is back, the file is found again, or the job forgotten
   store_.remove(job->id);
   written_.emplace_back([this, path, id = job->id] { log_.info("source-gone", {{"job", id}, {"source", path}}); });
 }

@@ -36,8 +36,8 @@ void weir_grid::take_sidecar(std::string text) {
   }
 }
 
-const LeafTable& weir_grid::table() const {
+GridSamples& weir_grid::samples() const {
   const std::scoped_lock lock(mutex_);
-  if (!table_) table_.emplace(grid());
-  return *table_;
+  if (!samples_) samples_.emplace(grid());
+  return *samples_;
 }

@@ -10,9 +10,9 @@
 #include "bindings/c/weir.h"
 #include "format/nanovdb/nvdb_file.h"
 #include "format/sidecar/sidecar.h"
-#include "gpu/volume/leaf_table.h"
+#include "gpu/volume/grid_samples.h"
 
-/// Everything but the table is set by the constructor and then only read.
+/// Everything but the samples is set by the constructor and then only read.
 struct weir_grid {
  public:
   /// Maps `path`. Throws Error(input).
@@ -26,7 +26,7 @@ struct weir_grid {
   const weir::Sidecar* sidecar() const { return sidecar_ ? &*sidecar_ : nullptr; }
   const char* sidecar_text() const { return sidecar_ ? text_.c_str() : nullptr; }
   /// Built by the first call. Thread-safe.
-  const weir::LeafTable& table() const;
+  weir::GridSamples& samples() const;
 
  private:
   void take_sidecar(std::string text);
@@ -36,5 +36,5 @@ struct weir_grid {
   std::string text_;
   std::optional<weir::Sidecar> sidecar_;
   mutable std::mutex mutex_;
-  mutable std::optional<weir::LeafTable> table_;
+  mutable std::optional<weir::GridSamples> samples_;
 };

@@ -339,7 +339,9 @@ enum { WEIR_FILTER_NEAREST = 0, WEIR_FILTER_TRILINEAR = 1 };
 
 /* Values at `count` positions (x, y, z), in voxels from the domain's lowest corner: voxel i covers [i, i + 1), its
  * centre is i + 0.5, a position p of the world is at (p - origin) / spacing - index_min + 0.5. Positions outside are
- * clamped to the domain; where one is NaN, so is its value. The first call builds a table of 4 bytes per 8^3 voxels. */
+ * clamped to the domain; where one is NaN, so is its value. The first call builds a table of 4 bytes per 8^3 voxels,
+ * and decodes all packed blocks, or gets a cache for those that are looked up, of 256 MiB at most. A grid without an
+ * active voxel is WEIR_ERROR_INPUT. */
 WEIR_API weir_status weir_sample(const weir_grid* grid, int32_t filter, const float* positions, size_t count,
                                  float* values, weir_error* error);
 

@@ -151,6 +151,13 @@ class WeirReader(VTKPythonAlgorithmBase):
             information.Set(Pipeline.TIME_STEPS(), times, len(times))
             information.Set(Pipeline.TIME_RANGE(), [times[0], times[-1]], 2)
 
+    def _certificate(self):
+        try:
+            return self._grid.certificate or {}
+        except weir.InputError as error:  # the values are there without it
+            vtkOutputWindow.GetInstance().DisplayWarningText(f"{error}\n")
+            return {}
+
     def _read(self, information):
         whole = information.Get(Pipeline.WHOLE_EXTENT())[1::2]
         there = [points - 1 for points in self._grid.level_shape(self._level_there_is())[::-1]]
@@ -169,7 +176,7 @@ class WeirReader(VTKPythonAlgorithmBase):
             values = numpy_to_vtk(self._grid.to_numpy(box, self._level_there_is()).reshape(-1))
             values.SetName(self._grid.name or "values")
             image.GetPointData().SetScalars(values)
-        for name, value in (self._grid.certificate or {}).items():
+        for name, value in self._certificate().items():
             if name in ("rmse", "max_abs", "psnr_db") and value is not None:
                 figure = vtkDoubleArray()
                 figure.SetName(f"weir_{name}")

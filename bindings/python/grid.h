@@ -19,7 +19,7 @@
 #include "format/nanovdb/nvdb_file.h"
 #include "format/remote/remote_grid.h"
 #include "format/sidecar/sidecar.h"
-#include "gpu/volume/leaf_table.h"
+#include "gpu/volume/grid_samples.h"
 #include "gpu/volume/volume_sampler.h"
 #include "ingest/source/volume_source.h"
 
@@ -82,8 +82,8 @@ class Grid {
     std::unique_ptr<RemoteGrid> remote;    ///< else null
     std::unique_ptr<VolumeSource> source;
     std::function<void()> interrupt;  ///< ends what is waited for, of what lies elsewhere; else empty
-    std::once_flag table_made;
-    std::optional<LeafTable> table;  ///< for samples, of a file
+    std::once_flag samples_made;
+    std::optional<GridSamples> samples;  ///< of a file
 
     const NvdbGrid& grid() const { return file != nullptr ? file->grid() : remote->grid(); }
     /// Throws Error(input) where the file was written to or cut since it was opened: its mapping may have other values,

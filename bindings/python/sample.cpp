@@ -19,14 +19,12 @@ constexpr std::size_t kGrain = 4096;
 
 // `positions`: x, y, z of one after the other.
 template <class Volume>
-void sample_all(const Volume& volume, std::span<const float> positions, float* values) {
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, positions.size() / 3, kGrain),
-                    [&](const tbb::blocked_range<std::size_t>& part) {
-                      for (std::size_t i = part.begin(); i < part.end(); ++i) {
-                        const float* const at = &positions[3 * i];
-                        values[i] = volume.smooth({at[0], at[1], at[2]});
-                      }
-                    });
+void sample_part(const Volume& volume, std::span<const float> positions, const tbb::blocked_range<std::size_t>& part,
+                 float* values) {
+  for (std::size_t i = part.begin(); i < part.end(); ++i) {
+    const float* const at = &positions[3 * i];
+    values[i] = volume.smooth({at[0], at[1], at[2]});
+  }
 }
 
 }  // namespace
@@ -46,8 +44,8 @@ py::array_t<float> Grid::sample(const py::array_t<float, py::array::c_style>& po
                            watch.stop_if_cancelled();
                            const std::span<const float> part = left.first(std::min(3 * kGrain, left.size()));
                            const DecodedBlocks blocks(grid, sampled_blocks(part, grid.index_bbox()));
-                           sample_all(FilteredVolume<DecodedBlocks>{blocks, filter}, part,
-                                      values + (positions.size() - left.size()) / 3);
+                           sample_part(FilteredVolume<DecodedBlocks>{blocks, filter}, part, {0, part.size() / 3},
+                                       values + (positions.size() - left.size()) / 3);
                            left = left.subspan(part.size());
                          }
                        });
@@ -58,8 +56,10 @@ py::array_t<float> Grid::sample(const py::array_t<float, py::array::c_style>& po
   const py::gil_scoped_release unlocked;
   file->require_unchanged();
   const FloatMode mode;
-  std::call_once(file->table_made, [&] { file->table.emplace(file->grid()); });
-  sample_all(VolumeSampler{file->table->view(), filter}, positions, values);
+  std::call_once(file->samples_made, [&] { file->samples.emplace(file->grid()); });
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, positions.size() / 3, kGrain), [&](const auto& part) {
+    file->samples->with_volume(filter, [&](const auto& volume) { sample_part(volume, positions, part, values); });
+  });
   return array;
 }
 

@@ -63,6 +63,9 @@ class HeldSteps {
   HeldSteps(const KeyRange& range, std::uint64_t most_bytes, std::uint64_t region_bytes, bool counts = false,
             double unit = 0)
       : range_(range), pieces_(most_bytes), region_bytes_(region_bytes), counting_(counts), unit_(unit) {}
+  HeldSteps(const HeldSteps&) = delete;
+  HeldSteps& operator=(const HeldSteps&) = delete;
+
   /// Memory for so many steps of this machine's threads.
   static std::uint64_t bytes_for(std::uint64_t steps);
 

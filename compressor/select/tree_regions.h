@@ -1,6 +1,6 @@
 // The inner levels of the tree over a domain, held in memory: one small record
 // per 128^3 region (a lower node or one upper-level tile) and per 4096^3 block
-// (an upper node or one root tile). 10^12 voxels are 477,000 regions, 46 MB.
+// (an upper node or one root tile). 10^12 voxels are 477,000 regions, 65 MB.
 #pragma once
 
 #include <cstddef>
@@ -75,7 +75,7 @@ struct Region {
   std::uint64_t first_byte = 0;  ///< of that leaf, from the first leaf of the file
   std::uint32_t leaf_bytes = 0;  ///< of its kept leaves; of a packed region its chunk
   float packed_value = 0;        ///< of a packed file: what its blocks read that have no stream
-  MeanRange packed_means;        ///< and the range of the others' means
+  MeanRange packed_means;        ///< and the range of the means of blocks that are not uniform
   double squared_error = 0;      ///< of the finite voxels that read a tile
 };
 

@@ -40,8 +40,8 @@ class BlockSurvey {
   void add(const Block& block, const Box& leaf_box, Sharing sharing);
 
   /// The leaves of a box whose blocks a device has: take() keeps what is found of them where that is enough, and gives
-  /// the others, positions in the box, each of which is then surveyed by its 512 values in the order of a leaf, in any
-  /// order and by several threads. Values are not counted: add_counts() does that.
+  /// the others, positions in the box. What is kept of those is anything until each is surveyed by its 512 values in
+  /// the order of a leaf, in any order and by several threads. Values are not counted: add_counts() does that.
   std::vector<std::uint32_t> take(const SurveyedBlocks& found, const Box& leaf_box);
   void survey_left(const Index3& leaf, const float* block);
   /// Takes the counts of all finite values of a volume whose blocks a device has.

@@ -66,7 +66,7 @@ class ResidentSurvey {
   }
 
  private:
-  // A box that the device works on, and what is kept of it. Used again, for the memory that it has.
+  // A box that the device works on. Used again, for the memory that it has.
   struct Begun {
     Box leaf_box;
     std::unique_ptr<ResidentBlocks> blocks{};  // null: to be read

@@ -19,8 +19,10 @@ constexpr double kDay_ms = 86'400'000;
 JobHistory::JobHistory(boost::asio::io_context& io, DiskTurns& turns, JobStore& store, const EventLog& log)
     : turns_(turns), store_(store), log_(log), timer_(io) {}
 
-void JobHistory::keep(double days) {
+void JobHistory::keep(double days, std::span<const WatchConfig> watches) {
   age_ms_ = static_cast<std::int64_t>(days * kDay_ms);
+  directories_.clear();
+  for (const WatchConfig& watch : watches) directories_[watch.label] = watch.directory;
   after(std::chrono::milliseconds(0), &JobHistory::look_through);
 }
 
@@ -37,12 +39,17 @@ void JobHistory::look_through() {
   step();
 }
 
+bool JobHistory::is_over(const Job& job) const {
+  const auto directory = directories_.find(job.watch);
+  return directory == directories_.end() ? is_gone(job.source) : is_gone_from(directory->second, job.source);
+}
+
 void JobHistory::step() {
   std::vector<Job> jobs;
   try {
     jobs = store_.over_since(age_ms_, at_, kPiece);
     store_.together([&] {
-      for (const Job& job : jobs) forgotten_ += is_gone(job.source) && store_.remove(job.id) ? 1 : 0;
+      for (const Job& job : jobs) forgotten_ += is_over(job) && store_.remove(job.id) ? 1 : 0;
     });
   } catch (const CorruptDatabase&) {
     throw;

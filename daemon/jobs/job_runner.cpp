@@ -125,7 +125,8 @@ bool JobRunner::start_next() {
 
 // The first that may start: a job may wait again while the processes of its last attempt still end, or for room.
 std::optional<Job> JobRunner::next_job(const WatchConfig& watch) const {
-  constexpr std::size_t kMostLooked = 100;  // for one that fits where the first does not
+  if (!is_directory(watch.directory)) return std::nullopt;  // WatchedTree wakes the runner once it is back
+  constexpr std::size_t kMostLooked = 100;                  // for one that fits where the first does not
   const std::size_t looked = full_disks_.empty() ? running_.size() + 1 : kMostLooked;
   for (const Job& job : store_.candidates(watch.label, watch.priority, looked)) {
     if (running_.contains(job.id)) continue;
@@ -151,7 +152,7 @@ void JobRunner::start(const WatchConfig& watch, const Job& job) {
   }
   scheduler_.started(watch.label);
   const auto now = identify_source(job.source, watch.convert_options);
-  if (now ? *now != job.identity : is_gone(job.source)) {
+  if (now ? *now != job.identity : is_gone_from(watch.directory, job.source)) {
     source_changed(job);
     return;
   }
@@ -245,7 +246,7 @@ void JobRunner::source_changed(const Job& job) {
   if (const auto now =
           identify_source(job.source, watch == nullptr ? std::vector<std::string>() : watch->convert_options)) {
     store_.observe(job.watch, job.source, *now, job.options);
-  } else if (is_gone(job.source)) {
+  } else if (watch == nullptr ? is_gone(job.source) : is_gone_from(watch->directory, job.source)) {
     store_.remove(job.id);
   }
   look_again_(job);

@@ -23,4 +23,14 @@ bool is_gone(const std::string& path) {
   return ::stat(path.c_str(), &status) == 0 ? !S_ISREG(status.st_mode) : says_missing(errno);
 }
 
+bool is_directory(const std::string& path) {
+  struct stat status {};
+  return ::stat(path.c_str(), &status) == 0 && S_ISDIR(status.st_mode);
+}
+
+bool is_gone_from(const std::string& directory, const std::string& path) {
+  // Once more, for a directory that comes back meanwhile.
+  return is_gone(path) && is_directory(directory) && is_gone(path);
+}
+
 }  // namespace weir

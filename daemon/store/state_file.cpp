@@ -114,10 +114,10 @@ Database open_whole(const std::string& path) {
   // Held until the file is closed: a second daemon is refused, and WAL needs no memory shared between processes,
   // which network file systems do not have.
   database.run("PRAGMA locking_mode=EXCLUSIVE");
+  check_ours(database, path);  // before anything is written
   database.run("PRAGMA journal_mode=WAL");
   database.run("PRAGMA synchronous=FULL");
   database.run("PRAGMA journal_size_limit=16777216");
-  check_ours(database, path);
   check_whole(database, path);
   database.add_function("problem_key", problem_key);
   Transaction made(database);

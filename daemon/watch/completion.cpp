@@ -80,7 +80,7 @@ CompletionRules completion_rules(const WatchConfig& watch, const std::string& pa
   rules.settle = std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(watch.settle_s));
   rules.expected_bytes = expected_bytes(watch, path);
   rules.marker = watch.marker;
-  if (rules.policy == Completion::rename) {
+  if (rules.policy == Completion::rename || rules.policy == Completion::close) {
     // What may not be read is for the job to say.
     rules.has_writer = [path] { return ::access(path.c_str(), R_OK) == 0 && FileWriters(path).some(); };
   }
@@ -175,7 +175,9 @@ CompletionAnswer FileCompletion::by_policy(const FileSample& sample, Time now) {
   switch (rules_.policy) {
     case Completion::close:
       if (writer_ == Writer::open) return its_close;
-      return writer_ == Writer::closed ? whole() : when_unchanged(rules_.settle, now);
+      if (writer_ == Writer::closed) return whole();
+      if (rules_.has_writer && rules_.has_writer()) return {State::waiting, asked_again(now), kHasWriter};
+      return when_unchanged(rules_.settle, now);
     case Completion::rename:
       return when_renamed(now);
     case Completion::marker:

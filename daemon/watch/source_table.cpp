@@ -3,11 +3,19 @@
 #include <sys/stat.h>
 
 #include <cerrno>
+#include <cstdint>
+#include <limits>
 #include <utility>
 
 #include "format/base/text.h"
 
 namespace weir {
+namespace {
+
+// Of no file.
+constexpr FileIdentity kNoFile{std::numeric_limits<std::uint64_t>::max(), std::numeric_limits<std::int64_t>::min(), 0};
+
+}  // namespace
 
 SourceTable::SourceTable(const WatchConfig& watch, WatchListener listener)
     : watch_(watch), listener_(std::move(listener)), filter_(watch) {}
@@ -37,7 +45,10 @@ SourceTable::Root SourceTable::look_at_root() {
   if (before || (first && !there)) listener_.event({FileEventKind::root_lost, watch_.directory});
   if (!there) return Root::missing;
   filter_ = PathFilter(watch_);
-  if (!first) listener_.event({FileEventKind::root_back, watch_.directory});
+  if (first) return Root::another;
+  listener_.event({FileEventKind::root_back, watch_.directory});
+  // What is there is found once more, though it is as it was: its jobs may be forgotten by now.
+  for (auto& [path, known] : known_) known.identity = kNoFile;
   return Root::another;
 }
 

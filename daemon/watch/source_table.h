@@ -32,8 +32,8 @@ class SourceTable {
   /// Whether the directory is there, as of the last look_at_root.
   bool up() const { return root_.has_value(); }
   enum class Root { missing, same, another };
-  /// Looks whether the directory is there and is the one it was, and reports what changed. Of another one, the
-  /// filter's paths are looked up anew.
+  /// Looks whether the directory is there and is the one it was, and reports what changed. Of one that is back, or
+  /// another one, the filter's paths are looked up anew, and the next look reports every file as found.
   Root look_at_root();
 
   /// Begins a look at everything; what neither saw() nor happened() names before end_look is looked for once more and

@@ -10,7 +10,7 @@ int main(int argc, char** argv) {
   if (argc < 2) return 2;
   try {
     const weir::NvdbFile file(argv[1]);        // mapped and checked: no later call leaves the file
-    const weir::LeafTable table(file.grid());  // 4 bytes for each 8^3 voxels
+    const weir::LeafTable table(file.grid());  // 4 bytes for each 8^3 voxels, and all packed blocks, decoded
     const weir::VolumeSampler volume{table.view(), weir::Filter::trilinear};
     for (int a = 2; a + 2 < argc; a += 3) {
       const weir::Float3 at{std::strtof(argv[a], nullptr), std::strtof(argv[a + 1], nullptr),

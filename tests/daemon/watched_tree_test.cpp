@@ -114,6 +114,41 @@ TEST_F(WatchedTreeTest, JobsOfADirectoryThatIsNotMountedYet_AreKept) {
   EXPECT_TRUE(store_.job(id));
 }
 
+TEST_F(WatchedTreeTest, JobsOfADirectoryThatGoesAwayAndComesBack_AreKept) {
+  std::filesystem::create_directory(watch().directory);
+  const std::string path = watch().directory + "/a_2x2x2_uint8.raw";
+  std::ofstream(path) << "12345678";
+  int woken = 0;
+  const WatchedTree tree{io_,    turns_, watch(),
+                         store_, log_,   WatchedTree::Reports{[&woken] { ++woken; }, [](std::int64_t) {}}};
+  ASSERT_TRUE(run_until([&] { return store_.find(watch().label, path).has_value(); }));
+  const std::int64_t id = store_.find(watch().label, path)->id;
+  std::filesystem::rename(watch().directory, directory_ / "away");
+  ASSERT_TRUE(run_until([&] { return !tree.status().up; }));
+  for (int i = 0; i < 200; ++i) io_.run_one_for(std::chrono::milliseconds(5));
+  ASSERT_TRUE(store_.job(id)) << "it was forgotten";
+  const int woken_before = woken;
+  std::filesystem::rename(directory_ / "away", watch().directory);
+  EXPECT_TRUE(run_until([&] { return woken > woken_before && store_.job(id)->state == JobState::waiting; }));
+}
+
+// Whoever forgot the job meanwhile: a service of an earlier version, or a user.
+TEST_F(WatchedTreeTest, FilesOfADirectoryThatComesBack_AreFoundWithoutTheirJobs) {
+  std::filesystem::create_directory(watch().directory);
+  const std::string path = watch().directory + "/a_2x2x2_uint8.raw";
+  std::ofstream(path) << "12345678";
+  const WatchedTree tree = this->tree();
+  ASSERT_TRUE(run_until([&] {
+    const auto job = store_.find(watch().label, path);
+    return job && job->state == JobState::waiting;
+  }));
+  std::filesystem::rename(watch().directory, directory_ / "away");
+  ASSERT_TRUE(run_until([&] { return !tree.status().up; }));
+  store_.remove(store_.find(watch().label, path)->id);
+  std::filesystem::rename(directory_ / "away", watch().directory);
+  EXPECT_TRUE(run_until([&] { return store_.find(watch().label, path).has_value(); }));
+}
+
 TEST_F(WatchedTreeTest, LogLevelDebug_TellsOfEachLook) {
   std::filesystem::create_directory(watch().directory);
   std::ofstream(watch().directory + "/a_2x2x2_uint8.raw") << "12345678";

@@ -2,6 +2,8 @@
 // host's memory, which the values do not come to; where the device fails they are read.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -87,6 +89,25 @@ TEST_F(Resident, ValuesOfALargerVolumeStayOnTheDevice) {
     const Result result = convert_by(nullptr, *source, options);
     EXPECT_EQ(result.file == expected.file, true);
     EXPECT_EQ(source->bytes_read(), 0U);
+  }
+}
+
+// A row of blocks is kept in parts; the device leaves blocks of both to the host: those with NaN, and those that end
+// beyond the volume.
+TEST_F(Resident, ARowOfManyBlocksGivesTheSameFileAsOnTheHost) {
+  constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+  MemoryVolume volume({{-3, 5, 130}, {1100, 21, 147}}, [&](const Index3& i) {
+    const bool without_value = (i.x == 40 || i.x == 1050) && i.y < 12;
+    return without_value ? kNaN : static_cast<float>(std::max(0.0, waves(i, 5)));
+  });
+  for (const NamedBudget& c : budgets()) {
+    SCOPED_TRACE(c.name);
+    ConversionOptions options = with(c.budget);
+    options.resume = Resume::off;
+    options.non_finite = NonFinitePolicy::keep;
+    const Result expected = convert_by(nullptr, volume, options);
+    const std::unique_ptr<VolumeSource> source = on_device(volume);
+    EXPECT_EQ(convert_by(nullptr, *source, options).file == expected.file, true);
   }
 }
 

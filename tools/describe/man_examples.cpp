@@ -29,7 +29,7 @@ constexpr ManExample kManExamples[] = {
     {"sweep", "Error and size at several rates, as a table and a plot:",
      "weir sweep cloud_128x128x128_float32.raw --rates 20,10,8,4 -o sweep"},
     {"watch", "See whether a configuration is right and its directories can be written to, as the service's user:",
-     "sudo -u weir weir watch --check /etc/weir/run42.toml"},
+     "sudo -u weir STATE_DIRECTORY=/var/lib/weir/run42 weir watch --check /etc/weir/run42.toml"},
     {"watch", "Convert what appears, in the foreground:", "weir watch weir.toml"},
     {"jobs", "What failed, and why:", "weir jobs --state failed"},
     {"jobs", "Of a service with an address or token of its own:", "weir jobs --config /etc/weir/run42.toml"},

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import logging
 import math
 import os
 import re
@@ -14,7 +15,7 @@ from xarray.backends import BackendArray, BackendEntrypoint
 from xarray.core import indexing
 
 from . import xarray_accessor as _xarray_accessor  # noqa: F401
-from .errors import UsageError
+from .errors import InputError, UsageError
 from .options import is_url
 
 if TYPE_CHECKING:
@@ -162,9 +163,18 @@ def _variable_name(grid_name: str, taken: Iterable[str]) -> str:
     return _UNNAMED
 
 
+def _sidecar(grid: Grid) -> dict[str, Any]:
+    """What the sidecar says; nothing where there is none, or one of another file or a damaged one, which is logged."""
+    try:
+        return grid.sidecar or {}
+    except InputError as error:
+        logging.getLogger("weir").warning("%s; its values are read without names, units and error", error)
+        return {}
+
+
 def data_array(grid: Grid, level: int = 0, decode_times: bool = True) -> xarray.DataArray:
     """What Grid.to_xarray returns; decode_times as of xarray.open_dataset: whether a time is a date, not a number."""
-    sidecar = grid.sidecar or {}
+    sidecar = _sidecar(grid)
     source = sidecar.get("source", {})
     names = _axis_names(source)
     values = indexing.LazilyIndexedArray(GridArray(grid, level))

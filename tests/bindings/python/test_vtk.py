@@ -1,6 +1,7 @@
 """bindings/paraview/weir_reader.py as a source of plain VTK: values, placement, pieces, series, errors."""
 
 import gc
+import shutil
 import sys
 import unittest
 
@@ -93,6 +94,17 @@ class Reader(FolderTest):
                 self.assertLess(image.GetNumberOfPoints(), whole.size)
                 found[z0 : z1 + 1, y0 : y1 + 1, x0 : x1 + 1] = values_of(image)
             self.assertTrue(same(found, whole))
+
+    def test_the_sidecar_of_another_file_is_left_out(self):
+        values = ramp(20, 16, 12)
+        grid = self.lossless(values)
+        other = self.lossless(ramp(8, 8, 8), "b.nvdb")
+        shutil.copy(f"{other.path}.json", f"{grid.path}.json")
+        images = []
+        told = self.told(lambda: images.append(self.read(grid.path)))
+        self.assertEqual(told.partition(": is of a file of")[:2], ("a.nvdb.json", ": is of a file of"))
+        self.assertEqual(images[0].GetFieldData().GetNumberOfArrays(), 0)
+        self.assertTrue(same(values_of(images[0]), values.astype(numpy.float32)))
 
     def test_the_certificate_is_in_the_field_data(self):
         weir.convert(noise((80, 64, 96), numpy.float32), self.folder / "a.nvdb", rate=6)

@@ -1,6 +1,7 @@
 """Grid.to_xarray and xarray.open_dataset(engine="weir"): coordinates and units as in the source, values on demand."""
 
 import pickle
+import shutil
 import unittest
 import unittest.mock
 
@@ -29,6 +30,17 @@ class ToXarray(FolderTest):
         self.assertTrue(same(array.values, values))
         self.assertEqual(float(array.sel(z=-26, y=21, x=10.5)), values[2, 1, 1])
         self.assertEqual(float(array.sel(z=-25.9, y=21.2, x=10.4, method="nearest")), values[2, 1, 1])
+
+    def test_the_sidecar_of_another_file_is_logged_and_left_out(self):
+        values = ramp(12, 20, 28)
+        grid = self.lossless(values, spacing=(0.5, 1, 2))
+        other = self.lossless(ramp(8, 8, 8), "b.nvdb")
+        shutil.copy(f"{other.path}.json", f"{grid.path}.json")
+        with self.assertLogs("weir", "WARNING") as logged:
+            array = grid.to_xarray()
+        self.assertIn(f"{grid.path}.json: is of a file of", logged.output[0])
+        self.assertTrue(same(array.values, values))
+        self.assertEqual(array.attrs, {})
 
     def test_a_region_stays_where_it_was(self):
         values = ramp(12, 20, 28)

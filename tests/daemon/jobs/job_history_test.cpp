@@ -56,7 +56,7 @@ TEST_F(JobHistoryTest, ForgetsOldDoneJobsWhoseSourceIsGone) {
   store_.quarantine(failed, "bad");
   now_ += 3 * kDay_ms;
   done("young_and_gone", false);
-  history_.keep(2.5);
+  history_.keep(2.5, {});
   io_.run_for(milliseconds(100));
   EXPECT_EQ(sources(), (Names{"failed", "old_and_there", "young_and_gone"}));
   EXPECT_TRUE(read_file(service_.log_file).ends_with("info history forgotten=1\n")) << read_file(service_.log_file);
@@ -67,14 +67,31 @@ TEST_F(JobHistoryTest, ForgetsHundredsOfJobsInSeveralPieces) {
     for (int i = 0; i < 250; ++i) done(cat("gone", i), false);
   });
   done("there", true);
-  history_.keep(1);
+  history_.keep(1, {});
   io_.run_for(milliseconds(100));
   EXPECT_EQ(sources().size(), 251U);
   now_ += kDay_ms;
-  history_.keep(1);  // a reload begins anew
+  history_.keep(1, {});  // a reload begins anew
   io_.restart();
   io_.run_for(milliseconds(300));
   EXPECT_EQ(sources(), Names{"there"});
+}
+
+// Nothing tells then whether their sources are gone.
+TEST_F(JobHistoryTest, KeepsJobsWhileTheDirectoryOfTheirWatchIsNotThere) {
+  done("in/gone", false);
+  now_ += 2 * kDay_ms;
+  WatchConfig watch;
+  watch.label = "w";
+  watch.directory = directory_ / "in";
+  history_.keep(1, {&watch, 1});
+  io_.run_for(milliseconds(100));
+  EXPECT_EQ(sources(), Names{"gone"});
+  std::filesystem::create_directory(watch.directory);
+  history_.keep(1, {&watch, 1});
+  io_.restart();
+  io_.run_for(milliseconds(100));
+  EXPECT_EQ(sources(), Names{});
 }
 
 }  // namespace

@@ -98,6 +98,20 @@ TEST_F(JobRunnerTest, ConvertsWaitingJobs) {
   EXPECT_NE(log.find(cat(" error quarantined job=", bad.id, ' ')), std::string::npos) << log;
 }
 
+// As while its file system is not mounted: nothing tells whether the source is gone.
+TEST_F(JobRunnerTest, JobWaitsWhileTheDirectoryOfItsWatchIsNotThere) {
+  const Job job = add("a", "one");
+  fs::rename(directory_ / "a", directory_ / "away");
+  for (int i = 0; i < 3; ++i) runner_.wake();
+  EXPECT_TRUE(idle());
+  ASSERT_TRUE(store_.job(job.id)) << "it was forgotten";
+  EXPECT_EQ(state(job), JobState::waiting);
+  EXPECT_TRUE(changed_.empty());
+  fs::rename(directory_ / "away", directory_ / "a");
+  runner_.wake();
+  run_until([&] { return idle() && state(job) == JobState::done; });
+}
+
 TEST_F(JobRunnerTest, JobIsDoneBeforeItsThumbnailIsRendered) {
   config_.watches[0].thumbnails = true;
   runner_.configure(config_);

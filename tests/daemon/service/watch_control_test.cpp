@@ -280,6 +280,17 @@ TEST(WatchControl, RenamedLog_IsReopenedOnSighup) {
   EXPECT_EQ(service.logged(" done "), 1U);
 }
 
+// As logrotate renames it, whatever has become of the configuration.
+TEST(WatchControl, RenamedLog_IsReopenedThoughTheConfigurationIsRefused) {
+  ServiceHarness service("log_size = \"0\"\n");
+  service.start();
+  service.configure("", "colour = \"blue\"\n");
+  fs::rename(service.path("log"), service.path("log.1"));
+  service.signal(SIGHUP);
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return fs::exists(service.path("log")); }));
+  EXPECT_TRUE(ServiceHarness::eventually([&] { return service.logged(" reload-rejected ") == 1; })) << service.log();
+}
+
 TEST(WatchControl, TwoDaemonsDoNotShareAStateFile) {
   ServiceHarness service;
   service.start();

@@ -153,8 +153,10 @@ TEST_F(StateFile, Version4_IsUpgraded) {
 TEST_F(StateFile, DatabaseOfAnotherProgram_IsRefusedAndUnchanged) {
   const std::string message = path_ + ": is a database of another program; name another file as state in [service]";
   Database(path_).run("CREATE TABLE theirs (a)");
+  const std::string theirs = read_file(path_);
   EXPECT_EQ(refusal(), message);
   EXPECT_EQ(kind_, ErrorKind::input);
+  EXPECT_EQ(read_file(path_) == theirs, true) << "it was written to";
   Database(path_).run("DROP TABLE theirs");
   Database(path_).run("PRAGMA application_id=1");
   EXPECT_EQ(refusal(), message);

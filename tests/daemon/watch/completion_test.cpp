@@ -192,12 +192,26 @@ TEST_F(CompletionTest, Rename_FileThatWasFoundWithAWriter_IsCompleteWhenItHasNon
   expect_event_is_awaited(at(7, Kind::created), "it has not got its name by a rename");
 }
 
+TEST_F(CompletionTest, Close_FileThatWasFoundWithAWriter_IsNotCompleteBeforeItHasNone) {
+  rules.policy = Completion::close;
+  bool open = true;
+  rules.has_writer = [&] { return open; };
+  at(0, Kind::found);
+  const CompletionAnswer answer = at(10);  // unchanged for longer than it takes
+  EXPECT_EQ(answer.state, State::waiting);
+  EXPECT_EQ(answer.reason, kOpen);
+  open = false;
+  EXPECT_EQ(at(12).state, State::complete);
+}
+
 // A program that creates a directory, and a file in it at once, does so before anybody watches the directory.
 TEST_F(CompletionTest, Rename_RulesOfAFileKnowItsWriter) {
   const TemporaryDirectory directory;
   const std::string path = directory / "a_4x4x4_uint8.raw";
   WatchConfig watch;
   EXPECT_FALSE(completion_rules(watch, path).has_writer);
+  watch.complete = Completion::close;
+  EXPECT_TRUE(completion_rules(watch, path).has_writer);
   watch.complete = Completion::rename;
   const CompletionRules found = completion_rules(watch, path);
   std::ofstream writer(path);

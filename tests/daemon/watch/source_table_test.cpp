@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <vector>
+
+#include "tests/support/run_command.h"
+#include "tests/support/temporary_directory.h"
 
 namespace weir::source_table_test {
 namespace {
@@ -42,6 +46,35 @@ TEST_F(SourceTableTest, ChangeThatNoEventTold_IsFoundByTheSecondLookAfterTheLast
   events_.clear();
   look({8, 3, 1});
   EXPECT_TRUE(events_.empty()) << "the event told of it";
+}
+
+// Jobs of files that seemed to be gone may be forgotten meanwhile.
+TEST(SourceTableRoot, FilesOfADirectoryThatIsBack_AreFoundOnceMore) {
+  const TemporaryDirectory parent;
+  WatchConfig watch;
+  watch.label = watch.directory = parent / "in";
+  std::filesystem::create_directory(watch.directory);
+  write_file(parent / "in/a.raw", "x");
+  std::vector<FileEventKind> events;
+  SourceTable table{watch, {[&](const FileEvent& event) { events.push_back(event.kind); }, {}}};
+  const auto look = [&] {
+    table.begin_look(true);
+    table.saw("a.raw", {1, 1, 1});
+    table.end_look();
+  };
+  EXPECT_EQ(table.look_at_root(), SourceTable::Root::another);
+  look();
+  EXPECT_EQ(table.look_at_root(), SourceTable::Root::same);
+  look();
+  EXPECT_EQ(events, std::vector<FileEventKind>{FileEventKind::found});
+  std::filesystem::rename(parent / "in", parent / "away");
+  EXPECT_EQ(table.look_at_root(), SourceTable::Root::missing);
+  std::filesystem::rename(parent / "away", parent / "in");
+  EXPECT_EQ(table.look_at_root(), SourceTable::Root::another);
+  events.clear();
+  look();
+  look();
+  EXPECT_EQ(events, std::vector<FileEventKind>{FileEventKind::found});
 }
 
 }  // namespace
