@@ -10,6 +10,7 @@
 #include "daemon/watch/path_filter.h"
 #include "daemon/watch/repeated_events.h"
 #include "format/base/error.h"
+#include "format/io/is_directory.h"
 
 namespace weir {
 namespace {

@@ -17,6 +17,7 @@
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "format/io/file_system.h"
+#include "format/io/is_directory.h"
 
 namespace weir {
 namespace {
@@ -50,15 +51,10 @@ std::string remedy(int error, std::string_view key, const std::string& path) {
 
 bool may(const std::string& path, int mode) { return ::faccessat(AT_FDCWD, path.c_str(), mode, AT_EACCESS) == 0; }
 
-bool is_directory(const std::string& path) {
-  std::error_code ignored;
-  return fs::is_directory(path, ignored);
-}
-
 /// Whether something else is there.
 bool is_no_directory(const std::string& path) {
   std::error_code ignored;
-  return fs::exists(path, ignored) && !fs::is_directory(path, ignored);
+  return fs::exists(path, ignored) && !is_directory(path);
 }
 
 /// Whether the kernel alone makes files there; to root they look writable.

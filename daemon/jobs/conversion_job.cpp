@@ -17,6 +17,7 @@
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "format/io/file_system.h"
+#include "format/io/is_directory.h"
 #include "ingest/files/file_state.h"
 
 namespace weir {
@@ -29,8 +30,7 @@ constexpr int kIo = static_cast<int>(ErrorKind::io);
 
 // Of what a full file system refused: a file there, or a directory.
 std::string directory_at(const std::string& path) {
-  std::error_code ignored;
-  return fs::is_directory(path, ignored) ? path : fs::path(path).parent_path().string();
+  return is_directory(path) ? path : fs::path(path).parent_path().string();
 }
 
 // The source's own identity says nothing of the planes of a stack and of the files that a header names.

@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "format/base/text.h"
+#include "format/io/is_directory.h"
 
 namespace weir {
 namespace {
@@ -28,8 +29,7 @@ std::string hidden_name(const Job& job) {
 
 void HiddenSources::look_through(const std::vector<WatchConfig>& watches) {
   for (const WatchConfig& watch : watches) {
-    std::error_code absent;
-    if (!std::filesystem::is_directory(watch.directory, absent)) continue;
+    if (!is_directory(watch.directory)) continue;
     if (!looked_.insert({watch.directory, watch.recursive}).second) continue;
     waiting_.push_back({watch.directory, watches_.size()});
     watches_.push_back({watch, PathFilter(watch)});

@@ -11,6 +11,7 @@
 #include "daemon/watch/source_identity.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "format/io/is_directory.h"
 #include "format/process/process_memory.h"
 
 namespace weir {
@@ -125,10 +126,12 @@ bool JobRunner::start_next() {
 
 // The first that may start: a job may wait again while the processes of its last attempt still end, or for room.
 std::optional<Job> JobRunner::next_job(const WatchConfig& watch) const {
-  if (!is_directory(watch.directory)) return std::nullopt;  // WatchedTree wakes the runner once it is back
-  constexpr std::size_t kMostLooked = 100;                  // for one that fits where the first does not
+  constexpr std::size_t kMostLooked = 100;  // for one that fits where the first does not
   const std::size_t looked = full_disks_.empty() ? running_.size() + 1 : kMostLooked;
-  for (const Job& job : store_.candidates(watch.label, watch.priority, looked)) {
+  const std::vector<Job> candidates = store_.candidates(watch.label, watch.priority, looked);
+  // WatchedTree wakes the runner once it is back.
+  if (candidates.empty() || !is_directory(watch.directory)) return std::nullopt;
+  for (const Job& job : candidates) {
     if (running_.contains(job.id)) continue;
     if (full_disks_.empty()) return job;
     // Where that is not known yet, in the next round.

@@ -24,6 +24,7 @@
 #include "format/base/text.h"
 #include "format/io/descriptor.h"
 #include "format/io/file_system.h"
+#include "format/io/is_directory.h"
 #include "format/io/output_names.h"
 #include "format/io/real_path.h"
 #include "format/output/commit_leftovers.h"
@@ -248,8 +249,8 @@ CleaningReport clean_outputs(const std::string& directory, const std::string& so
     if (entry_of(*interrupted, "format") == "stack" || !lies_below(entry_of(*interrupted, "source"), own)) return false;
     std::error_code ignored;
     const bool old = fs::file_time_type::clock::now() - fs::last_write_time(work, ignored) > kKeptFor;
-    const bool mounted = fs::is_directory(own, ignored);  // else all of it seems to be gone
-    return old || (mounted && !is_of_this_source(*interrupted));
+    // In a directory that is not there all seems to be gone.
+    return old || (is_directory(own.string()) && !is_of_this_source(*interrupted));
   };
   // Listed first: what is removed while a directory is read may be listed or not.
   std::map<fs::path, std::vector<fs::path>> by_output;

@@ -1,7 +1,9 @@
 #include "daemon/store/file_identity.h"
 
 #include <cerrno>
+
 #include "format/io/file_time.h"
+#include "format/io/is_directory.h"
 
 namespace weir {
 
@@ -21,11 +23,6 @@ bool says_missing(int error) { return error == ENOENT || error == ENOTDIR || err
 bool is_gone(const std::string& path) {
   struct stat status {};
   return ::stat(path.c_str(), &status) == 0 ? !S_ISREG(status.st_mode) : says_missing(errno);
-}
-
-bool is_directory(const std::string& path) {
-  struct stat status {};
-  return ::stat(path.c_str(), &status) == 0 && S_ISDIR(status.st_mode);
 }
 
 bool is_gone_from(const std::string& directory, const std::string& path) {

@@ -22,8 +22,6 @@ bool says_missing(int error);
 /// Whether there is no regular file at `path`. False where it cannot be looked at.
 bool is_gone(const std::string& path);
 
-bool is_directory(const std::string& path);
-
 /// Whether there is no regular file at `path`, but the directory that it is watched in. Where that is not there, as
 /// before it is mounted, nothing is known of its files.
 bool is_gone_from(const std::string& directory, const std::string& path);

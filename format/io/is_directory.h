@@ -1,0 +1,16 @@
+// Whether a path leads to a directory.
+#pragma once
+
+#include <sys/stat.h>
+
+#include <string>
+
+namespace weir {
+
+/// False where `path` cannot be looked at.
+inline bool is_directory(const std::string& path) {
+  struct stat status {};
+  return ::stat(path.c_str(), &status) == 0 && S_ISDIR(status.st_mode);
+}
+
+}  // namespace weir
