@@ -50,8 +50,9 @@ void check_same_places(const SourceInfo& a, const SourceInfo& b) {
   }
   if (!a.details.time || !b.details.time || a.details.time->value == b.details.time->value) return;
   throw Error(ErrorKind::input,
-              cat(a.path, ": ", named(a), " is of time ", a.details.time->value, " and ", named(b), " of ",
-                  b.details.time->value, "; choose the same time with --index, or convert them one by one"));
+              compose(a.path, ": ", named(a), " is of time ", a.details.time->value, " and ", named(b), " of ",
+                      b.details.time->value, "; choose the same time with ", option("index"),
+                      ", or convert them one by one"));
 }
 
 void check_same_units(const SourceInfo& a, const SourceInfo& b) {

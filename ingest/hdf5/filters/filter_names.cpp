@@ -28,7 +28,7 @@ constexpr std::array kFilters{
     FilterEntry{kLzfFilter, "lzf", ""},
     FilterEntry{32001, "blosc", "hdf5-filter-plugin-blosc-serial"},
     FilterEntry{32004, "lz4", "hdf5-filter-plugin"},
-    FilterEntry{32008, "bitshuffle", ""},
+    FilterEntry{32008, "bitshuffle", "bitshuffle"},
     FilterEntry{32013, "zfp", "hdf5-filter-plugin-zfp-serial"},
     FilterEntry{32015, "zstd", ""},
     FilterEntry{32017, "sz", ""},

@@ -1,8 +1,10 @@
 #include "ingest/hdf5/meaning/value_meaning.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "format/base/text.h"
 #include "ingest/hdf5/file/hdf5_attribute.h"
@@ -39,10 +41,17 @@ std::optional<StoredValue> netcdf_default_fill(ScalarType type) {
   }
 }
 
+// Libraries before 4.4.1 (2016) leave no mark on the file, but on most variables with dimensions.
 bool is_netcdf(hid_t object) {
+  for (const char* name : {"_Netcdf4Coordinates", "_Netcdf4Dimid"}) {
+    if (has_attribute(object, name)) return true;
+  }
   const Hdf5Handle root(H5Gopen2(object, "/", H5P_DEFAULT));
-  return root && has_attribute(root.get(), "_NCProperties");
+  return root && (has_attribute(root.get(), "_NCProperties") || has_attribute(root.get(), "_nc3_strict"));
 }
+
+// Nobody else chooses such a number for a fill value.
+bool is_netcdfs_own(ScalarType type) { return type == ScalarType::float32 || type == ScalarType::float64; }
 
 // Whether the stored value `fill` is `value`.
 bool equals(std::span<const std::byte> fill, const StoredType& type, const StoredValue& value) {
@@ -112,10 +121,12 @@ ValueMeaning value_meaning(hid_t object, const StoredType& type, std::span<const
     const std::string obstacle = missing_obstacle(object, name, values.size());
     if (!obstacle.empty()) meaning.obstacle = obstacle;
   }
+  // Beside missing_value, too: what nobody has written has it.
   const auto by_netcdf = netcdf_default_fill(type.scalar);
-  if (meaning.mapping.missing.empty() && by_netcdf && !fill.empty() && equals(fill, type, *by_netcdf) &&
-      is_netcdf(object)) {
-    meaning.mapping.missing.push_back(*by_netcdf);
+  if (!has_attribute(object, "_FillValue") && by_netcdf && !fill.empty() && equals(fill, type, *by_netcdf) &&
+      (is_netcdfs_own(type.scalar) || is_netcdf(object))) {
+    std::vector<StoredValue>& missing = meaning.mapping.missing;
+    if (std::ranges::find(missing, *by_netcdf) == missing.end()) missing.push_back(*by_netcdf);
   }
   std::string packed_unclearly;
   meaning.mapping.scale = packing(object, "scale_factor", 1.0, packed_unclearly);

@@ -1,6 +1,7 @@
 #include "ingest/hdf5/storage/unwritten_chunks.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "ingest/hdf5/file/hdf5_error.h"
 #include "ingest/hdf5/file/hdf5_handle.h"
@@ -9,8 +10,8 @@
 namespace weir {
 namespace {
 
-// More are not looked up one by one: a damaged file may say any number.
-constexpr std::uint64_t kMostLookedUp = std::uint64_t{1} << 16U;
+// More are not looked up one by one, for which so many take some seconds: a damaged file may say any number.
+constexpr std::uint64_t kMostLookedUp = std::uint64_t{1} << 20U;
 
 std::vector<hsize_t> extent_of(hid_t space, std::size_t rank) {
   std::vector<hsize_t> extent(rank);
@@ -19,34 +20,33 @@ std::vector<hsize_t> extent_of(hid_t space, std::size_t rank) {
   return extent;
 }
 
-/// Elements from `lo` to `hi`, exclusive, of a dataset whose chunks have `chunk` elements.
-struct ChunkedRange {
-  const std::vector<hsize_t>& chunk;
-  std::vector<hsize_t> lo;
-  std::vector<hsize_t> hi;
-};
+// How many chunks of `chunk` elements have elements in the range; as many as 64 bits count.
+std::uint64_t chunks_in(const ElementRange& range, const std::vector<hsize_t>& chunk) {
+  std::uint64_t count = 1;
+  for (std::size_t axis = 0; axis < chunk.size(); ++axis) {
+    const hsize_t along = (range.hi[axis] - 1) / chunk[axis] - range.lo[axis] / chunk[axis] + 1;
+    if (__builtin_mul_overflow(count, std::uint64_t{along}, &count)) return std::numeric_limits<std::uint64_t>::max();
+  }
+  return count;
+}
 
 /// Of the chunks that have elements in `range` those that `counts` takes by their first element.
 template <typename Counts>
-UnwrittenChunks unwritten_in(hid_t dataset, const ChunkedRange& range, const Counts& counts, const std::string& where) {
-  const std::vector<hsize_t>& chunk = range.chunk;
+UnwrittenChunks unwritten_in(hid_t dataset, const std::vector<hsize_t>& chunk, const ElementRange& range,
+                             const Counts& counts, const std::string& where) {
   const std::size_t rank = chunk.size();
   const Hdf5Handle space(H5Dget_space(dataset));
-  const std::vector<hsize_t> extent = extent_of(space.get(), rank);
+  const ElementRange whole{std::vector<hsize_t>(rank), extent_of(space.get(), rank)};
   hsize_t written = 0;
-  if (extent.empty() || H5Dget_num_chunks(dataset, space.get(), &written) < 0) {
+  if (whole.hi.empty() || H5Dget_num_chunks(dataset, space.get(), &written) < 0) {
     throw hdf5_error(where, kUncountedChunks);
   }
-  std::uint64_t all = 1;
-  std::uint64_t in_range = 1;
-  std::vector<hsize_t> begin(rank);  // first elements of the range's first chunk
-  for (std::size_t axis = 0; axis < rank; ++axis) {
-    all *= (extent[axis] + chunk[axis] - 1) / chunk[axis];
-    begin[axis] = range.lo[axis] / chunk[axis] * chunk[axis];
-    in_range *= (range.hi[axis] - begin[axis] + chunk[axis] - 1) / chunk[axis];
-  }
+  const std::uint64_t all = chunks_in(whole, chunk);
+  const std::uint64_t in_range = chunks_in(range, chunk);
   if (written >= all) return {0, all, {}};
-  if (in_range > kMostLookedUp) return {all - written, all, {}};
+  if (in_range > kMostLookedUp) return {all - written, all, {}, in_range < all};
+  std::vector<hsize_t> begin(rank);  // first elements of the range's first chunk
+  for (std::size_t axis = 0; axis < rank; ++axis) begin[axis] = range.lo[axis] / chunk[axis] * chunk[axis];
   UnwrittenChunks unwritten;
   std::vector<hsize_t> corner = begin;
   for (std::uint64_t i = 0; i < in_range; ++i) {
@@ -65,22 +65,15 @@ UnwrittenChunks unwritten_in(hid_t dataset, const ChunkedRange& range, const Cou
 
 }  // namespace
 
-UnwrittenChunks unwritten_chunks(hid_t dataset, const Storage& storage, std::span<const std::int64_t> leading,
+UnwrittenChunks unwritten_chunks(hid_t dataset, const std::vector<hsize_t>& chunk, const ElementRange& range,
                                  const std::string& where) {
-  const Hdf5Handle space(H5Dget_space(dataset));
-  ChunkedRange range{storage.chunk, std::vector<hsize_t>(storage.chunk.size()),
-                     extent_of(space.get(), storage.chunk.size())};
-  for (std::size_t axis = 0; axis < std::min(leading.size(), range.hi.size()); ++axis) {
-    range.lo[axis] = static_cast<hsize_t>(leading[axis]);
-    range.hi[axis] = range.lo[axis] + 1;
-  }
   return unwritten_in(
-      dataset, range, [](const std::vector<hsize_t>&) { return true; }, where);
+      dataset, chunk, range, [](const std::vector<hsize_t>&) { return true; }, where);
 }
 
 UnwrittenChunks unwritten_chunks(hid_t dataset, const std::vector<hsize_t>& chunk, hid_t selected,
                                  const std::string& where) {
-  ChunkedRange range{chunk, std::vector<hsize_t>(chunk.size()), std::vector<hsize_t>(chunk.size())};
+  ElementRange range{std::vector<hsize_t>(chunk.size()), std::vector<hsize_t>(chunk.size())};
   H5Sget_select_bounds(selected, range.lo.data(), range.hi.data());
   for (hsize_t& hi : range.hi) ++hi;
   const auto has_selected = [&](const std::vector<hsize_t>& corner) {
@@ -90,7 +83,7 @@ UnwrittenChunks unwritten_chunks(hid_t dataset, const std::vector<hsize_t>& chun
     }
     return H5Sselect_intersect_block(selected, corner.data(), last.data()) > 0;
   };
-  return unwritten_in(dataset, range, has_selected, where);
+  return unwritten_in(dataset, chunk, range, has_selected, where);
 }
 
 }  // namespace weir

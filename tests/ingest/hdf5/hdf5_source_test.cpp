@@ -56,11 +56,19 @@ with h5py.File("a.h5", "w") as f:
   vectors.component = ComponentChoice{false, 1};
   EXPECT_EQ(note(vectors), "1 of its 2 chunks was never written and reads as its fill value, 0");
   EXPECT_EQ(note(dataset_options("whole")), "");
+  SourceOptions region = dataset_options("half");
+  region.roi = VolumeRegion(Box{{0, 0, 0}, {32, 32, 16}});
+  EXPECT_EQ(note(region), "");
+  region.roi = VolumeRegion(Box{{0, 17, 15}, {16, 32, 17}});
+  EXPECT_EQ(note(region), "1 of the region's 2 chunks was never written and reads as its fill value, 7.5");
   SourceOptions all = dataset_options("half");
   all.missing_chunks = MissingChunks::error;
   EXPECT_EQ(refused("a.h5", all), scratch_.path("a.h5") +
                                       ": /half: 4 of its 8 chunks were never written (the first at 16, 0, 0), and with "
                                       "--missing-chunks error all must be; write them, or use --missing-chunks fill");
+  all.roi = VolumeRegion(Box{{0, 0, 0}, {4, 4, 16}});
+  EXPECT_EQ(open_source(scratch_.path("a.h5"), all)->info().extent, (Index3{4, 4, 16}));
+  all.roi.reset();
   all.dataset = "whole";
   EXPECT_EQ(open_source(scratch_.path("a.h5"), all)->info().extent, (Index3{8, 8, 8}));
 }

@@ -206,8 +206,9 @@ n.close()
 
   const SourceInfo text = info_of("a.nc", "text");
   EXPECT_EQ(text.mapping.scale, 2);
-  ASSERT_EQ(text.mapping.missing.size(), 1U);
+  ASSERT_EQ(text.mapping.missing.size(), 2U);
   EXPECT_EQ(as_double(text.mapping.missing[0]), -999);
+  EXPECT_EQ(as_double(text.mapping.missing[1]), 9.9692099683868690e+36) << "NetCDF's own, beside missing_value";
   const auto refused = [&](const char* name) {
     return message_of_error(ErrorKind::input, [&] { info_of("a.nc", name); });
   };

@@ -40,5 +40,44 @@ with h5py.File("a.h5", "w") as f:
   EXPECT_EQ(info_of("a.h5", "held").details.values_note, "");
 }
 
+// What netCDF4-python masks of the values that nobody has written.
+TEST_F(Hdf5ValueMeaning, NetcdfsDefaultFill_IsNoDataBesideMissingValueAndInFilesOfOldLibraries) {
+  if (!python_has("netCDF4")) GTEST_SKIP() << "python3 with netCDF4 is missing";
+  write_by_h5py(scratch_, R"(
+import netCDF4
+n = netCDF4.Dataset("new.nc", "w")
+for name, size in [("z", 6), ("y", 2), ("x", 2)]: n.createDimension(name, size)
+for name, kind in [("float", "f4"), ("short", "i2"), ("own", "f4")]:
+    v = n.createVariable(name, kind, ("z", "y", "x"), fill_value=9e9 if name == "own" else None)
+    v.missing_value = np.array(-999, kind)
+    v[:4] = 1
+    v[0, 0, 0] = -999
+    expect(name, np.ma.getmaskarray(v[:]).astype("f4"))
+n.close()
+import shutil
+shutil.copy("new.nc", "old.nc")
+with h5py.File("old.nc", "a") as f: del f.attrs["_NCProperties"]
+)");
+  for (const char* file : {"new.nc", "old.nc"}) {
+    for (const char* name : {"float", "short", "own"}) {
+      const auto source = open_source(scratch_.path(file), dataset_options(name));
+      std::vector<float> masked = all_values(*source);
+      for (float& value : masked) value = is_missing(value) ? 1.0F : 0.0F;
+      EXPECT_EQ(masked, expected(scratch_, name)) << file << ' ' << name;
+    }
+  }
+}
+
+// A whole number may well be somebody's own fill value.
+TEST_F(Hdf5ValueMeaning, WholeNumberLikeNetcdfsDefaultFill_IsDataInOtherFiles) {
+  write_by_h5py(scratch_, R"(
+with h5py.File("a.h5", "w") as f:
+    d = f.create_dataset("d", (2, 2, 2), "i2", chunks=(1, 2, 2), fillvalue=-32767)
+    d[0] = 1
+)");
+  EXPECT_EQ(all_values(*open_source(scratch_.path("a.h5"), {})),
+            (std::vector<float>{1, 1, 1, 1, -32767, -32767, -32767, -32767}));
+}
+
 }  // namespace
 }  // namespace weir::value_meaning_test

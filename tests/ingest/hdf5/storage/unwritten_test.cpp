@@ -70,6 +70,24 @@ with h5py.File("a.h5", "w") as f:
   for (std::size_t i = 0; i < values.size(); ++i) ASSERT_EQ(values[i], i % 16 < 8 ? 5 : -7) << i;
 }
 
+TEST_F(Hdf5Unwritten, ChunksOfOtherSteps_AreNotCounted) {
+  write_by_h5py(scratch_, R"(
+with h5py.File("a.h5", "w") as f:
+    d = f.create_dataset("steps", (2, 41, 41, 41), "u1", chunks=(1, 1, 1, 1), fillvalue=3)
+    d[0] = 1
+    d = f.create_dataset("endless", (2, 102, 102, 102), "u1", chunks=(1, 1, 1, 1), fillvalue=3)
+    d[0, 0, 0, 0] = 1
+)");
+  const auto note = [&](const std::string& name, std::int64_t step) {
+    return open_source(scratch_.path("a.h5"), dataset_options(name, {step}))->info().details.chunks_note;
+  };
+  EXPECT_EQ(note("steps", 0), "");
+  EXPECT_EQ(note("steps", 1), "68921 of its 68921 chunks were never written and read as its fill value, 3");
+  EXPECT_EQ(note("endless", 0),
+            "2122415 of all 2122416 chunks, some perhaps outside what is read, were never written and read as its fill "
+            "value, 3");
+}
+
 // Nobody chose what such a one reads as, it is no data, or the library would leave what is in memory.
 TEST_F(Hdf5Unwritten, IsRefusedWhereItsFillValueIsNoData) {
   write_by_h5py(scratch_, R"(
