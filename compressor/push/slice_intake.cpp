@@ -54,6 +54,14 @@ std::span<std::byte> SliceIntake::values_of(std::int64_t index, std::byte* value
 }
 
 void SliceIntake::add(const StridedVoxels& slab) {
+  try {
+    copy(slab);
+  } catch (...) {  // some of the slab is missing now
+    throw fail(error_in_flight());
+  }
+}
+
+void SliceIntake::copy(const StridedVoxels& slab) {
   const Index3 in_layer{plan_.count.x, plan_.count.y, 1};
   const auto layer_of = [&](std::int64_t z) { return floor_div(z, kLeafDim) - plan_.lattice.first.z; };
   for (std::int64_t layer = layer_of(slab.box.lo.z); layer <= layer_of(slab.box.hi.z - 1); ++layer) {

@@ -52,7 +52,7 @@ class SliceIntake {
   SliceIntake& operator=(const SliceIntake&) = delete;
 
   /// Takes whole planes of the volume, each once. May be called by several threads; waits while all buffers are in use
-  /// and the workers are freeing one. Throws what ended the workers.
+  /// and the workers are freeing one. Throws what ended the workers, as they are where it cannot take all of the slab.
   void add(const StridedVoxels& slab);
 
   /// Waits until all slices, which are complete, went through the sink, and gives the memory back. Throws what ended
@@ -81,6 +81,7 @@ class SliceIntake {
   using Lock = std::unique_lock<std::mutex>;
 
   void stop();
+  void copy(const StridedVoxels& slab);
   void work();
   void work_until_the_end(Lock& lock);
   std::optional<std::int64_t> slice_to_park() const;

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "format/base/error.h"
+#include "tests/compressor/support/failing_allocation.h"
 
 namespace weir::slice_intake_test {
 namespace {
@@ -236,6 +237,25 @@ TEST_F(SliceIntakeTest, ReportsOtherExceptionsOfItsSink) {
     intake.finish();
   };
   EXPECT_EQ(message_of(both), std::bad_alloc().what());
+}
+
+// The slab's planes count as given: without an end the volume would lack them unsaid.
+TEST_F(SliceIntakeTest, SlabThatFindsNoMemory_EndsTheIntake) {
+  bool taken = false;
+  for (int before = 0; !taken; ++before) {
+    Keeper keeper;
+    SliceIntake intake(plan(), 2, {12, 1}, keeper.sink());
+    const std::string message = [&] {
+      const FailingAllocation failing(before);
+      return message_of([&] { intake.add(slab(0, 12)); });
+    }();
+    taken = message == "no error";
+    if (taken) break;
+    EXPECT_EQ(message, std::bad_alloc().what()) << before;
+    EXPECT_EQ(message_of([&] { intake.check(); }), message) << before;
+    EXPECT_EQ(message_of([&] { intake.finish(); }), message) << before;
+    ASSERT_LT(before, 1000);
+  }
 }
 
 TEST_F(SliceIntakeTest, FailFromOutsideRefusesFurtherSlabs) {
