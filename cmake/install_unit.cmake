@@ -10,7 +10,7 @@ file(WRITE $ENV{DESTDIR}${folder}/${name} "${unit}")
 # The configuration to start from: in /etc/weir, where the unit looks for configurations, beside /usr; elsewhere below the
 # prefix, in PREFIX/etc/weir, from where it is to be copied.
 get_filename_component(etc ${CMAKE_INSTALL_PREFIX}/etc ABSOLUTE)
-if(CMAKE_INSTALL_PREFIX MATCHES "/usr$")
-  get_filename_component(etc ${CMAKE_INSTALL_PREFIX}/../etc ABSOLUTE)
+if(CMAKE_INSTALL_PREFIX STREQUAL "/usr")
+  set(etc /etc)
 endif()
 file(INSTALL ${WEIR_EXAMPLE} DESTINATION ${etc}/weir)

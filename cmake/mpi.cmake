@@ -36,7 +36,7 @@ set_target_properties(weir_mpi PROPERTIES EXPORT_NAME mpi VERSION ${PROJECT_VERS
 target_link_options(weir_mpi PRIVATE LINKER:--version-script=${CMAKE_BINARY_DIR}/weir_mpi.map LINKER:--as-needed)
 
 # weir_install_mpi(): the command, the library and its header, as the component `mpi` of their own, since they need the MPI
-# that they were built with: cmake --install BUILD --component mpi.
+# that they were built with: cmake --install BUILD --component mpi, to where the rest is installed.
 function(weir_install_mpi)
   set(component COMPONENT mpi EXCLUDE_FROM_ALL)
   install(TARGETS weir-mpi RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} ${component})
@@ -48,6 +48,11 @@ endfunction()
 
 # weir_mpi_tests(): tests/bindings/mpi, which start jobs of several processes on this machine.
 function(weir_mpi_tests)
+  if(TARGET weir_tests_tools AND TARGET weir_share AND MPI_C_COMPILER)  # it installs them
+    add_dependencies(weir_tests_tools weir-mpi weir_mpi)
+    set_property(SOURCE ${PROJECT_SOURCE_DIR}/tests/tools/install/mpi_install_test.cpp PROPERTY COMPILE_DEFINITIONS
+                 WEIR_CMAKE="${CMAKE_COMMAND}" WEIR_MPICC="${MPI_C_COMPILER}" WEIR_MPI_INSTALLS="${CMAKE_BINARY_DIR}")
+  endif()
   if(NOT MPIEXEC_EXECUTABLE)
     return()
   endif()

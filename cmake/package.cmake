@@ -34,11 +34,14 @@ It renders them, watches directories beside a running simulation, and has the
 libraries that a renderer or a simulation embeds, in C++, C and Fortran.")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
+set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/cmake/package_folders.cmake)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "hdf5-filter-plugin, libnanovdb-tools, python3-numpy, python3-urllib3, python3-xarray")
-set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${packaging}/postinst ${packaging}/prerm ${packaging}/triggers
-    ${packaging}/conffiles)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${packaging}/triggers)
+if(WEIR_DAEMON)  # they are about the service
+  list(APPEND CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${packaging}/postinst ${packaging}/prerm ${packaging}/conffiles)
+endif()
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 include(CPack)

@@ -55,14 +55,16 @@ function(weir_core name)
 endfunction()
 
 # weir_library(NAME [WITHOUT regex] LINKS target...): every .cpp in NAME/ and below but main.cpp, what needs the CUDA
-# toolkit, what the expression matches, and what weir_NAME_core has, which is linked where there is one.
+# toolkit, what the expression matches of NAME/..., and what weir_NAME_core has, which is linked where there is one.
 function(weir_library name)
   cmake_parse_arguments(ARG "" "WITHOUT" "LINKS" ${ARGN})
-  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${name}/*.cpp)
-  list(FILTER sources EXCLUDE REGEX "/main\\.cpp$|/gpu/cuda/")
+  # Names below the sources: an expression must not match the folders that they lie in.
+  file(GLOB_RECURSE sources RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${name}/*.cpp)
+  list(FILTER sources EXCLUDE REGEX "/main\\.cpp$|^gpu/cuda/")
   if(ARG_WITHOUT)
     list(FILTER sources EXCLUDE REGEX "${ARG_WITHOUT}")
   endif()
+  list(TRANSFORM sources PREPEND ${PROJECT_SOURCE_DIR}/)
   if(TARGET weir_${name}_core)
     get_target_property(core weir_${name}_core SOURCES)
     list(REMOVE_ITEM sources ${core})
@@ -97,6 +99,10 @@ function(weir_test_libraries)
   file(GLOB support CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/support/*.cpp)
   add_library(weir_test_support STATIC ${support})
   target_link_libraries(weir_test_support PUBLIC weir_format GTest::gtest)
+  find_path(NANOVDB_INCLUDE_DIR nanovdb/NanoVDB.h)  # of the test folders that include it
+  if(NANOVDB_INCLUDE_DIR)
+    target_include_directories(weir_test_support SYSTEM PUBLIC ${NANOVDB_INCLUDE_DIR})
+  endif()
   set_property(SOURCE ${PROJECT_SOURCE_DIR}/tests/support/run_command.cpp PROPERTY COMPILE_DEFINITIONS
                WEIR_COMMAND="${CMAKE_BINARY_DIR}/weir")
   target_compile_options(weir_test_support PRIVATE $<$<COMPILE_LANGUAGE:CXX>:${WEIR_TEST_OPTIMISATION}>)
@@ -104,6 +110,7 @@ function(weir_test_libraries)
     file(GLOB stock CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/stock/*.cpp)
     add_library(weir_test_stock STATIC ${stock})
     target_link_libraries(weir_test_stock PUBLIC weir_test_support ${OPENVDB_LIBRARY} ${IMATH_LIBRARY} TBB::tbb)
+    target_include_directories(weir_test_stock SYSTEM PUBLIC ${OPENVDB_INCLUDE_DIR} ${IMATH_INCLUDE_DIR})
     target_compile_options(weir_test_stock PRIVATE $<$<COMPILE_LANGUAGE:CXX>:${WEIR_TEST_OPTIMISATION}>)
   endif()
 endfunction()
@@ -153,12 +160,12 @@ function(weir_leave_out variable)
   list(JOIN missing "|" pattern)
   set(kept)
   foreach(source IN LISTS ${variable})
+    file(RELATIVE_PATH name ${PROJECT_SOURCE_DIR}/tests ${source})
     file(STRINGS ${source} found REGEX "#include [<\"](${pattern})" LIMIT_COUNT 1)
-    if(NOT WEIR_HDF5 AND NOT found AND source MATCHES "/users/")
+    if(NOT WEIR_HDF5 AND NOT found AND name MATCHES "^users/")
       file(STRINGS ${source} found REGEX "h5py|netCDF4" LIMIT_COUNT 1)
     endif()
-    if(found OR (NOT WEIR_HDF5 AND source MATCHES "/hdf5/"))
-      file(RELATIVE_PATH name ${PROJECT_SOURCE_DIR}/tests ${source})
+    if(found OR (NOT WEIR_HDF5 AND name MATCHES "/hdf5/"))
       weir_skip_test(${name} "this build was left without what it includes")
     else()
       list(APPEND kept ${source})
@@ -212,6 +219,10 @@ function(weir_tests name)
                  WEIR_CMAKE="${CMAKE_COMMAND}" WEIR_GENERATOR="${CMAKE_GENERATOR}" WEIR_CXX="${CMAKE_CXX_COMPILER}"
                  WEIR_NVCC="${CMAKE_CUDA_COMPILER}" WEIR_LAUNCHER="${CMAKE_CXX_COMPILER_LAUNCHER}"
                  WEIR_VERSION="${PROJECT_VERSION}" ${installs})
+    set_property(SOURCE ${PROJECT_SOURCE_DIR}/tests/tools/install/find_package_test.cpp
+                        ${PROJECT_SOURCE_DIR}/tests/tools/install/packaging_test.cpp PROPERTY COMPILE_DEFINITIONS
+                 WEIR_CMAKE="${CMAKE_COMMAND}" WEIR_CPACK="${CMAKE_CPACK_COMMAND}" WEIR_GENERATOR="${CMAKE_GENERATOR}"
+                 WEIR_CXX="${CMAKE_CXX_COMPILER}" WEIR_VERSION="${PROJECT_VERSION}")
   endif()
   target_link_libraries(weir_tests_${name} PRIVATE ${library} weir_test_support $<TARGET_NAME_IF_EXISTS:weir_test_stock>
                                               GTest::gtest_main)
@@ -249,8 +260,12 @@ function(weir_add_gtests target)
   endif()
 endfunction()
 
-# weir_skip_test(NAME WHY): a test in place of those that there are not here, so that they are seen to be skipped.
+# weir_skip_test(NAME WHY): a test in place of those that there are not here, so that they are seen to be skipped. What
+# two programs would have is shown once.
 function(weir_skip_test name why)
+  if(TEST ${name})
+    return()
+  endif()
   add_test(NAME ${name} COMMAND ${CMAKE_COMMAND} -E echo "skipped: ${why}")
   set_tests_properties(${name} PROPERTIES SKIP_REGULAR_EXPRESSION "^skipped: ")
 endfunction()
@@ -261,12 +276,15 @@ function(weir_loader_tests)
   set(root ${PROJECT_SOURCE_DIR})
   file(GLOB sources CONFIGURE_DEPENDS ${root}/gpu/cuda/load/*.cpp ${root}/tests/cuda/load/*.cpp
                                       ${root}/tests/fake_cuda/*.cpp)
-  add_executable(weir_tests_loader ${sources} ${root}/gpu/cuda/runtime/check.cpp ${root}/gpu/cuda/grid_loader.cpp
-                                   ${root}/gpu/cuda/runtime/driver_context.cpp
-                                   ${root}/gpu/cuda/push/device_slabs.cpp ${root}/gpu/cuda/push/device_values.cpp
-                                   ${root}/tests/cuda/grid_loader_test.cpp)
+  list(APPEND sources ${root}/gpu/cuda/runtime/check.cpp ${root}/gpu/cuda/grid_loader.cpp
+                      ${root}/gpu/cuda/runtime/driver_context.cpp
+                      ${root}/gpu/cuda/push/device_slabs.cpp ${root}/gpu/cuda/push/device_values.cpp
+                      ${root}/tests/cuda/grid_loader_test.cpp)
+  weir_leave_out(sources)
+  add_executable(weir_tests_loader ${sources})
   target_include_directories(weir_tests_loader SYSTEM PRIVATE ${CUDAToolkit_INCLUDE_DIRS})
-  target_link_libraries(weir_tests_loader PRIVATE weir_test_stock GTest::gtest_main Threads::Threads ${CMAKE_DL_LIBS})
+  target_link_libraries(weir_tests_loader PRIVATE weir_test_support $<TARGET_NAME_IF_EXISTS:weir_test_stock>
+                                                  GTest::gtest_main Threads::Threads ${CMAKE_DL_LIBS})
   weir_add_gtests(weir_tests_loader)
 endfunction()
 

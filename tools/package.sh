@@ -3,6 +3,7 @@
 # for the release of the distribution that this runs on. Installs what it needs for that.
 #   WEIR_MAINTAINER='NAME <ADDRESS>'   to be named in it
 set -euo pipefail
+umask 022 # apt reads the package as a user of its own
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 tools/setup.sh package

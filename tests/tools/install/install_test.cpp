@@ -213,14 +213,17 @@ TEST_F(Installation, DebianPackageHasTheSameFiles) {
     }
   }
   const TemporaryDirectory work;
-  const CommandResult packed =
-      run_command({WEIR_CPACK, "--config", WEIR_INSTALLS "/CPackConfig.cmake", "-B", work.path()});
+  const CommandResult packed = run_command({"sh", "-c", "umask 077; exec \"$0\" \"$@\"", WEIR_CPACK, "--config",
+                                            WEIR_INSTALLS "/CPackConfig.cmake", "-B", work.path()});
   ASSERT_EQ(packed.exit_code, 0) << packed.out << packed.err;
   const std::string architecture = run_command({"dpkg", "--print-architecture"}).out;
   const std::string package =
       work / cat("weir_" WEIR_VERSION "_", architecture.substr(0, architecture.size() - 1), ".deb");
   ASSERT_EQ(run_command({"dpkg-deb", "--extract", package, work / "content"}).exit_code, 0);
 
+  for (const std::string& line : split(run_command({"dpkg-deb", "--contents", package}).out, '\n')) {
+    EXPECT_TRUE(line.empty() || line[7] == 'r') << "not for all: " << line;
+  }
   std::set<std::string> expected = installed_files(has_cuda(), "lib/python3/dist-packages");
   expected.erase("share/doc/weir/LICENSE");  // Debian has the text already, and wants these two:
   expected.insert({"share/doc/weir/changelog.gz", "share/doc/weir/copyright"});

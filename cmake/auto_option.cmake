@@ -1,0 +1,15 @@
+# weir_auto_option(NAME MEANING): the cache variable NAME, which is AUTO unless given. TRUE, yes, 0 and so on are ON or
+# OFF afterwards, so that one comparison is enough; anything else is refused.
+function(weir_auto_option name meaning)
+  set(${name} AUTO CACHE STRING "${meaning}")
+  set_property(CACHE ${name} PROPERTY STRINGS AUTO ON OFF)
+  string(TOUPPER "${${name}}" value)
+  if(value MATCHES "^(ON|TRUE|YES|Y|1)$")
+    set(value ON)
+  elseif(value MATCHES "^(OFF|FALSE|NO|N|0)$")
+    set(value OFF)
+  elseif(NOT value STREQUAL "AUTO")
+    message(FATAL_ERROR "${name} is '${${name}}': give AUTO, ON or OFF")
+  endif()
+  set(${name} ${value} PARENT_SCOPE)
+endfunction()
