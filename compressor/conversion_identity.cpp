@@ -2,22 +2,15 @@
 
 #include <array>
 #include <cstdint>
-#include <filesystem>
 #include <span>
-#include <system_error>
 
 #include "format/base/exact_text.h"
 #include "format/base/text.h"
 #include "format/io/digest.h"
+#include "format/io/real_path.h"
 
 namespace weir {
 namespace {
-
-// Another working directory may hold another file of that name, size and time.
-std::string place_of(const std::string& path) {
-  std::error_code ignored;
-  return std::filesystem::weakly_canonical(std::filesystem::absolute(path, ignored), ignored).string();
-}
 
 // What no copy of the file shares with it, whatever its size and time. The device's number may be another one after the
 // machine was started again.
@@ -69,7 +62,8 @@ ConversionIdentity identify_conversion(const SourceInfo& source, const Conversio
   std::string index;
   for (const std::int64_t i : source.index) index += cat(i, ' ');
   ConversionIdentity identity{
-      {"source", place_of(source.path)},
+      // Another working directory may hold another file of that name, size and time.
+      {"source", absolute_real_path(source.path)},
       {"source bytes", cat(source.file_bytes)},
       {"source modified (ns)", cat(source.mtime_ns)},
       {"source files", source.files_digest},

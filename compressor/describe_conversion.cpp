@@ -8,6 +8,7 @@
 #include "compressor/conversion_identity.h"
 #include "compressor/leaf/certificate.h"
 #include "format/base/utf8.h"
+#include "format/io/real_path.h"
 #include "format/layout/nvdb_type.h"
 #include "format/nanovdb/macrocells.h"
 
@@ -57,6 +58,12 @@ void describe_details(const FieldDetails& details, Sidecar::Source& source) {
 
 }  // namespace
 
+std::string other_real_path(const SourceInfo& info) {
+  if (!is_there(info.path)) return {};  // an address, a name that a push has
+  std::string real = absolute_real_path(info.path);
+  return real == info.path ? std::string() : real;
+}
+
 std::string grid_name(const std::string& dataset) {
   const auto serves = [](const std::string& name) {
     return !name.empty() && name.size() <= kMaxGridNameBytes && is_utf8(name);
@@ -69,6 +76,7 @@ std::string grid_name(const std::string& dataset) {
 Sidecar describe_source(const SourceInfo& info, const Survey& survey, const ConversionOptions& options) {
   Sidecar sidecar;
   sidecar.source.path = info.path;
+  sidecar.source.real_path = other_real_path(info);
   sidecar.source.format = info.format;
   sidecar.source.dataset = info.dataset;
   sidecar.source.extent = info.extent;

@@ -23,10 +23,10 @@ constexpr std::uint64_t kViewers = 4;  // at a time
 
 // How a viewer's memory is divided: forecasts of conversions, a process of its own, where there is enough; the program;
 // then as much for pictures as for voxels. One viewer's picture takes so many bytes a pixel while it is drawn and
-// encoded, which is one at a time; another's waits in its sums and as PNG.
+// encoded, which is one at a time; another's waits in its sums and as PNG. As measured: docs/limits.md.
 constexpr std::uint64_t kProgramBytes = std::uint64_t{16} << 20;
-constexpr std::uint64_t kDrawnPixelBytes = 32;
-constexpr std::uint64_t kWaitingPixelBytes = 16;
+constexpr std::uint64_t kDrawnPixelBytes = 34;
+constexpr std::uint64_t kWaitingPixelBytes = 28;
 constexpr std::uint64_t kMostPixels = std::uint64_t{4} << 20;  // of weir view
 
 struct ViewerShares {

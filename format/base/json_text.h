@@ -1,4 +1,4 @@
-// JSON as one line of text.
+// JSON as text.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -6,11 +6,11 @@
 
 namespace weir {
 
-/// `value`, of type nlohmann::json or ordered_json, on one line. Bytes that are not UTF-8, as paths may have them,
-/// become U+FFFD.
+/// `value`, of type nlohmann::json or ordered_json, on one line, or on several where each level is to be indented by so
+/// many. Bytes that are not UTF-8, as paths may have them, become U+FFFD.
 template <typename Json>
-std::string json_text(const Json& value) {
-  return value.dump(-1, ' ', false, Json::error_handler_t::replace);
+std::string json_text(const Json& value, int indent = -1) {
+  return value.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace weir

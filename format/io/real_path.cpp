@@ -13,6 +13,11 @@ fs::path real_path(const std::string& path) {
   return error ? fs::path(path).lexically_normal() : real;
 }
 
+std::string absolute_real_path(const std::string& path) {
+  std::error_code ignored;
+  return real_path(fs::absolute(path, ignored).string()).string();
+}
+
 bool lies_below(const fs::path& path, const fs::path& directory) {
   return !directory.empty() &&
          std::mismatch(directory.begin(), directory.end(), path.begin(), path.end()).first == directory.end();

@@ -9,6 +9,9 @@ namespace weir {
 /// Symbolic links resolved, as far as the path exists; lexically normal where even that cannot be looked at.
 std::filesystem::path real_path(const std::string& path);
 
+/// The same of the path from the root on, whatever the working directory.
+std::string absolute_real_path(const std::string& path);
+
 /// Whether `path` is `directory` or lies below it, by their components: both are absolute and normal. False
 /// where `directory` is empty.
 bool lies_below(const std::filesystem::path& path, const std::filesystem::path& directory);

@@ -236,6 +236,7 @@ Scene load_scene(const std::string& path) {
   file.read(text.data(), static_cast<std::streamsize>(text.size()));
   if (!file.is_open() || file.bad()) {
     const int reason = errno;
+    if (reason == EACCES || reason == EPERM || reason == EIO) throw io_error(path, "read", reason);
     throw Error(ErrorKind::input, cat(path, ": cannot read the scene; it must be an existing TOML file"),
                 reason != 0 ? std::optional(SystemFailure{reason, path}) : std::nullopt);
   }

@@ -45,6 +45,7 @@ void describe_source(Archive& archive, S& source) {
   archive.field("offset", source.offset);
   archive.optional_field("files_digest", source.files_digest);
   archive.optional_field("values", source.values);
+  archive.optional_field("real_path", source.real_path);
   archive.optional_field("long_name", source.long_name);
   archive.optional_field("component", source.component);
   archive.optional_object("level", source.level, [&](auto& level) {

@@ -7,6 +7,7 @@
 
 #include "format/base/error.h"
 #include "format/base/seconds_since.h"
+#include "gpu/render/volume_error.h"
 
 namespace weir {
 
@@ -41,8 +42,8 @@ PlaybackReport play(Backend& backend, std::span<const std::string> files, const 
   // Of the stages' threads, of which each is waited for before the next of its kind starts. A future of std::async
   // waits when it goes, so that no thread outlives this function.
   const auto load = [&](const std::string& path, std::unique_ptr<LoadedVolume> reuse) {
-    return timed(report.load_s,
-                 [&] { return backend.load(std::make_shared<const NvdbFile>(path), 0, std::move(reuse)); });
+    const auto loaded = [&] { return backend.load(std::make_shared<const NvdbFile>(path), 0, std::move(reuse)); };
+    return timed(report.load_s, [&] { return naming_volume(path, loaded); });
   };
   std::unique_ptr<LoadedVolume> done;
   std::future<std::unique_ptr<LoadedVolume>> loading;
@@ -63,7 +64,8 @@ PlaybackReport play(Backend& backend, std::span<const std::string> files, const 
       volume = load(files[step], nullptr);
     }
     start_load(step + 1);
-    Picture picture = timed(report.render_s, [&] { return backend.render(*volume, scene, options, sampling); });
+    const auto rendered = [&] { return backend.render(*volume, scene, options, sampling); };
+    Picture picture = timed(report.render_s, [&] { return naming_volume(files[step], rendered); });
     report.load = volume->load_summary();
     done = std::move(volume);
     if (writing.valid()) writing.get();

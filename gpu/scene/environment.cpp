@@ -38,6 +38,17 @@ void check_pixels(const Image& image, const std::string& name) {
                   " such; radiance must be finite and not negative"));
 }
 
+// The command line names no such file: what opens none has to say who does.
+Image read_picture(const std::string& path) {
+  try {
+    return read_image(path, [&](std::int32_t width, std::int32_t height) { check_size(width, height, path); });
+  } catch (const Error& error) {
+    if (!error.system_failure()) throw;
+    throw Error(error.kind(), compose(error.message(), "; the scene's [lighting] environment names it"),
+                error.system_failure());
+  }
+}
+
 // Rec. 709, linear.
 double luminance(const Float3& c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
 
@@ -142,8 +153,7 @@ void Environment::project() {
 std::shared_ptr<const Environment> load_environment(const Scene& scene) {
   const std::string& path = scene.lighting.environment;
   if (path.empty()) return nullptr;
-  const Image image =
-      read_image(path, [&](std::int32_t width, std::int32_t height) { check_size(width, height, path); });
+  const Image image = read_picture(path);
   return std::make_shared<const Environment>(image,
                                              EnvironmentPlacement{.up = scene.camera.up,
                                                                   .rotation = scene.lighting.environment_rotation,

@@ -41,7 +41,8 @@ class Environment {
   EnvironmentView view_;
 };
 
-/// The environment of a scene's light; null where it names none. Errors of read_image and of the constructor.
+/// The environment of a scene's light; null where it names none. Errors of read_image and of the constructor; one of a
+/// picture that cannot be opened or read says that the scene names it.
 std::shared_ptr<const Environment> load_environment(const Scene& scene);
 
 }  // namespace weir

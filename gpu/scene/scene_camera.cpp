@@ -77,6 +77,16 @@ Double3 GridFrame::physical(const Double3& index) const {
   return {local[0] * s[0], local[1] * s[1], local[2] * s[2]};
 }
 
+Double3 GridFrame::world(const Index3& index) const {
+  const Double3 i = as_double(index);
+  return {origin[0] + voxel_size[0] * i[0], origin[1] + voxel_size[1] * i[1], origin[2] + voxel_size[2] * i[2]};
+}
+
+Double3 GridFrame::index(const Double3& world) const {
+  const Double3 offset = world - origin;
+  return {offset[0] / voxel_size[0] + 0.5, offset[1] / voxel_size[1] + 0.5, offset[2] / voxel_size[2] + 0.5};
+}
+
 Double3 GridFrame::size() const { return physical(as_double(domain.hi)); }
 
 GridFrame frame_of(const NvdbGrid& grid) { return {grid.index_bbox(), grid.voxel_size(), grid.world_origin()}; }
@@ -92,10 +102,9 @@ AzimuthFrame azimuth_frame(const Double3& up, double degrees) {
 
 Camera make_camera(const SceneCamera& scene, const GridFrame& frame, std::span<const Box> content, double aspect) {
   const auto from_world = [&](const Double3& world, std::string_view key) {
-    Double3 index{};
-    for (std::size_t a = 0; a < 3; ++a) {
-      index[a] = (world[a] - frame.origin[a]) / frame.voxel_size[a] + 0.5;
-      if (std::abs(index[a]) <= kFarthest) continue;
+    const Double3 index = frame.index(world);
+    for (const double along : index) {
+      if (std::abs(along) <= kFarthest) continue;
       throw Error(ErrorKind::usage, cat("the camera's ", key, ", (", world[0], ", ", world[1], ", ", world[2],
                                         "), is farther than ", kFarthest, " voxels from the volume; move it closer"));
     }

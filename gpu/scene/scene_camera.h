@@ -21,6 +21,10 @@ struct GridFrame {
   /// A point of index space, in which voxel i covers [i, i + 1), in physical space, whose origin is the domain's lowest
   /// corner.
   Double3 physical(const Double3& index) const;
+  /// The place in the world of voxel `index`'s centre.
+  Double3 world(const Index3& index) const;
+  /// That place in the world as a point of index space, as physical() takes it.
+  Double3 index(const Double3& world) const;
   /// Edges of the domain in physical space.
   Double3 size() const;
 };

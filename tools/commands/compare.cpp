@@ -24,6 +24,7 @@
 #include "format/base/seconds_since.h"
 #include "format/base/share_text.h"
 #include "format/base/text.h"
+#include "format/io/file_id.h"
 #include "format/io/file_system.h"
 #include "format/nanovdb/nvdb_file.h"
 #include "format/process/process_memory.h"
@@ -301,13 +302,26 @@ class ComparePasses {
   CompareOptions options_;
 };
 
+// Of all files that are compared, and of their sidecars.
+std::vector<std::string> input_paths(const CompareArguments& arguments) {
+  std::vector<std::string> paths{arguments.input, arguments.volume, find_sidecar(arguments.volume)};
+  for (const std::string& path : arguments.vector) {
+    paths.push_back(path);
+    paths.push_back(find_sidecar(path));
+  }
+  return paths;
+}
+
 void compare(const CompareArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   const ConversionOptions run = read_conversion_request(arguments.options).conversion;
   const auto threads = limit_threads(run.threads);
   const auto files = make_posix_file_system();
   std::optional<SpectrumFile> spectrum_file;
-  if (!arguments.spectrum.empty()) spectrum_file.emplace(*files, arguments.spectrum);
+  if (!arguments.spectrum.empty()) {
+    require_not_input(file_ids(input_paths(arguments)), arguments.spectrum);
+    spectrum_file.emplace(*files, arguments.spectrum);
+  }
   const std::vector<ComparedPair> pairs = open_pairs(arguments);
   const std::unique_ptr<Trace> trace =
       open_trace(arguments.trace,

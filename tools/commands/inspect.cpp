@@ -20,6 +20,7 @@
 #include "format/base/json_text.h"
 #include "format/base/printable.h"
 #include "format/base/text.h"
+#include "format/io/file_id.h"
 #include "format/io/file_system.h"
 #include "format/io/real_path.h"
 #include "format/layout/nanovdb_layout.h"
@@ -309,6 +310,7 @@ Inspected inspect(const std::string& path, const InspectArguments& arguments, co
   if (!arguments.plot.empty()) {
     format = plot_format(arguments.plot, "plot");
     load_driver("plot", arguments.plot + ": is to be a chart");
+    require_not_input(file_ids(std::array{path, find_sidecar(path)}), arguments.plot);
     chart.emplace(*files, arguments.plot, true);
   }
   const NvdbFile file(path);

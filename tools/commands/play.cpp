@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "format/base/error.h"
+#include "format/base/json_text.h"
 #include "format/base/text.h"
 #include "format/io/file_id.h"
 #include "format/io/file_system.h"
@@ -187,7 +188,11 @@ void play_series(const PlayArguments& arguments) {
                     if (!picture.memory_note.empty() && !std::exchange(warned, true)) {
                       spdlog::warn("{}: {}", volumes[frame], picture.memory_note);
                     }
-                    write(frame, bar ? with_color_bar(picture, *bar) : picture);
+                    if (bar) {
+                      write(frame, with_color_bar(picture, *bar));
+                    } else {
+                      write(frame, picture);
+                    }
                     ++written;
                   });
   } catch (const Error& error) {
@@ -196,7 +201,7 @@ void play_series(const PlayArguments& arguments) {
   }
   progress.finish();
   if (arguments.json) {
-    std::cout << to_json(arguments, request, report, backend->name(), bar_width).dump(2) << '\n';
+    std::cout << json_text(to_json(arguments, request, report, backend->name(), bar_width), 2) << '\n';
   } else {
     if (report.load.way == "cached") spdlog::info("{}: {}", volumes.back(), report.load.note);
     spdlog::info(

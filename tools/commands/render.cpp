@@ -12,12 +12,14 @@
 #include <vector>
 
 #include "format/base/error.h"
+#include "format/base/json_text.h"
 #include "format/base/seconds_since.h"
 #include "format/base/text.h"
 #include "format/io/file_id.h"
 #include "format/io/file_system.h"
 #include "format/nanovdb/nvdb_file.h"
 #include "gpu/image/image_output.h"
+#include "gpu/render/volume_error.h"
 #include "ingest/source/convert_command.h"
 #include "ingest/source/source_files.h"
 #include "ingest/source_registry.h"
@@ -71,7 +73,8 @@ LoadedInput load_file(Backend& backend, const RenderArguments& arguments) {
   if (const std::string warning = map_warning(file->grid()); !warning.empty()) {
     spdlog::warn("{}: {}", arguments.input, warning);
   }
-  return {backend.load(file, 0, nullptr), quantity_title(*file), known_range(*file)};
+  return {naming_volume(arguments.input, [&] { return backend.load(file, 0, nullptr); }), quantity_title(*file),
+          known_range(*file)};
 }
 
 LoadedInput load_dense(Backend& backend, const RenderArguments& arguments, std::optional<std::uint64_t> ceiling,
@@ -130,7 +133,9 @@ void render(const RenderArguments& arguments) {
   }
   progress.start(cat("render, ", render_mode_name(request.scene.mode)), request.pixel_samples(), ProgressUnit::samples);
   request.sampling.progress = [&](std::uint64_t done) { progress.update(done); };
-  Picture picture = backend->render(*volume, request.scene, request.options, request.sampling);
+  Picture picture = naming_volume(arguments.input, [&, &drawn = *volume] {
+    return backend->render(drawn, request.scene, request.options, request.sampling);
+  });
   if (bar) picture = with_color_bar(picture, *bar);
   progress.finish();
   if (!picture.memory_note.empty()) spdlog::warn("{}: {}", arguments.input, picture.memory_note);
@@ -158,7 +163,7 @@ void render(const RenderArguments& arguments) {
                                 {"memory_note", picture.memory_note},
                                 {"load_s", load_s},
                                 {"render_s", picture.render_s}};
-    std::cout << report.dump(2) << '\n';
+    std::cout << json_text(report, 2) << '\n';
   } else {
     if (!picture.levels_note.empty()) spdlog::info("{}: {}", arguments.input, picture.levels_note);
     spdlog::info("{}: {} x {}, {} samples a pixel, {:.2f} s", arguments.output, picture.image.width,

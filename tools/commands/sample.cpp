@@ -16,6 +16,7 @@
 
 #include "compressor/options/conversion_request.h"
 #include "format/base/error.h"
+#include "format/base/json_text.h"
 #include "format/base/seconds_since.h"
 #include "format/base/text.h"
 #include "format/io/file_system.h"
@@ -194,7 +195,7 @@ void sample(const SampleArguments& arguments) {
                                 {"bytes", bytes},
                                 {"total_s", total_s},
                                 {"peak_rss_bytes", peak_resident_bytes()}};
-    std::cout << report.dump(2) << '\n';
+    std::cout << json_text(report, 2) << '\n';
   } else {
     spdlog::info("{}: {} {} {}, {}, {:.2f} s", arguments.output, kind.name, extent_text(shape.extent),
                  scalar_name(shape.type), format_bytes(bytes), total_s);

@@ -168,12 +168,15 @@ void view(const ViewArguments& arguments) {
   for (const std::string& fault : begin_with_readable(files)) {
     spdlog::warn("{}; the page begins with {}", fault, files.steps.front());
   }
-  if (backend->name() == "cpu") {
-    require_memory(files, choice.memory, [&](const std::string& path) {
-      if (preview && path == preview->file()) return arguments.input;
-      return compared && path == compared->file() ? arguments.against : path;
-    });
+  const auto named = [&](const std::string& path) {
+    if (preview && path == preview->file()) return arguments.input;
+    return compared && path == compared->file() ? arguments.against : path;
+  };
+  if (lies_elsewhere(files)) {
+    spdlog::warn("{} and {} have other index boxes, voxel sizes or origins; each is shown where it lies in the world",
+                 named(files.steps.front()), named(files.against.front()));
   }
+  if (backend->name() == "cpu") require_memory(files, choice.memory, named);
   ListenAddress address = settings.address;
   const std::string token = arguments.for_program ? settings.token : "";
   ViewServer server(io, std::move(settings), std::move(files), *backend);
@@ -219,7 +222,9 @@ void add_view(CLI::App& app) {
       ->type_name("N")
       ->check(CLI::Range(std::uint64_t{1}, kMostViewers))
       ->capture_default_str();
-  command->add_option("--pixels", arguments->pixels, "largest picture, in pixels; each page needs 12 bytes per pixel")
+  command
+      ->add_option("--pixels", arguments->pixels,
+                   "largest picture, in pixels; each page needs about 30 bytes per pixel")
       ->type_name("N")
       ->check(CLI::Range(kLeastViewPixels, kMostViewPixels))
       ->capture_default_str();

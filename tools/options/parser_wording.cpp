@@ -2,7 +2,8 @@
 
 #include <cstddef>
 #include <optional>
-#include <regex>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "format/base/text.h"
@@ -20,43 +21,93 @@ std::string alternatives(const std::string& list) {
   return text;
 }
 
-std::optional<std::smatch> match(const std::string& text, const char* pattern) {
-  std::smatch found;
-  if (!std::regex_match(text, found, std::regex(pattern))) return std::nullopt;
-  return found;
+// What stands before and behind a word, of any length: a regular expression goes as deep as the text is long.
+struct Around {
+  std::string before;
+  std::string behind;
+};
+
+std::optional<Around> around(const std::string& text, std::size_t at, std::string_view word) {
+  if (at == std::string::npos) return std::nullopt;
+  return Around{text.substr(0, at), text.substr(at + word.size())};
+}
+std::optional<Around> around_first(const std::string& text, std::string_view word) {
+  return around(text, text.find(word), word);
+}
+std::optional<Around> around_last(const std::string& text, std::string_view word) {
+  return around(text, text.rfind(word), word);
+}
+
+// What stands between the two, where the text begins and ends with them.
+std::optional<std::string> between(const std::string& text, std::string_view begin, std::string_view end) {
+  if (text.size() < begin.size() + end.size() || !text.starts_with(begin) || !text.ends_with(end)) return std::nullopt;
+  return text.substr(begin.size(), text.size() - begin.size() - end.size());
+}
+
+bool is_one_word(const std::string& text) {
+  return !text.empty() && text.find_first_of(" \t\n\r\f\v") == std::string::npos;
+}
+
+bool is_number(const std::string& text) {
+  return !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+}
+
+using ValuesOf = std::function<std::string(const std::string& option)>;
+
+// "At Most 1 required but received 2"
+std::optional<std::string> count_wording(const std::string& option, const std::string& fault,
+                                         const ValuesOf& values_of) {
+  const auto numbers = around_first(fault, " required but received ");
+  if (!numbers || !is_number(numbers->behind)) return std::nullopt;
+  const std::string& received = numbers->behind;
+  const bool most = numbers->before.starts_with("At Most ");
+  if (!most && !numbers->before.starts_with("At least ")) return std::nullopt;
+  const std::string taken = numbers->before.substr(numbers->before.rfind(' ') + 1);
+  if (!is_number(taken)) return std::nullopt;
+  if (most && taken == "1") return cat(option, " is given ", received, " times; give it once");
+  const std::string values = values_of ? values_of(option) : "";
+  return cat(option, " has ", received, received == "1" ? " value" : " values", ", it takes ", taken,
+             values.empty() ? "" : ": ", values);
+}
+
+// What the parser says behind "OPTION: ".
+std::optional<std::string> value_wording(const std::string& option, const std::string& fault) {
+  if (const auto value = between(fault, "1 required ", " missing")) return cat(option, " needs a value, ", *value);
+  if (const auto path = between(fault, "Directory does not exist: ", "")) {
+    return cat(option, " is \"", *path, "\", which does not exist; name a directory");
+  }
+  if (const auto parts = around_last(fault, " not in range "); parts && parts->before.starts_with("Value ")) {
+    const std::string value = parts->before.substr(std::string_view("Value ").size());
+    if (const auto ends = around_first(parts->behind, " to ")) {
+      constexpr std::size_t kLongNumber = 100;  // digits: the largest double, where there is no end
+      const bool endless = ends->behind.size() > kLongNumber;
+      return cat(option, " is \"", value, "\", it must be a number from ", endless ? "0 on" : parts->behind);
+    }
+  }
+  if (const auto parts = around_last(fault, " not in {"); parts && parts->behind.ends_with('}')) {
+    return cat(option, " is \"", parts->before, "\", it must be ",
+               alternatives(parts->behind.substr(0, parts->behind.size() - 1)));
+  }
+  return std::nullopt;
 }
 
 }  // namespace
 
-std::string parser_wording(const std::string& text,
-                           const std::function<std::string(const std::string& option)>& values_of) {
-  if (const auto m = match(text, "(\\S+): 1 required (.*) missing")) {
-    return cat(m->str(1), " needs a value, ", m->str(2));
+std::string parser_wording(const std::string& text, const ValuesOf& values_of) {
+  if (const auto failed = between(text, "Could not convert: ", "")) {
+    const auto parts = around_first(*failed, " = ");
+    if (parts && is_one_word(parts->before)) {
+      return cat(parts->before, " is \"", parts->behind, "\", it must be a number");
+    }
   }
-  if (const auto m = match(text, "(\\S+): At Most 1 required but received ([0-9]+)")) {
-    return cat(m->str(1), " is given ", m->str(2), " times; give it once");
+  if (const auto parts = around_first(text, ": "); parts && is_one_word(parts->before)) {
+    if (const auto counted = count_wording(parts->before, parts->behind, values_of)) return *counted;
+    if (const auto named = value_wording(parts->before, parts->behind)) return *named;
   }
-  if (const auto m = match(text, "(\\S+): At (?:least|Most) ([0-9]+) required but received ([0-9]+)")) {
-    const std::string values = values_of ? values_of(m->str(1)) : "";
-    return cat(m->str(1), " has ", m->str(3), m->str(3) == "1" ? " value" : " values", ", it takes ", m->str(2),
-               values.empty() ? "" : ": ", values);
+  const auto needs = around_first(text, " requires ");
+  if (needs && is_one_word(needs->before) && is_one_word(needs->behind)) {
+    return cat(needs->before, " needs ", needs->behind);
   }
-  if (const auto m = match(text, "Could not convert: (\\S+) = ([^]*)")) {
-    return cat(m->str(1), " is \"", m->str(2), "\", it must be a number");
-  }
-  if (const auto m = match(text, "(\\S+): ([^]*) not in \\{(.*)\\}")) {
-    return cat(m->str(1), " is \"", m->str(2), "\", it must be ", alternatives(m->str(3)));
-  }
-  if (const auto m = match(text, "(\\S+): Value ([^]*) not in range (.*) to (.*)")) {
-    constexpr std::size_t kLongNumber = 100;  // digits: the largest double, where there is no end
-    const bool endless = m->str(4).size() > kLongNumber;
-    return cat(m->str(1), " is \"", m->str(2), "\", it must be a number from ",
-               endless ? "0 on" : cat(m->str(3), " to ", m->str(4)));
-  }
-  if (const auto m = match(text, "(\\S+): Directory does not exist: ([^]*)")) {
-    return cat(m->str(1), " is \"", m->str(2), "\", which does not exist; name a directory");
-  }
-  if (const auto m = match(text, "(\\S+) requires (\\S+)")) return cat(m->str(1), " needs ", m->str(2));
   return text;
 }
 

@@ -24,7 +24,7 @@ void check_outputs(std::span<const SeriesStep> steps, std::span<const std::strin
     check_output(steps[i].path, outputs[i]);
     require_not_input(inputs, outputs[i]);
     if (steps.size() > 1 && !may_exist && std::filesystem::exists(outputs[i], ignored)) {
-      throw usage_error(cat(outputs[i], ": exists; choose another output or pass --overwrite"));
+      throw usage_error(compose(outputs[i], ": exists; choose another output or pass ", option("overwrite")));
     }
   }
 }
@@ -35,8 +35,8 @@ void SeriesExtents::check(const SeriesStep& step, const SourceInfo& info) {
   const First& first = first_.emplace(step.series, First{place, info.extent}).first->second;
   if (info.extent == first.extent) return;
   throw Error(ErrorKind::input,
-              cat(place, ": extent ", extent_text(info.extent), " differs from ", extent_text(first.extent), " of ",
-                  first.place, ", so that a rate gives files of two sizes; give --size"));
+              compose(place, ": extent ", extent_text(info.extent), " differs from ", extent_text(first.extent), " of ",
+                      first.place, ", so that a rate gives files of two sizes; give ", option("size")));
 }
 
 void SeriesExtents::check_all(std::span<const SeriesStep> steps,

@@ -98,9 +98,14 @@ Image draw_color_bar(const TransferFunction& transfer, const std::string& title,
 }
 
 Picture with_color_bar(const Picture& picture, const Image& bar) {
-  Picture both = picture;
-  both.tone = {1, false};  // as it is: the tone is in the pixels
-  both.image = Image(picture.image.width + bar.width, picture.image.height);
+  Picture both{.image = Image(picture.image.width + bar.width, picture.image.height),
+               .tone = {1, false},  // as it is: the tone is in the pixels
+               .render_s = picture.render_s,
+               .cache = picture.cache,
+               .missed = picture.missed,
+               .finest_level = picture.finest_level,
+               .levels_note = picture.levels_note,
+               .memory_note = picture.memory_note};
   const auto shown = [&](float radiance) { return tone_map(radiance, picture.tone); };
   for (std::int32_t y = 0; y < both.image.height; ++y) {
     for (std::int32_t x = 0; x < picture.image.width; ++x) {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "compressor/conversion_identity.h"
+#include "compressor/describe_conversion.h"
 #include "compressor/options/canonical_options.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
@@ -24,6 +25,7 @@ namespace {
 Sidecar expected_record(const SourceInfo& source, const ConversionOptions& options) {
   Sidecar record;
   record.source.path = source.path;
+  record.source.real_path = other_real_path(source);
   record.source.dataset = source.dataset;
   record.source.mtime = utc_text(source.mtime_ns);
   record.source.files_digest = source.files_digest;
@@ -55,10 +57,14 @@ bool same_place(const Sidecar::Grid& grid, const SourceInfo& source) {
   return grid.index_bbox == source.domain() && grid.voxel_size == source.spacing && grid.origin == source.origin;
 }
 
-// "a.raw", "./a.raw" and its absolute path name one file.
-bool same_file(const std::string& found, const std::string& expected) {
+// "a.raw", "./a.raw" and its absolute path name one file; "a.raw" of two working directories is two, where both say
+// their real paths. Weir 0.1 did not.
+bool same_file(const Sidecar::Source& found, const Sidecar::Source& expected) {
+  const bool relative = found.real_path.empty();
+  const std::string& found_path = relative ? found.path : found.real_path;
+  const std::string& expected_path = relative || expected.real_path.empty() ? expected.path : expected.real_path;
   std::error_code not_there;
-  return found == expected || std::filesystem::equivalent(found, expected, not_there);
+  return found_path == expected_path || std::filesystem::equivalent(found_path, expected_path, not_there);
 }
 
 std::string difference(const Sidecar& found, const Sidecar& expected, const SourceInfo& source) {
@@ -132,8 +138,9 @@ FinishedOutput find_output(const SourceInfo& source, const ConversionOptions& op
     return {unreadable ? FinishedOutput::State::unreadable : FinishedOutput::State::foreign, {}, error.what()};
   }
   const Sidecar expected = expected_record(source, options);
-  if (!same_file(found.source.path, expected.source.path)) {
-    return {FinishedOutput::State::foreign, {}, cat("was made of ", found.source.path)};
+  if (!same_file(found.source, expected.source)) {
+    const std::string& made_of = found.source.real_path.empty() ? found.source.path : found.source.real_path;
+    return {FinishedOutput::State::foreign, {}, cat("was made of ", made_of)};
   }
   std::string reason = difference(found, expected, source);
   if (reason.empty()) reason = changed_since(record_path, source);

@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "compressor/leaf/certificate.h"
+#include "compressor/select/file_size.h"
 #include "format/base/scalar_type.h"
 #include "format/base/text.h"
 #include "format/sidecar/valid_voxels.h"
@@ -102,6 +103,38 @@ void check_digests(const Sidecar& s, std::vector<VolumeCheck>& checks) {
   }
 }
 
+// Whether the file keeps what was asked of it: of what a scene shows, where one was given.
+void check_budget(const Sidecar& s, std::uint64_t dense, std::vector<VolumeCheck>& checks) {
+  const Sidecar::Budget& budget = s.budget;
+  const Sidecar::CertifiedError& error = s.visible ? s.visible->error : s.error;
+  const std::string asked = cat("sidecar budget.requested of kind ", budget.kind);
+  if (budget.kind == "lossless") {
+    checks.push_back({asked, error.lossless ? "lossless" : "not lossless", "lossless", error.lossless});
+    return;
+  }
+  const std::initializer_list<std::string_view> with_numbers{"psnr", "max_error", "size", "rate"};
+  if (std::ranges::find(with_numbers, budget.kind) == with_numbers.end()) return;
+  if (!budget.requested) {
+    checks.push_back({asked, "none", "a number", false});
+    return;
+  }
+  const double requested = *budget.requested;
+  if (budget.kind == "psnr") {
+    const bool met = !error.psnr_db || *error.psnr_db >= requested - kRounding * (1 + std::fabs(requested));
+    checks.push_back({asked, cat(requested, " dB"), cat("at most ", shown(error.psnr_db), ", psnr_db"), met});
+  } else if (budget.kind == "max_error") {
+    checks.push_back(
+        {asked, cat(requested), cat("at least ", error.max_abs, ", max_abs"), !(error.max_abs > requested)});
+  } else if (requested > 0) {
+    const bool by_size = budget.kind == "size";
+    const double bytes = by_size ? requested : static_cast<double>(bytes_at_rate(dense, requested));
+    const auto found = static_cast<double>(budget.file_bytes);
+    const bool shorter = s.weir.options.contains("at-most");
+    checks.push_back({asked, cat(bytes, " bytes"), cat(shorter ? "at least " : "", budget.file_bytes, ", file_bytes"),
+                      shorter ? found <= bytes : found == bytes});
+  }
+}
+
 void check_timing(const Sidecar::Timing& timing, std::vector<VolumeCheck>& checks) {
   const double least = std::min({timing.survey_s, timing.encode_s, timing.total_s});
   checks.push_back({"sidecar timing", cat(least, " s"), "0 s or more", !(least < 0)});
@@ -137,6 +170,11 @@ std::vector<VolumeCheck> check_certificate(const Sidecar& s) {
   };
   const auto type = parse_scalar(s.source.type);
   one_of("source.type", s.source.type, {type ? scalar_name(*type) : "none"});  // by no alias
+  one_of("budget.kind", s.budget.kind, {"size", "rate", "psnr", "max_error", "lossless", "minimum"});
+  check_budget(s, dense, checks);
+  one_of("selection.metric", s.selection.metric, {"sse", "farthest", "closest", "median"});
+  one_of("selection.fill", s.selection.fill, {"mean", "background"});
+  one_of("selection.brick", cat(s.selection.brick), {"8", "16", "32"});
   one_of("nonfinite.policy", s.nonfinite.policy, {"error", "background", "keep"});
   if (!s.missing.policy.empty()) one_of("missing.policy", s.missing.policy, {"error", "background", "nan", "keep"});
   checks.push_back({"sidecar background.share", cat(s.background.share), "0 to 1",

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "format/base/text.h"
@@ -86,8 +87,11 @@ std::vector<VolumeCheck> packed_checks(const PackedData& packed, const Sidecar& 
   const PackedCensus census = take_packed_census(packed);
   const std::array<std::uint64_t, 5> blocks{census.none, census.blocks[0], census.blocks[1], census.blocks[2],
                                             census.blocks[3]};
+  const std::uint64_t kept = std::accumulate(census.blocks.begin(), census.blocks.end(), std::uint64_t{0});
   return {equal("sidecar packed.preview", packed.header().preview, sidecar.packed->preview),
-          equal("sidecar selection.blocks", blocks, *sidecar.selection.blocks)};
+          equal("sidecar selection.blocks", blocks, *sidecar.selection.blocks),
+          equal("sidecar selection.leaves_kept", kept, sidecar.selection.leaves_kept),
+          equal("sidecar selection.bits", decltype(sidecar.selection.bits){}, sidecar.selection.bits)};
 }
 
 }  // namespace

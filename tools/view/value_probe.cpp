@@ -102,11 +102,24 @@ std::optional<ProbedVoxel> probe_voxel(const NvdbGrid& grid, const Scene& scene,
       if (through < kSeen) break;
     }
   }
-  if (!best) return best;
-  const std::array<double, 3> index{static_cast<double>(best->voxel.x), static_cast<double>(best->voxel.y),
-                                    static_cast<double>(best->voxel.z)};
-  for (std::size_t a = 0; a < 3; ++a) best->world[a] = frame.origin[a] + frame.voxel_size[a] * index[a];
+  if (best) best->world = frame.world(best->voxel);
   return best;
+}
+
+std::optional<float> value_at(const NvdbGrid& grid, const Double3& world) {
+  const GridFrame frame = frame_of(grid);
+  const Double3 index = frame.index(world);
+  const Box& box = frame.domain;
+  const std::array<std::int64_t, 3> low{box.lo.x, box.lo.y, box.lo.z};
+  const std::array<std::int64_t, 3> high{box.hi.x, box.hi.y, box.hi.z};
+  std::array<std::int64_t, 3> voxel{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double at = std::floor(index[a]);
+    // Before it becomes an integer: places are anywhere.
+    if (!(at >= static_cast<double>(low[a]) && at < static_cast<double>(high[a]))) return std::nullopt;
+    voxel[a] = static_cast<std::int64_t>(at);
+  }
+  return grid.value({voxel[0], voxel[1], voxel[2]});
 }
 
 }  // namespace weir

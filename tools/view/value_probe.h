@@ -24,4 +24,7 @@ struct ProbedVoxel {
 std::optional<ProbedVoxel> probe_voxel(const NvdbGrid& grid, const Scene& scene, const Camera& camera,
                                        const MinMax& range, float background, double x, double y);
 
+/// The value of the voxel at a place in the world; none outside the grid's box. Throws as NvdbGrid::value.
+std::optional<float> value_at(const NvdbGrid& grid, const Double3& world);
+
 }  // namespace weir

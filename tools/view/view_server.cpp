@@ -347,7 +347,9 @@ void ViewServer::answer_probe(ViewerId id, Viewer& viewer) {
             answer["world"] = found->world;
             if (view->against) {
               const auto other = open_files_.get(file_of(view->step, 1 - probe.side));
-              answer["against"] = other->grid().value(found->voxel);
+              const std::optional<float> there = value_at(other->grid(), found->world);
+              answer["against"] = there ? Json(*there) : Json();
+              answer["outside"] = !there;
             }
           }
         } catch (const std::exception& error) {

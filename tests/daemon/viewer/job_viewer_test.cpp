@@ -99,7 +99,7 @@ TEST_F(JobViewerTest, OneViewer_ServesItsWholeSeries) {
   EXPECT_EQ(viewer.view().state, ViewerState::ready);
   EXPECT_EQ(calls(), std::vector<std::string>{
                          "view /out/s_1.nvdb --series --private --progress-fd=3 --progress=never --backend=cpu "
-                         "--memory=92274688 --forecast-memory=67108864 --pixels=1153433 --viewers=4 --threads=3"});
+                         "--memory=92274688 --forecast-memory=67108864 --pixels=781988 --viewers=4 --threads=3"});
   EXPECT_EQ(viewer.open("/out/t_1.nvdb", false), Opened::made) << "nobody looks at the other one";
   EXPECT_EQ(viewer.view().state, ViewerState::starting);
   ASSERT_TRUE(comes_to(viewer, ViewerState::ready));

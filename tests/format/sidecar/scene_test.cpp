@@ -10,6 +10,7 @@
 #include "format/base/error.h"
 #include "tests/support/message_of_error.h"
 #include "tests/support/temporary_directory.h"
+#include "tests/support/unreadable_file.h"
 
 namespace weir::scene_test {
 namespace {
@@ -214,6 +215,13 @@ TEST(Scene, Directory_IsNoScene) {
   const TemporaryDirectory directory;
   EXPECT_EQ(message_of_error(ErrorKind::input, [&] { load_scene(directory.path()); }),
             directory.path().string() + ": cannot read the scene; it must be an existing TOML file");
+}
+
+TEST(Scene, FileThatMayNotBeRead_IsAnIoError) {
+  const std::string path = unreadable_file();
+  if (path.empty()) GTEST_SKIP() << "this system has no file that root may not read";
+  const std::string message = message_of_error(ErrorKind::io, [&] { load_scene(path); });
+  EXPECT_TRUE(message.starts_with(path + ": cannot read: ")) << message;
 }
 
 TEST(Scene, FileLongerThanAnyScene_IsRefusedUnread) {

@@ -45,7 +45,9 @@ Sidecar sample() {
               Sidecar::IrregularAxes{{}, {}, {0.1, 0.3, 0.6}},
               {"y"},
               "axes along +z, -x, +y of the file's world",
-              "1 of its 3 chunks is not stored and reads as its fill value, 7"};
+              "1 of its 3 chunks is not stored and reads as its fill value, 7",
+              12,
+              "/data/in/a.nc"};
   s.grid = {"density", "float32", {60, 61, 62}, {0.1, 0.2, 0.3}, {-1, 1e300, 5e-324}, {{-4, 5, 6}, {56, 66, 68}}};
   s.value_range = {-0.1, 1.0 / 3.0};
   s.nonfinite = {18446744073709551615U, "keep"};
@@ -182,10 +184,12 @@ TEST(Sidecar, DeepNesting_IsRefusedBeforeItTakesMemory) {
 TEST(Sidecar, KeysAbsentFromOlderSidecarsAreOptional) {
   const std::string older = edited([](auto& d) {
     d["source"].erase("files_digest");
+    d["source"].erase("real_path");
     d["visible"].erase("scene_digest");
   });
   const Sidecar read = parse_sidecar(older, "a.nvdb.json");
   EXPECT_EQ(read.source.files_digest, "");
+  EXPECT_EQ(read.source.real_path, "");
   EXPECT_EQ(read.visible->scene_digest, "");
   EXPECT_EQ(nlohmann::json::parse(to_json_text(read)), nlohmann::json::parse(older));
 }

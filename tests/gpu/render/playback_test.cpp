@@ -53,7 +53,7 @@ class FakeBackend : public Backend {
   Picture render(LoadedVolume& volume, const Scene&, const RenderOptions&, const SampleOptions&) override {
     std::this_thread::sleep_for(render_time);
     const float value = volume.info().background;
-    if (value == fails_at) throw Error(ErrorKind::interrupted, "stopped");
+    if (value == fails_at) throw Error(failure, "stopped");
     Picture picture;
     picture.image = Image(1, 1);
     picture.image.pixels[0] = {value, 0, 0};
@@ -63,6 +63,7 @@ class FakeBackend : public Backend {
   std::chrono::milliseconds load_time{0};
   std::chrono::milliseconds render_time{0};
   float fails_at = -1;
+  ErrorKind failure = ErrorKind::interrupted;
   std::atomic<int> alive{0};
   std::atomic<int> most{0};
   int room = 2;  // volumes
@@ -184,6 +185,13 @@ TEST_F(Playback, FailedRendering_FailsAfterTheFramesBefore) {
   EXPECT_EQ(error(), "stopped");
   EXPECT_EQ(frames_, (Frames{{0, 0}, {1, 1}}));
   EXPECT_EQ(backend_.alive, 0);
+}
+
+TEST_F(Playback, VolumeThatCannotBeRendered_IsNamed) {
+  make(4);
+  backend_.fails_at = 2;
+  backend_.failure = ErrorKind::usage;
+  EXPECT_EQ(error(), files_[2] + ": stopped");
 }
 
 TEST_F(Playback, FailedWrite_StopsThePlayback) {

@@ -33,6 +33,13 @@ std::array<float, 2> project(const Camera& camera, const Float3& stretch, const 
           0.5F + 0.5F * dot(d, camera.down) / dot(camera.down, camera.down) / depth};
 }
 
+TEST(GridFrame, PlaceInTheWorld_IsAPointOfIndexSpace) {
+  const GridFrame frame{{{0, 0, 0}, {8, 8, 8}}, {2, 0.5, 1}, {0.5, -4, 10}};
+  EXPECT_EQ(frame.world({3, 2, -1}), (Double3{6.5, -3, 9}));
+  EXPECT_EQ(frame.index({6.5, -3, 9}), (Double3{3.5, 2.5, -0.5})) << "in the middle of that voxel";
+  EXPECT_EQ(frame.index({5.5, -3.25, 9.5}), (Double3{3, 2, 0})) << "its lowest corner, and the highest one along z";
+}
+
 TEST(MakeCamera, AzimuthZeroIsOnTheXAxis) {
   SceneCamera scene;
   scene.azimuth = scene.elevation = 0;

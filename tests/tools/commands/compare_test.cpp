@@ -134,6 +134,20 @@ TEST(Compare, SpectrumIsAskedForByTheEndingOfItsFile) {
   EXPECT_EQ(read_file(table).substr(0, 39), "wave_number,modes,source,decoded,error\n");
 }
 
+TEST(Compare, SpectrumThatIsAnInput_IsRefused) {
+  if (!has_fftw()) GTEST_SKIP() << "this weir was built without FFTW";
+  const ConvertedPair volume("turbulence", "40x30x20_float32", {"--psnr", "40"});
+  const std::string source = volume.directory / "v.csv";
+  std::filesystem::copy_file(volume.raw, source);
+  const std::string before = read_file(source);
+  const CommandResult refused =
+      run_weir({"compare", source, volume.nvdb, "--dims", "40,30,20", "--type", "float32", "--spectrum", source});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_EQ(refused.err, cat("weir: ", source, ": belongs to the input, and writing ", source,
+                             " would replace or remove it; choose another output\n"));
+  EXPECT_EQ(read_file(source), before);
+}
+
 TEST(Compare, SpectrumReplacesTheOneBefore_AsTheHelpSays) {
   const std::string help = run_weir({"compare", "--help"}).out;
   EXPECT_NE(help.find("or a table, FILE.csv, which replaces one that is there; reads both once more\n"),

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "format/base/text.h"
 #include "format/layout/nanovdb_layout.h"
 #include "tests/support/unreadable_file.h"
 #include "tests/tools/support/converted_volume.h"
@@ -56,6 +57,19 @@ TEST_F(Inspect, DrawsTheHistogramAsPngAndSvg) {
     EXPECT_EQ(result.exit_code, 0) << result.err;
     EXPECT_TRUE(read_file(directory_ / name).starts_with(begin)) << name;
   }
+}
+
+TEST_F(Inspect, PlotThatIsTheVolumeOrItsSidecar_IsRefused) {
+  const std::string named = directory_ / "v.png";
+  fs::copy_file(volume_, named);
+  fs::create_hard_link(sidecar_path(volume_), directory_ / "s.png");
+  const std::string before = read_file(named);
+  const CommandResult of_volume = run_weir({"inspect", named, "--plot", named});
+  EXPECT_EQ(of_volume.exit_code, 2);
+  EXPECT_EQ(of_volume.err, cat("weir: ", named, ": belongs to the input, and writing ", named,
+                               " would replace or remove it; choose another output\n"));
+  EXPECT_EQ(read_file(named), before);
+  EXPECT_EQ(run_weir({"inspect", volume_, "--plot", directory_ / "s.png"}).exit_code, 2);
 }
 
 TEST_F(Inspect, WorksWithoutSidecar) {

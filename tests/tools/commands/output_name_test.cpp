@@ -1,8 +1,10 @@
-// What weir convert makes of --output.
+// What commands make of --output.
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "tests/support/run_command.h"
 
@@ -40,6 +42,22 @@ TEST_F(OutputName, Dash_IsNoDirectory) {
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_EQ(result.err, "weir: -: a directory is to be made, and - means standard output; name it ./- or else\n");
   EXPECT_EQ(list_directory(directory_.path()), std::vector<std::string>{"a_4x3x2_uint8.raw"});
+}
+
+TEST_F(OutputName, BytesThatAreNotUtf8_AreReplacedInTheReport) {
+  ASSERT_EQ(weir({"convert", "a_4x3x2_uint8.raw", "-o", "v.nvdb"}).exit_code, 0);
+  const auto reported = [&](const char* key, const std::vector<std::string>& command) {
+    const CommandResult result = weir(command);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const auto report = nlohmann::json::parse(result.out, nullptr, false);
+    return report.is_object() ? report.value(key, "none") : "no JSON: " + result.out;
+  };
+  EXPECT_EQ(reported("image", {"render", "v.nvdb", "-o", "b\xff.png", "--size", "8x8", "--spp", "1", "--json"}),
+            "b\xEF\xBF\xBD.png");
+  EXPECT_EQ(reported("output", {"sample", "cloud", "--dims", "8,8,8", "-o", "b\xff.raw", "--json"}),
+            "b\xEF\xBF\xBD.raw");
+  EXPECT_EQ(reported("output", {"play", "v.nvdb", "-o", "b\xff", "--size", "8x8", "--spp", "1", "--json"}),
+            "b\xEF\xBF\xBD");
 }
 
 TEST_F(OutputName, Vdb_IsRefusedWithTheCommandThatExports) {

@@ -84,8 +84,9 @@ TEST_F(PackedRender, TooLittleMemory_IsRefusedWithWhatItTakes) {
   const CommandResult result = render(directory_ / "a.png", {"--memory", "512KiB"});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_EQ(result.err,
-            "weir: --memory 512.0 KiB is too small to render this grid, which takes 688.0 KiB at least; give "
-            "--memory 1MiB or more\n");
+            "weir: " + volume_ +
+                ": --memory 512.0 KiB is too small to render this grid, which takes 688.0 KiB at least; give "
+                "--memory 1MiB or more\n");
   EXPECT_FALSE(std::filesystem::exists(directory_ / "a.png"));
 }
 

@@ -263,7 +263,9 @@ TEST_F(Render, EnvironmentOfTheSceneChangesThePicture) {
   std::filesystem::remove(sky);
   const CommandResult missing = run_weir(arguments("a.png", {"--scene", scene}));
   EXPECT_EQ(missing.exit_code, 3);
-  EXPECT_EQ(missing.err, "weir: " + sky + ": cannot open: No such file or directory\n");
+  EXPECT_EQ(missing.err, "weir: " + sky +
+                             ": cannot open: No such file or directory; the scene's [lighting] environment names "
+                             "it\n");
 }
 
 TEST_F(Render, UnwritableOutput_IsRefusedBeforeRendering) {

@@ -26,6 +26,18 @@ TEST(ParserWording, ManyChoices_AreListedAsWeirDoes) {
   EXPECT_EQ(parser_wording("--one: x not in {a}"), "--one is \"x\", it must be a");
 }
 
+TEST(ParserWording, ValueOfAnyLengthThatSaysWhatTheParserSays_IsNamedAsItIs) {
+  const std::string value = "a: b not in range 1 to 2 not in {" + std::string(1 << 20, 'x');
+  EXPECT_EQ(parser_wording("--progress: " + value + " not in {auto,never}"),
+            "--progress is \"" + value + "\", it must be auto or never");
+  EXPECT_EQ(parser_wording("--limit: Value " + value + " not in range 1 to 1000"),
+            "--limit is \"" + value + "\", it must be a number from 1 to 1000");
+  const CommandResult result = run_weir({"jobs", "--limit", std::string(100000, '7')});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_TRUE(result.err.ends_with("777\", it must be a number from 1 to 1000; see weir jobs --help\n"))
+      << result.err.substr(0, 200);
+}
+
 // The parser's own words, of which another version may have others, are those that are known.
 TEST(ParserWording, EveryWrongValue_IsNamedWithWhatItMustBe) {
   const auto refused = [](const std::vector<std::string>& words) {

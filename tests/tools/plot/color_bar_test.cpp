@@ -75,7 +75,7 @@ TEST(ColorBar, OfAPictureThatIsTooLow_IsRefused) {
             "--colorbar needs a picture of at least 64 pixels in height, this one has 63");
 }
 
-TEST(ColorBar, BesideAPicture_ItKeepsThePicturesBytes) {
+TEST(ColorBar, BesideAPicture_ItKeepsThePicturesBytesAndNotes) {
   Picture picture;
   picture.image = Image(3, 70);
   for (std::size_t i = 0; i < picture.image.pixels.size(); ++i) {
@@ -83,9 +83,15 @@ TEST(ColorBar, BesideAPicture_ItKeepsThePicturesBytes) {
     picture.image.pixels[i] = {v, 2 - v, 0.5F};
   }
   picture.tone = {1.3F, true};
+  picture.finest_level = 2;
+  picture.levels_note = "coarse";
+  picture.memory_note = "little";
   const Image bar = draw_color_bar(viridis(0, 1), "", 70);
   const Picture both = with_color_bar(picture, bar);
   ASSERT_EQ(both.image.width, 3 + bar.width);
+  EXPECT_EQ(both.finest_level, 2);
+  EXPECT_EQ(both.levels_note, "coarse");
+  EXPECT_EQ(both.memory_note, "little");
   const auto before = encode_rgb24(picture.image, picture.tone);
   const auto after = encode_rgb24(both.image, both.tone);
   for (std::size_t y = 0; y < 70; ++y) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "tests/tools/support/converted_volume.h"
@@ -72,6 +73,56 @@ TEST_F(CertificateCheck, FigureThatContradictsAnother_Fails) {
               s.visible = Sidecar::Visible{"a.toml", 1, 1U << 30U, s.error, ""};
             }),
             "sidecar visible.voxels\n");
+}
+
+TEST_F(CertificateCheck, NameThatWeirDoesNotWrite_Fails) {
+  const auto failed = [&](const std::function<void(Sidecar&)>& change) {
+    Sidecar changed = sidecar();
+    change(changed);
+    return failed_names(changed);
+  };
+  EXPECT_EQ(failed([](Sidecar& s) { s.budget.kind = "bogus"; }), "sidecar budget.kind\n");
+  EXPECT_EQ(failed([](Sidecar& s) { s.selection.metric = "bogus"; }), "sidecar selection.metric\n");
+  EXPECT_EQ(failed([](Sidecar& s) { s.selection.fill = "bogus"; }), "sidecar selection.fill\n");
+  EXPECT_EQ(failed([](Sidecar& s) { s.selection.brick = 12; }), "sidecar selection.brick\n");
+}
+
+TEST_F(CertificateCheck, BudgetThatTheFileDoesNotMeet_Fails) {
+  const Sidecar good = with_error(sidecar());
+  const auto failed = [&](const std::string& kind, std::optional<double> requested, bool at_most = false) {
+    Sidecar changed = good;
+    changed.budget.kind = kind;
+    changed.budget.requested = requested;
+    if (at_most) changed.weir.options["at-most"] = "true";
+    return failed_names(changed);
+  };
+  const double psnr_db = *good.error.psnr_db;
+  EXPECT_EQ(failed("psnr", psnr_db), "");
+  EXPECT_EQ(failed("psnr", psnr_db + 0.001), "sidecar budget.requested of kind psnr\n");
+  EXPECT_EQ(failed("psnr", std::nullopt), "sidecar budget.requested of kind psnr\n");
+  EXPECT_EQ(failed("max_error", 3), "");
+  EXPECT_EQ(failed("max_error", 2.999), "sidecar budget.requested of kind max_error\n");
+  EXPECT_EQ(failed("lossless", std::nullopt), "sidecar budget.requested of kind lossless\n");
+  EXPECT_EQ(failed("minimum", std::nullopt), "");
+  const auto bytes = static_cast<double>(good.budget.file_bytes);
+  EXPECT_EQ(failed("size", bytes), "");
+  EXPECT_EQ(failed("size", bytes + 1), "sidecar budget.requested of kind size\n");
+  EXPECT_EQ(failed("size", bytes + 1, true), "") << "a shorter file was allowed";
+  EXPECT_EQ(failed("size", bytes - 1, true), "sidecar budget.requested of kind size\n");
+  EXPECT_EQ(failed("rate", 1e6), "sidecar budget.requested of kind rate\n");
+}
+
+// What a scene shows is what it was promised for.
+TEST_F(CertificateCheck, BudgetOfAScene_IsMetByWhatItShows) {
+  Sidecar changed = with_error(sidecar());
+  changed.visible = Sidecar::Visible{"a.toml", 1, 1, changed.error, ""};
+  changed.visible->error.mse = changed.visible->error.rmse = changed.visible->error.nmse = 0;
+  changed.visible->error.max_abs = 0;
+  changed.visible->error.psnr_db.reset();
+  changed.visible->error.lossless = true;
+  changed.budget.kind = "lossless";
+  changed.budget.requested.reset();
+  EXPECT_EQ(failed_names(changed), "");
 }
 
 TEST_F(CertificateCheck, GradientThatCannotBe_Fails) {

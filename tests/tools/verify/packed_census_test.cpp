@@ -70,12 +70,19 @@ TEST_F(PackedCensusTest, Sidecar_OtherBlocksThanItSays_IsReported) {
   const auto kinds = PackedSample::blocks_by_kind();
   sidecar.packed = Sidecar::Packed{};
   sidecar.selection.blocks = {kinds[2], 0, 0, 0, kinds[0] + kinds[1]};
+  sidecar.selection.leaves_kept = kinds[0] + kinds[1];
   EXPECT_STREQ(ok_of(sidecar, "sidecar selection.blocks"), "ok");
   EXPECT_STREQ(ok_of(sidecar, "sidecar packed.preview"), "ok");
+  EXPECT_STREQ(ok_of(sidecar, "sidecar selection.leaves_kept"), "ok");
+  EXPECT_STREQ(ok_of(sidecar, "sidecar selection.bits"), "ok");
   ++(*sidecar.selection.blocks)[1];
+  ++sidecar.selection.leaves_kept;
+  sidecar.selection.bits[2] = 1;
   sidecar.packed->preview = true;
   EXPECT_STREQ(ok_of(sidecar, "sidecar selection.blocks"), "wrong");
   EXPECT_STREQ(ok_of(sidecar, "sidecar packed.preview"), "wrong");
+  EXPECT_STREQ(ok_of(sidecar, "sidecar selection.leaves_kept"), "wrong");
+  EXPECT_STREQ(ok_of(sidecar, "sidecar selection.bits"), "wrong");
 }
 
 TEST_F(PackedCensusTest, MacrocellThatDoesNotHold_IsReported) {

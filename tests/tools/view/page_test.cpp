@@ -63,6 +63,8 @@ TEST_F(ViewPageTest, WorksByTouch) { run("works_by_touch", {cloud("a.nvdb")}); }
 
 TEST_F(ViewPageTest, EditsTheTransferFunction) { run("edits_the_transfer_function", {cloud("a.nvdb")}); }
 
+TEST_F(ViewPageTest, ShowsTheOpacityOfTheRange) { run("shows_the_opacity_of_the_range", {cloud("a.nvdb")}); }
+
 TEST_F(ViewPageTest, TakesExtremeValues) { run("takes_extreme_values", {cloud("a.nvdb")}); }
 
 TEST_F(ViewPageTest, TellsValues) { run("tells_values", {cloud("a.nvdb")}); }

@@ -233,6 +233,39 @@ def edits_the_transfer_function(browser, url):
     assert "o" in state(browser), state(browser)
 
 
+def shows_the_opacity_of_the_range(browser, url):
+    """Where the address says another range, and no opacity: as the picture has it."""
+    drawn = lambda: [tuple(map(float, point.split(","))) for point in
+                     browser.script("return document.querySelector('.line').getAttribute('points')").split(" ")]
+    lowest = 150 - 9  # of the drawing, at opacity 0
+    loaded(browser, url)
+    equal((drawn()[0][1], drawn()[-1][1]), (lowest, 9))
+    loaded(browser, url + "#r=-2,1")  # the background, 0, is two thirds of the way up
+    points = drawn()
+    equal((points[0][1], points[-1][1]), (9, round(lowest - 132 * ((0.5 - 0.06) / 0.94) ** 1.5, 2)))
+    middle = 9 + 2 / 3 * (320 - 18)
+    equal({y for x, y in points if abs(x - middle) < 10}, {lowest})
+    assert "opacity" not in scene_of(browser), scene_of(browser)
+    browser.script("document.querySelector('#convert-panel').open = true")
+    saved = scene_of(browser)
+    assert "range = [-2, 1]\nopacity = [[0, 1], " in saved, saved
+    # The picture is that of the curve which is shown.
+    by_default = pixels(browser)
+    curve = browser.script("""
+        return import('./page/panels.js').then(({curve_of}) =>
+            curve_of({range: [-2, 1]}, {range: [0, 1], background: 0, opacity: Array(33).fill(0)}))""")
+    browser.open("about:blank")
+    loaded(browser, f"{url}#r=-2,1&o=" + ",".join(f"{x:.6f}_{y:.6f}" for x, y in curve))
+    by_curve = pixels(browser)
+    difference = math.sqrt(sum((a - b) ** 2 for a, b in zip(by_default, by_curve)) / len(by_curve))
+    assert difference < 5, f"root mean square difference {difference:.2f} of 255"
+    # Of one value nothing is seen beyond an end where the background lies.
+    opacity = lambda *arguments: browser.script("""
+        return import('./page/look.js').then((look) => look.start_opacity(...arguments))""".replace(
+            "...arguments", json.dumps(list(arguments))[1:-1]))
+    equal([opacity(0, [3, 3], 1), opacity(1, [3, 3], 1), opacity(1, [3, 3], 4)], [0, 0.5, 0])
+
+
 def takes_extreme_values(browser, url):
     loaded(browser, url + "#el=90&d=1e%2B20&iso=-2e-30&m=iso")
     scene = scene_of(browser)
@@ -421,6 +454,13 @@ def compares_two_files(browser, url):
     browser.press(*["LEFT"] * 25)
     converged(browser)
     picture(browser, "compare")
+    text = lambda of_other: browser.script("""
+        const answer = {found: true, value: 1.5, voxel: [1, 2, 3], world: [1, 2, 3], ...arguments[0]};
+        return import('./page/certificate.js').then((certificate) => certificate.value_text(answer, {}))""", of_other)
+    equal(text({"against": 1.25, "outside": False}), "1.5, other file 1.25 at 1, 2, 3")
+    equal(text({"against": None, "outside": True}), "1.5, outside the other file at 1, 2, 3")
+    equal(text({"against": None, "outside": False}), "1.5, other file \u2013 at 1, 2, 3")
+    equal(text({}), "1.5 at 1, 2, 3")
 
 
 def converts(browser, url):

@@ -34,7 +34,10 @@ bool is_source_of(const std::string& path, const Sidecar& sidecar) {
 }
 
 std::string named_source(const std::string& volume, const Sidecar& sidecar) {
-  // Relative to where the conversion was started, which may well be where this program was, or moved with the volume.
+  // Where it was then; else relative to where the conversion was started, which may well be where this program was, or
+  // moved with the volume.
+  const std::string& real = sidecar.source.real_path;
+  if (!real.empty() && is_source_of(real, sidecar)) return real;
   const std::string& recorded = sidecar.source.path;
   if (is_source_of(recorded, sidecar)) return recorded;
   std::string path = (fs::path(volume).parent_path() / recorded).string();

@@ -61,7 +61,8 @@ export function value_text(answer, facts) {
   const certificate = facts.certificate;
   let text = `${format.number(answer.value)}${unit}`;
   if (certificate) text += certificate.lossless ? ", exact" : ` \u00b1 ${format.number(certificate.max_abs)}`;
-  if (answer.against !== undefined && answer.against !== null) text += `, other file ${format.number(answer.against)}`;
+  if (answer.outside) text += ", outside the other file";
+  else if (answer.against !== undefined) text += `, other file ${format.number(answer.against)}`;
   text += ` at ${answer.voxel.join(", ")}`;
   const world = answer.world.map(format.number).join(", ");
   return world === answer.voxel.join(", ") ? text : `${text} (world ${world})`;

@@ -98,6 +98,21 @@ export function start_iso(facts) {
   return from + 0.35 * (farthest - from);
 }
 
+// Share of the largest distance from the background up to which nothing is seen where no opacity is chosen.
+const kTransparentShare = 0.06;
+
+/** The opacity where none is chosen, at a position from 0 to 1 in a range: default_opacity of gpu/scene/. */
+export function start_opacity(position, [low, high], background) {
+  if (low === high) {
+    const end = (background < low && position === 0) || (background > high && position === 1);
+    return end ? 0 : 0.5;
+  }
+  const from = Math.min(high, Math.max(low, background));
+  const reach = Math.max(high - from, from - low);
+  const distance = Math.abs(low + position * (high - low) - from) / reach;
+  return Math.max(0, (distance - kTransparentShare) / (1 - kTransparentShare)) ** 1.5;
+}
+
 // A number as TOML has it: 1e20 printed in digits would be an integer that it refuses.
 const toml = (value) => Number.isSafeInteger(value) ? String(value) : value.toExponential();
 const array = (values) => `[${values.map((value) => Array.isArray(value) ? array(value) : toml(value)).join(", ")}]`;

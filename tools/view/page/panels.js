@@ -3,10 +3,14 @@
 import {by_id, element, set_text} from "./dom.js";
 import * as format from "./format.js";
 import * as certificate from "./certificate.js";
-import {start_iso} from "./look.js";
+import {start_iso, start_opacity} from "./look.js";
 
-/** The opacity of a look that has no points. */
-export const curve_of = (facts) => facts.opacity.map((value, i) => [i / (facts.opacity.length - 1), value]);
+/** The opacity of a look that has no points: the server's, or over the look's own range that of this range. */
+export function curve_of(look, facts) {
+  const last = facts.opacity.length - 1;
+  const range = look.range?.map(Math.fround);  // values are float32
+  return facts.opacity.map((value, i) => [i / last, range ? start_opacity(i / last, range, facts.background) : value]);
+}
 
 function gradient(look, colormaps) {
   const chosen = look.colormap ?? {dvr: "viridis", mip: "gray"}[look.mode] ?? "white";
@@ -15,7 +19,7 @@ function gradient(look, colormaps) {
 
 export function show_transfer(editor, look, facts, histogram, colormaps) {
   const range = look.range ?? facts.range;
-  editor.show(look.opacity, curve_of(facts), range);
+  editor.show(look.opacity, curve_of(look, facts), range);
   editor.show_histogram(histogram, range, look.log);
   const iso = look.iso ?? start_iso(facts);
   editor.show_iso(look.mode === "iso" ? (iso - range[0]) / (range[1] - range[0] || 1) : null);

@@ -194,7 +194,7 @@ const clip_box = new ClipBox(by_id("box"), {changed: (box) => change({...look, b
 const controls = new Controls({changed: (part) => change({...look, ...part}), done});
 
 /** The opacity by which is converted: what can be seen has to be said, also by a look that has no points. */
-const converted_opacity = (shown) => look.opacity ?? simplified(curve_of(shown));
+const converted_opacity = (shown) => look.opacity ?? simplified(curve_of(look, shown));
 
 const conversion = new Conversion({
   scene: () => {
@@ -216,7 +216,7 @@ const keep = new Keep({
     const [width, height] = picture_size();
     const shown = facts();
     // Of a series the curve depends on all of its steps, which weir render of one file does not know.
-    const curve = steps.names.length > 1 ? curve_of(shown) : null;
+    const curve = steps.names.length > 1 ? curve_of(look, shown) : null;
     const opacity = by_id("convert-panel").open ? converted_opacity(shown) : look.opacity ?? curve;
     return looks.to_scene({...look, opacity}, shown, width / height);
   },

@@ -121,4 +121,9 @@ std::vector<std::string> begin_with_readable(ViewedFiles& files) {
   }
 }
 
+bool lies_elsewhere(const ViewedFiles& files) {
+  if (files.against.empty()) return false;
+  return !summarise_series(std::array{files.steps.front(), files.against.front()}).difference.empty();
+}
+
 }  // namespace weir

@@ -44,4 +44,8 @@ ViewedFiles find_viewed_files(const StepChoice& choice, const std::string& again
 /// named, or where the one file of `against` cannot be read.
 std::vector<std::string> begin_with_readable(ViewedFiles& files);
 
+/// Whether what a page shows at first and what that is compared with have other index boxes, voxel sizes or origins.
+/// Reads their heads; one that cannot be read is like any other.
+bool lies_elsewhere(const ViewedFiles& files);
+
 }  // namespace weir

@@ -45,5 +45,15 @@ TEST_F(ViewedFilesTest, DamagedFirstSteps_TheFirstThatCanBeReadComesFirst) {
   EXPECT_EQ(files.against, (Names{against[2], against[0], against[1]}));
 }
 
+TEST_F(ViewedFilesTest, FileOfOtherVoxels_LiesElsewhere) {
+  const std::string apart = directory_ / "apart.nvdb";
+  const auto made =
+      run_weir({"convert", directory_ / "v_40x30x20_float32.raw", "-o", apart, "--lossless", "--origin", "0,0,0.5"});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_TRUE(lies_elsewhere(find_viewed_files({volume_}, apart)));
+  EXPECT_FALSE(lies_elsewhere(find_viewed_files({volume_}, volume_)));
+  EXPECT_FALSE(lies_elsewhere(find_viewed_files({volume_}, "")));
+}
+
 }  // namespace
 }  // namespace weir::viewed_files_test
