@@ -18,6 +18,7 @@
 #include "ingest/hdf5/storage/absent_values.h"
 #include "ingest/hdf5/storage/chunk_reader.h"
 #include "ingest/hdf5/storage/constant_source.h"
+#include "ingest/hdf5/meaning/elements_read.h"
 #include "ingest/hdf5/storage/external_files.h"
 #include "ingest/hdf5/storage/planar_boxes.h"
 #include "ingest/hdf5/storage/unwritten_chunks.h"
@@ -185,37 +186,14 @@ void note_filled(Opening& opening, const AbsentValues& absent) {
       cat(absent.text(), " and ", absent.one ? "reads" : "read", " as its fill value, ", fill[0]);
 }
 
-// The elements of the array that are read: of a region those in it, which lies in the volume as its axes rise.
-ElementRange elements_read(const Opening& opening) {
-  const VolumeSlice& slice = opening.slice;
-  ElementRange range{std::vector<hsize_t>(opening.facts.axes.size()), {}};
-  for (const AxisPlace& axis : opening.facts.axes) range.hi.push_back(static_cast<hsize_t>(axis.extent));
-  std::size_t next = 0;  // positions are those of the other axes, in order, but for one of components that are all read
-  for (std::size_t axis = 0; axis < range.lo.size() && next < slice.positions.size(); ++axis) {
-    if (std::ranges::find(slice.roles.volume, axis) != slice.roles.volume.end()) continue;
-    range.lo[axis] = static_cast<hsize_t>(slice.positions[next++]);
-    range.hi[axis] = range.lo[axis] + 1;
-  }
-  if (!opening.options.roi) return range;
-  const Box domain{{}, slice.extent};
-  const Box wanted = mirrored_box(intersect(opening.options.roi->in(domain), domain), domain, slice.falls);
-  if (wanted.empty()) return range;  // which is refused later
-  const std::array<std::int64_t, 3> lo{wanted.lo.z, wanted.lo.y, wanted.lo.x};
-  const std::array<std::int64_t, 3> hi{wanted.hi.z, wanted.hi.y, wanted.hi.x};
-  for (std::size_t i = 0; i < kVolumeRank; ++i) {
-    range.lo[slice.roles.volume.at(i)] = static_cast<hsize_t>(lo.at(i));
-    range.hi[slice.roles.volume.at(i)] = static_cast<hsize_t>(hi.at(i));
-  }
-  return range;
-}
-
 // Says, or refuses, chunks that read as the fill value.
 void note_unwritten(Opening& opening) {
   const Storage& storage = *opening.facts.storage;
   if (opening.all_fill()) return note_filled(opening, {"its values"});
   if (storage.kind != StorageKind::chunked || storage.chunk.size() != opening.facts.axes.size()) return;
+  const ElementRange read = elements_read(opening.facts.axes, opening.slice, opening.options.roi);
   const UnwrittenChunks unwritten =
-      unwritten_chunks(opening.object.handle.get(), storage.chunk, elements_read(opening), opening.object.where());
+      unwritten_chunks(opening.object.handle.get(), storage.chunk, read, opening.object.where());
   opening.all_stored = unwritten.count == 0;
   if (opening.all_stored) return;
   const char* const of = unwritten.elsewhere ? " of all " : opening.options.roi ? " of the region's " : " of its ";
