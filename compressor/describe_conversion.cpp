@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <limits>
 #include <utility>
 
@@ -58,10 +59,9 @@ void describe_details(const FieldDetails& details, Sidecar::Source& source) {
 
 }  // namespace
 
-std::string other_real_path(const SourceInfo& info) {
-  if (!is_there(info.path)) return {};  // an address, a name that a push has
-  std::string real = absolute_real_path(info.path);
-  return real == info.path ? std::string() : real;
+std::string real_path_of(const SourceInfo& info) {
+  if (info.files.empty()) return {};  // the name that a push has
+  return absolute_real_path(is_there(info.path) ? info.path : info.files.front().path);
 }
 
 std::string grid_name(const std::string& dataset) {
@@ -76,7 +76,8 @@ std::string grid_name(const std::string& dataset) {
 Sidecar describe_source(const SourceInfo& info, const Survey& survey, const ConversionOptions& options) {
   Sidecar sidecar;
   sidecar.source.path = info.path;
-  sidecar.source.real_path = other_real_path(info);
+  // A relative one may be that of two files, in two working directories.
+  if (std::filesystem::path(info.path).is_relative()) sidecar.source.real_path = real_path_of(info);
   sidecar.source.format = info.format;
   sidecar.source.dataset = info.dataset;
   sidecar.source.extent = info.extent;

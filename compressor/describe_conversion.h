@@ -19,8 +19,9 @@ namespace weir {
 /// is no UTF-8, which no sidecar can hold, its part after the last slash, or "density".
 std::string grid_name(const std::string& dataset);
 
-/// Of the file at info.path, absolute and without symbolic links; empty where that is the path itself, or no file's.
-std::string other_real_path(const SourceInfo& info);
+/// Of the file or directory at info.path, absolute and without symbolic links; of files that a pattern names that of
+/// the first one. Empty where the volume lies in no file.
+std::string real_path_of(const SourceInfo& info);
 
 /// A sidecar with all that is known once the volume is surveyed, but for the source's digest.
 Sidecar describe_source(const SourceInfo& info, const Survey& survey, const ConversionOptions& options);

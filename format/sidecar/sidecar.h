@@ -68,7 +68,7 @@ struct Sidecar {
     std::string orientation;                      ///< how the axes lie in the file's world (FieldDetails::orientation)
     std::string unstored_chunks;                  ///< how many chunks the file lacks (FieldDetails::chunks_note)
     std::uint64_t values = 0;  ///< of all arrays of the input file (file_values.h); 0, and no key: not counted
-    std::string real_path;     ///< of the input file, absolute, links resolved; empty, and no key, where `path` is that
+    std::string real_path;     ///< what a relative `path` led to (real_path_of); empty, and no key, of others
   } source;
 
   struct Grid {

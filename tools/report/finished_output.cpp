@@ -25,7 +25,7 @@ namespace {
 Sidecar expected_record(const SourceInfo& source, const ConversionOptions& options) {
   Sidecar record;
   record.source.path = source.path;
-  record.source.real_path = other_real_path(source);
+  record.source.real_path = real_path_of(source);
   record.source.dataset = source.dataset;
   record.source.mtime = utc_text(source.mtime_ns);
   record.source.files_digest = source.files_digest;
@@ -57,14 +57,17 @@ bool same_place(const Sidecar::Grid& grid, const SourceInfo& source) {
   return grid.index_bbox == source.domain() && grid.voxel_size == source.spacing && grid.origin == source.origin;
 }
 
-// "a.raw", "./a.raw" and its absolute path name one file; "a.raw" of two working directories is two, where both say
-// their real paths. Weir 0.1 did not.
-bool same_file(const Sidecar::Source& found, const Sidecar::Source& expected) {
-  const bool relative = found.real_path.empty();
-  const std::string& found_path = relative ? found.path : found.real_path;
-  const std::string& expected_path = relative || expected.real_path.empty() ? expected.path : expected.real_path;
+bool same_file(const std::string& a, const std::string& b) {
   std::error_code not_there;
-  return found_path == expected_path || std::filesystem::equivalent(found_path, expected_path, not_there);
+  return a == b || std::filesystem::equivalent(a, b, not_there);
+}
+
+// "a.raw", "./a.raw" and its absolute path name one file. "a.raw" of two working directories names two, as long as both
+// are there: a directory may have been renamed, or moved to another machine.
+bool same_source(const Sidecar::Source& found, const Sidecar::Source& expected) {
+  const std::string& real = found.real_path;  // weir 0.1 did not say it
+  if (found.path == expected.path) return real.empty() || !is_there(real) || same_file(real, expected.real_path);
+  return same_file(real.empty() ? found.path : real, expected.real_path) || same_file(found.path, expected.path);
 }
 
 std::string difference(const Sidecar& found, const Sidecar& expected, const SourceInfo& source) {
@@ -138,7 +141,7 @@ FinishedOutput find_output(const SourceInfo& source, const ConversionOptions& op
     return {unreadable ? FinishedOutput::State::unreadable : FinishedOutput::State::foreign, {}, error.what()};
   }
   const Sidecar expected = expected_record(source, options);
-  if (!same_file(found.source, expected.source)) {
+  if (!same_source(found.source, expected.source)) {
     const std::string& made_of = found.source.real_path.empty() ? found.source.path : found.source.real_path;
     return {FinishedOutput::State::foreign, {}, cat("was made of ", made_of)};
   }

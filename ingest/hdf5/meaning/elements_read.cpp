@@ -17,6 +17,12 @@ ElementRange elements_read(std::span<const AxisPlace> axes, const VolumeSlice& s
     range.lo[axis] = static_cast<hsize_t>(slice.positions[next++]);
     range.hi[axis] = range.lo[axis] + 1;
   }
+  const VoxelComponents& components = slice.components;
+  const bool last_of_components = components.count > 1 && !slice.planar && slice.roles.volume.back() + 1 < axes.size();
+  if (last_of_components && !components.choice.magnitude) {
+    range.lo.back() = static_cast<hsize_t>(components.choice.position);
+    range.hi.back() = range.lo.back() + 1;
+  }
   if (!region) return range;
   const Box domain{{}, slice.extent};
   const Box wanted = mirrored_box(intersect(region->in(domain), domain), domain, slice.falls);

@@ -11,8 +11,8 @@
 
 namespace weir {
 
-/// Of an array of `axes`: those of the slice, with all components; of a region of it, which counts along axes as they
-/// rise, those in that. Of a region that lies outside, which is refused later, all of the slice.
+/// Of an array of `axes`: those of the slice, with the components that are asked for; of a region of it, which counts
+/// along axes as they rise, those in that. Of a region that lies outside, which is refused later, all of the slice.
 ElementRange elements_read(std::span<const AxisPlace> axes, const VolumeSlice& slice,
                            const std::optional<VolumeRegion>& region);
 

@@ -41,6 +41,8 @@ with h5py.File("a.h5", "w") as f:
     d[1, :, :, :16] = 5
     d = f.create_dataset("vectors", (16, 4, 4, 3), "f4", chunks=(8, 4, 4, 3))
     d[8:] = 2
+    d = f.create_dataset("apart", (4, 4, 8, 3), "f4", chunks=(4, 4, 4, 1))
+    d[:, :, :, 0] = 2
     f.create_dataset("whole", data=np.ones((8, 8, 8), "f4"), chunks=(4, 4, 4))
 )");
   const auto note = [&](const SourceOptions& options) {
@@ -55,6 +57,13 @@ with h5py.File("a.h5", "w") as f:
   SourceOptions vectors = dataset_options("vectors");
   vectors.component = ComponentChoice{false, 1};
   EXPECT_EQ(note(vectors), "1 of its 2 chunks was never written and reads as its fill value, 0");
+  SourceOptions apart = dataset_options("apart");
+  apart.component = ComponentChoice{false, 0};
+  EXPECT_EQ(note(apart), "");
+  apart.component = ComponentChoice{false, 2};
+  EXPECT_EQ(note(apart), "2 of its 2 chunks were never written and read as its fill value, 0");
+  apart.component = ComponentChoice{true, 0};
+  EXPECT_EQ(note(apart), "4 of its 6 chunks were never written and read as its fill value, 0");
   EXPECT_EQ(note(dataset_options("whole")), "");
   SourceOptions region = dataset_options("half");
   region.roi = VolumeRegion(Box{{0, 0, 0}, {32, 32, 16}});

@@ -9,7 +9,6 @@
 #include <string>
 
 #include "compressor/resume/journal.h"
-#include "format/base/text.h"
 #include "format/io/file_system.h"
 #include "tests/support/python.h"
 #include "tests/support/run_command.h"
@@ -65,35 +64,6 @@ TEST_F(SkipDone, OneFileWithAnotherPath_IsTheSameSource) {
   ASSERT_EQ(convert().exit_code, 0);
   source_ = directory_ / "./v_40x32x24_uint8.raw";
   EXPECT_TRUE(leaves_it());
-}
-
-// Two runs of a simulation have files of the same names, which a copy may have given the same times.
-TEST_F(SkipDone, FileOfThatNameInAnotherDirectory_IsAnotherSource) {
-  const auto convert_in = [&](const std::string& directory) {
-    const fs::path run = directory_.path() / directory;
-    fs::create_directories(run);
-    const std::string name = fs::path(source_).filename().string();
-    if (!fs::exists(run / name)) {
-      fs::copy_file(source_, run / name);
-      fs::last_write_time(run / name, fs::last_write_time(source_));
-    }
-    CommandOptions options;
-    options.directory = run;
-    return run_weir({"convert", name, "-o", "../v.nvdb", "--skip-done"}, options);
-  };
-  ASSERT_EQ(convert_in("a").exit_code, 0);
-  const std::string made = read_file(output_);
-  const CommandResult other = convert_in("b");
-  EXPECT_EQ(other.exit_code, 2) << other.err;
-  const std::string real = (fs::canonical(directory_.path()) / "a/v_40x32x24_uint8.raw").string();
-  EXPECT_NE(other.err.find(cat("is not of v_40x32x24_uint8.raw (was made of ", real, ")")), std::string::npos)
-      << other.err;
-  EXPECT_EQ(read_file(output_), made);
-  const CommandResult again = convert_in("a");
-  EXPECT_NE(again.err.find("done already"), std::string::npos) << again.err;
-  source_ = directory_ / "a/v_40x32x24_uint8.raw";
-  const CommandResult absolute = convert();
-  EXPECT_NE(absolute.err.find("done already"), std::string::npos) << absolute.err;
 }
 
 TEST_F(SkipDone, EqualOptionsWrittenOtherwise_AreSkipped) {

@@ -264,6 +264,7 @@ def shows_the_opacity_of_the_range(browser, url):
         return import('./page/look.js').then((look) => look.start_opacity(...arguments))""".replace(
             "...arguments", json.dumps(list(arguments))[1:-1]))
     equal([opacity(0, [3, 3], 1), opacity(1, [3, 3], 1), opacity(1, [3, 3], 4)], [0, 0.5, 0])
+    equal([opacity(0, [-2, 1], None), opacity(1, [-2, 1], None)], [0, 1])  # a background that is no number: the lowest
 
 
 def takes_extreme_values(browser, url):

@@ -34,11 +34,13 @@ bool is_source_of(const std::string& path, const Sidecar& sidecar) {
 }
 
 std::string named_source(const std::string& volume, const Sidecar& sidecar) {
-  // Where it was then; else relative to where the conversion was started, which may well be where this program was, or
-  // moved with the volume.
-  const std::string& real = sidecar.source.real_path;
-  if (!real.empty() && is_source_of(real, sidecar)) return real;
+  // Where it was then, if that is one file, of which more is known than its name; else relative to where the conversion
+  // was started, which may well be where this program was, or moved with the volume.
   const std::string& recorded = sidecar.source.path;
+  const fs::path real = sidecar.source.real_path;
+  std::error_code not_there;
+  const bool by_name = real.filename() == fs::path(recorded).filename() && fs::is_regular_file(real, not_there);
+  if (by_name && is_source_of(real.string(), sidecar)) return real.string();
   if (is_source_of(recorded, sidecar)) return recorded;
   std::string path = (fs::path(volume).parent_path() / recorded).string();
   if (is_source_of(path, sidecar)) return path;

@@ -107,7 +107,7 @@ export function start_opacity(position, [low, high], background) {
     const end = (background < low && position === 0) || (background > high && position === 1);
     return end ? 0 : 0.5;
   }
-  const from = Math.min(high, Math.max(low, background));
+  const from = Number.isFinite(background) ? Math.min(high, Math.max(low, background)) : low;
   const reach = Math.max(high - from, from - low);
   const distance = Math.abs(low + position * (high - low) - from) / reach;
   return Math.max(0, (distance - kTransparentShare) / (1 - kTransparentShare)) ** 1.5;
