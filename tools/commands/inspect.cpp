@@ -309,8 +309,8 @@ Inspected inspect(const std::string& path, const InspectArguments& arguments, co
   std::optional<PartialFile> chart;
   if (!arguments.plot.empty()) {
     format = plot_format(arguments.plot, "plot");
-    load_driver("plot", arguments.plot + ": is to be a chart");
     require_not_input(file_ids(std::array{path, find_sidecar(path)}), arguments.plot);
+    load_driver("plot", arguments.plot + ": is to be a chart");
     chart.emplace(*files, arguments.plot, true);
   }
   const NvdbFile file(path);

@@ -32,9 +32,9 @@ TEST(ParserWording, ValueOfAnyLengthThatSaysWhatTheParserSays_IsNamedAsItIs) {
             "--progress is \"" + value + "\", it must be auto or never");
   EXPECT_EQ(parser_wording("--limit: Value " + value + " not in range 1 to 1000"),
             "--limit is \"" + value + "\", it must be a number from 1 to 1000");
-  const CommandResult result = run_weir({"jobs", "--limit", std::string(100000, '7')});
+  const CommandResult result = run_weir({"render", "a.nvdb", "-o", "a.png", "--volume", std::string(100000, '7')});
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_TRUE(result.err.ends_with("777\", it must be a number from 1 to 1000; see weir jobs --help\n"))
+  EXPECT_TRUE(result.err.ends_with("777\", it must be file or dense; see weir render --help\n"))
       << result.err.substr(0, 200);
 }
 
