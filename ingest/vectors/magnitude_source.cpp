@@ -49,10 +49,9 @@ void check_same_places(const SourceInfo& a, const SourceInfo& b) {
                                       "xyz"[i], "; take the components to the same grid, or convert them one by one"));
   }
   if (!a.details.time || !b.details.time || a.details.time->value == b.details.time->value) return;
-  throw Error(ErrorKind::input,
-              compose(a.path, ": ", named(a), " is of time ", a.details.time->value, " and ", named(b), " of ",
-                      b.details.time->value, "; choose the same time with ", option("index"),
-                      ", or convert them one by one"));
+  throw Error(ErrorKind::input, compose(a.path, ": ", named(a), " is of time ", a.details.time->value, " and ",
+                                        named(b), " of ", b.details.time->value, "; choose the same time with ",
+                                        option("index"), ", or convert them one by one"));
 }
 
 void check_same_units(const SourceInfo& a, const SourceInfo& b) {
