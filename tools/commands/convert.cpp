@@ -19,6 +19,7 @@
 #include "compressor/options/conversion_request.h"
 #include "compressor/resume.h"
 #include "format/base/error.h"
+#include "format/base/json_text.h"
 #include "format/base/text.h"
 #include "format/io/bandwidth.h"
 #include "format/io/limited_file_system.h"
@@ -235,7 +236,7 @@ nlohmann::ordered_json forecast_step(const SeriesStep& step, const SourceOptions
 void print_json(std::span<const nlohmann::ordered_json> forecasts) {
   const nlohmann::ordered_json json =
       forecasts.size() == 1 ? forecasts.front() : nlohmann::ordered_json{{"steps", forecasts}};
-  std::fputs((json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n").c_str(), stdout);
+  std::fputs((json_text(json, 2) + "\n").c_str(), stdout);
 }
 
 void print_json(std::span<const Sidecar> sidecars) {

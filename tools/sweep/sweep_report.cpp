@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "format/base/exact_text.h"
+#include "format/base/json_text.h"
 #include "format/base/text.h"
 #include "tools/report/error_text.h"
 #include "tools/report/json_loss.h"
@@ -109,7 +110,7 @@ std::string json_text(const SweepReport& report) {
                       {"rows", std::move(rows)},
                       {"total_s", report.total_s},
                       {"peak_rss_bytes", report.peak_rss_bytes}};
-  return document.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+  return json_text(document, 2) + '\n';
 }
 
 std::string table_text(const SweepReport& report) {
