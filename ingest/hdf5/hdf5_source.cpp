@@ -90,6 +90,9 @@ struct Opening {
     return position * slice_bytes();
   }
   std::uint64_t slice_bytes() const { return static_cast<std::uint64_t>(volume(slice.extent)) * voxel_bytes(); }
+  Box voxels_read() const { return weir::voxels_read(slice, options.roi); }
+  /// Whose the elements are that are read.
+  const char* of_read() const { return options.roi ? " of the region's " : " of its "; }
   std::size_t voxel_bytes() const {
     return scalar_bytes(facts.type->scalar) * static_cast<std::size_t>(slice.components.count);
   }
@@ -196,7 +199,7 @@ void note_unwritten(Opening& opening) {
       unwritten_chunks(opening.object.handle.get(), storage.chunk, read, opening.object.where());
   opening.all_stored = unwritten.count == 0;
   if (opening.all_stored) return;
-  const char* const of = unwritten.elsewhere ? " of all " : opening.options.roi ? " of the region's " : " of its ";
+  const char* const of = unwritten.elsewhere ? " of all " : opening.of_read();
   const std::string count = cat(unwritten.count, of, unwritten.all, unwritten.all == 1 ? " chunk" : " chunks",
                                 unwritten.elsewhere ? ", some perhaps outside what is read," : "");
   const std::string first = unwritten.first.empty() ? "" : cat(" (the first at ", corner_text(unwritten.first), ")");
@@ -206,8 +209,8 @@ void note_unwritten(Opening& opening) {
 // The same of elements of a virtual dataset that no source is mapped to.
 void note_unmapped(Opening& opening, const Uncovered& unmapped) {
   if (unmapped.count == 0) return;
-  const std::uint64_t all = opening.slice_bytes() / scalar_bytes(opening.facts.type->scalar);
-  note_filled(opening, {cat(unmapped.count, " of its ", all, " values"), unmapped.count == 1,
+  const std::int64_t all = opening.voxels_read().voxels() * opening.slice.components.count;
+  note_filled(opening, {cat(unmapped.count, opening.of_read(), all, " values"), unmapped.count == 1,
                         cat(" (the first at ", corner_text(unmapped.first), ")"), true});
 }
 
@@ -224,7 +227,7 @@ void note_unwritten_in_sources(Opening& opening, const UnwrittenInSources& unwri
 
 std::unique_ptr<StoredBoxes> open_mapped(Opening& opening, const std::string& parent) {
   VirtualVolume mapped =
-      make_virtual_boxes(std::move(opening.object.handle), opening.slice.positions, opening.slice.extent,
+      make_virtual_boxes(std::move(opening.object.handle), opening.slice.positions, opening.voxels_read(),
                          opening.slice.components.count, parent, opening.object.where());
   note_unmapped(opening, mapped.unmapped);
   note_unwritten_in_sources(opening, mapped.unwritten);
@@ -249,7 +252,7 @@ std::unique_ptr<VolumeSource> open_planar(Opening opening) {
     H5Iinc_ref(opening.object.handle.get());
     Hdf5Handle dataset(opening.object.handle.get());
     if (kind == StorageKind::mapped) {
-      VirtualVolume part = make_virtual_boxes(std::move(dataset), index, opening.slice.extent, 1, parent, where);
+      VirtualVolume part = make_virtual_boxes(std::move(dataset), index, opening.voxels_read(), 1, parent, where);
       unmapped.count += part.unmapped.count;
       if (unmapped.first.empty()) unmapped.first = part.unmapped.first;
       unwritten.add(part.unwritten);

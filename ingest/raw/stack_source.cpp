@@ -25,6 +25,7 @@ struct FileSlab {
   Index3 origin;       ///< of the file's own index space
   std::int64_t z = 0;  ///< first plane in the stack
   std::int64_t planes = 0;
+  bool lacks_chunks = false;
 };
 
 void check_alike(const std::string& path, const SourceInfo& info, const SourceInfo& first) {
@@ -58,6 +59,8 @@ class StackSource final : public VolumeSource {
     options_.spacing.reset();
     options_.origin.reset();
     options_.roi.reset();
+    // Where a region is read, the chunks of that count, once it is known which planes of which file it has.
+    if (options.roi) options_.missing_chunks = MissingChunks::fill;
     const std::vector<NumberedFile> files = numbered_files(pattern);
     for (const NumberedFile& file : files) {
       const std::int64_t expected = files.front().number + std::ssize(slabs_);
@@ -68,6 +71,7 @@ class StackSource final : public VolumeSource {
       add(file.path);
     }
     place();
+    if (options.roi) look_for_chunks(*options.roi, options.missing_chunks);
     info_.path = pattern;
     info_.format = "stack";
     info_.files_digest = files_.digest();
@@ -124,7 +128,7 @@ class StackSource final : public VolumeSource {
       info_.files.clear();
       access_ = source->access();
     }
-    if (const std::string& note = info.details.chunks_note; !note.empty()) note_chunks(path, note);
+    note_chunks(path, info);
     check_alike(path, info, first_);
     if (!as_they_are_) {
       check_placed_alike(path, info, first_);
@@ -133,7 +137,7 @@ class StackSource final : public VolumeSource {
     }
     planes_.push_back(stacked_planes(path, info));
     info_.files.insert(info_.files.end(), info.files.begin(), info.files.end());
-    slabs_.push_back({path, info.index_origin, info_.extent.z, info.extent.z});
+    slabs_.push_back({path, info.index_origin, info_.extent.z, info.extent.z, !info.details.chunks_note.empty()});
     info_.extent.z += info.extent.z;
     info_.file_bytes += info.file_bytes;
     info_.mtime_ns = std::max(info_.mtime_ns, info.mtime_ns);
@@ -141,12 +145,34 @@ class StackSource final : public VolumeSource {
   }
 
   // What the first one of those files says that lack chunks, and how many further ones there are.
-  void note_chunks(const std::string& path, const std::string& note) {
+  void note_chunks(const std::string& path, const SourceInfo& info) {
+    const std::string& note = info.details.chunks_note;
+    if (note.empty()) return;
     if (lacking_++ == 0) chunks_note_ = cat(path, ": ", note);
     info_.details.chunks_note = chunks_note_;
     if (lacking_ > 1) {
       info_.details.chunks_note +=
           cat("; ", lacking_ - 1, lacking_ == 2 ? " further file lacks" : " further files lack", " chunks, too");
+    }
+  }
+
+  // Of the files that lack chunks, says or refuses those that lack some in the region. Opens one as asked in any case:
+  // its format may have no chunks.
+  void look_for_chunks(const VolumeRegion& region, MissingChunks missing) {
+    const Box read = intersect(region.in(info_.domain()), info_.domain());
+    lacking_ = 0;
+    info_.details.chunks_note.clear();
+    SourceOptions options = options_;
+    options.missing_chunks = missing;
+    bool opened_one = false;
+    for (const FileSlab& slab : slabs_) {
+      const Box planes{{0, 0, slab.z}, {info_.extent.x, info_.extent.y, slab.z + slab.planes}};
+      const Box part = intersect(read, planes);
+      if (part.empty() || (opened_one && !slab.lacks_chunks)) continue;
+      opened_one = true;
+      const Index3 corner = slab.origin - planes.lo;
+      options.roi = Box{part.lo + corner, part.hi + corner};
+      note_chunks(slab.path, open_volume_(slab.path, options)->info());
     }
   }
 

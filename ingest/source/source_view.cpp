@@ -146,6 +146,17 @@ void check_given_place(const SourceInfo& placed, const SourceOptions& options) {
   }
 }
 
+// A distance takes the place of positions, but is no time: positions that count it stay, or, where they follow from a
+// spacing, their units go.
+void leave_out_positions(AxisDetails& axis) {
+  const bool counts_time = axis.units.find(" since ") != std::string::npos;
+  if (!counts_time) {
+    axis.coordinates.clear();
+  } else if (axis.coordinates.empty()) {
+    axis.units.clear();
+  }
+}
+
 }  // namespace
 
 std::unique_ptr<VolumeSource> place_source(std::unique_ptr<VolumeSource> source, const SourceOptions& options) {
@@ -161,6 +172,7 @@ std::unique_ptr<VolumeSource> place_source(std::unique_ptr<VolumeSource> source,
   if (options.spacing) {  // what is said of the file's own is of no use
     for (AxisDetails& axis : placed.details.axes) {
       if (!axis.reversed) axis.note.clear();
+      leave_out_positions(axis);
     }
     placed.details.units_note.clear();
   }

@@ -43,6 +43,13 @@ TEST_F(FallingLatitudes, RowsAreReadInReverseOrder) {
   EXPECT_EQ(record["source"]["irregular_axes"], (nlohmann::json{{"z", {1000, 850, 500, 250, 100}}}));
 }
 
+TEST_F(FallingLatitudes, WithASpacing_IrregularPositionsAreNotKept) {
+  const CommandResult made = weir({"convert", "era5.nc", "--lossless", "--spacing", "1,1,2", "-o", "t.nvdb"});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_EQ(sidecar("t.nvdb")["grid"]["voxel_size"], (nlohmann::json{1, 1, 2}));
+  EXPECT_FALSE(sidecar("t.nvdb")["source"].contains("irregular_axes"));
+}
+
 TEST_F(FallingLatitudes, RegionsCountFromTheLowestPosition) {
   const CommandResult made = weir({"convert", "era5.nc", "--lossless", "--roi", ":,0:3,:", "-o", "south.nvdb"});
   ASSERT_EQ(made.exit_code, 0) << made.err;

@@ -7,6 +7,13 @@
 
 namespace weir {
 
+Box voxels_read(const VolumeSlice& slice, const std::optional<VolumeRegion>& region) {
+  const Box domain{{}, slice.extent};
+  if (!region) return domain;
+  const Box wanted = mirrored_box(intersect(region->in(domain), domain), domain, slice.falls);
+  return wanted.empty() ? domain : wanted;
+}
+
 ElementRange elements_read(std::span<const AxisPlace> axes, const VolumeSlice& slice,
                            const std::optional<VolumeRegion>& region) {
   ElementRange range{std::vector<hsize_t>(axes.size()), {}};
@@ -23,12 +30,9 @@ ElementRange elements_read(std::span<const AxisPlace> axes, const VolumeSlice& s
     range.lo.back() = static_cast<hsize_t>(components.choice.position);
     range.hi.back() = range.lo.back() + 1;
   }
-  if (!region) return range;
-  const Box domain{{}, slice.extent};
-  const Box wanted = mirrored_box(intersect(region->in(domain), domain), domain, slice.falls);
-  if (wanted.empty()) return range;
-  const std::array<std::int64_t, 3> lo{wanted.lo.z, wanted.lo.y, wanted.lo.x};
-  const std::array<std::int64_t, 3> hi{wanted.hi.z, wanted.hi.y, wanted.hi.x};
+  const Box read = voxels_read(slice, region);
+  const std::array<std::int64_t, 3> lo{read.lo.z, read.lo.y, read.lo.x};
+  const std::array<std::int64_t, 3> hi{read.hi.z, read.hi.y, read.hi.x};
   for (std::size_t i = 0; i < kVolumeRank; ++i) {
     range.lo[slice.roles.volume.at(i)] = static_cast<hsize_t>(lo.at(i));
     range.hi[slice.roles.volume.at(i)] = static_cast<hsize_t>(hi.at(i));

@@ -15,14 +15,14 @@ namespace weir {
 
 struct VirtualVolume {
   std::unique_ptr<StoredBoxes> boxes;
-  Uncovered unmapped;  ///< elements of the volume without a source, which read as the dataset's fill value
+  Uncovered unmapped;  ///< elements of those voxels without a source, which read as the dataset's fill value
   UnwrittenInSources unwritten;
 };
 
-/// The three axes of `dataset` (in the file `parent`) behind the leading ones, `extent` voxels, at `index`, one
-/// position per leading axis; of several `components` a voxel these are the last axis. Throws what virtual_mappings
-/// throws. The caller holds Hdf5Lock.
-VirtualVolume make_virtual_boxes(Hdf5Handle dataset, std::vector<std::int64_t> index, const Index3& extent,
+/// The three axes of `dataset` (in the file `parent`) behind the leading ones, at `index`, one position per leading
+/// axis; of several `components` a voxel these are the last axis. Only boxes inside `voxels` are read: sources of
+/// others are not looked at. Throws what virtual_mappings throws. The caller holds Hdf5Lock.
+VirtualVolume make_virtual_boxes(Hdf5Handle dataset, std::vector<std::int64_t> index, const Box& voxels,
                                  std::int64_t components, const std::string& parent, const std::string& where);
 
 }  // namespace weir

@@ -107,7 +107,7 @@ class MappingReader {
     for (std::size_t i = 0; i < count; ++i) take(stored(creation.get(), i));
     if (mappings_.empty()) {
       throw error(cat("no source is mapped to its element ", list_text(wanted_.lo),
-                      ", nor to any other of the volume; the dataset is incomplete"));
+                      ", nor to any other that is read; the dataset is incomplete"));
     }
     Uncovered unmapped = uncovered(wanted_, blocks_);
     return {std::move(mappings_), std::move(unmapped), std::move(unwritten_)};

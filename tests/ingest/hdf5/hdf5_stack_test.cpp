@@ -85,5 +85,38 @@ for number in range(4):
           ": 1 of its 2 chunks was never written and reads as its fill value, -7; 2 further files lack chunks, too");
 }
 
+TEST(Hdf5Stack, OfFilesThatLackChunks_CountsThoseOfTheRegion) {
+  if (!python_has("h5py, numpy")) GTEST_SKIP() << "python3 with h5py is missing";
+  const Scratch scratch;
+  write_by_h5py(scratch, R"(
+for number in range(3):
+    with h5py.File("s_%d.h5" % number, "w") as f:
+        d = f.create_dataset("d", (4, 4, 8), "f4", chunks=(2, 4, 4), fillvalue=-7)
+        d[...] = number
+        if number == 1:
+            del f["d"]
+            d = f.create_dataset("d", (4, 4, 8), "f4", chunks=(2, 4, 4), fillvalue=-7)
+            d[:2] = number
+)");
+  const std::string stack = scratch.path("s_%d.h5");
+  SourceOptions options;
+  options.stack = true;
+  options.missing_chunks = MissingChunks::error;
+  const auto values_in = [&](const Box& region) {
+    options.roi = region;
+    return all_values(*open_source(stack, options));
+  };
+  EXPECT_EQ(values_in({{0, 0, 8}, {8, 4, 12}}), std::vector<float>(128, 2));
+  EXPECT_EQ(values_in({{4, 0, 4}, {8, 4, 6}}), std::vector<float>(32, 1));
+  options.roi = Box{{4, 0, 5}, {8, 4, 8}};
+  EXPECT_EQ(message_of_error(ErrorKind::input, [&] { open_source(stack, options); }),
+            scratch.path("s_1.h5") +
+                ": /d: 1 of the region's 2 chunks was never written (the first at 2, 0, 4), and with --missing-chunks "
+                "error all must be; write them, or use --missing-chunks fill");
+  options.missing_chunks = MissingChunks::fill;
+  EXPECT_EQ(open_source(stack, options)->info().details.chunks_note,
+            scratch.path("s_1.h5") + ": 1 of the region's 2 chunks was never written and reads as its fill value, -7");
+}
+
 }  // namespace
 }  // namespace weir::hdf5_stack_test

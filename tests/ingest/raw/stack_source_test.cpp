@@ -98,6 +98,17 @@ TEST(StackSource, PlacementAndRegionAreTheStacks) {
   EXPECT_EQ(read(*source, {{0, 0, 2}, {2, 1, 3}}), (std::vector<float>{60, 61}));
 }
 
+TEST(StackSource, WithMissingChunks_IsRefusedForARegionToo) {
+  const Scratch scratch;
+  SourceOptions options = slab_options(4);
+  options.roi = Box{{0, 0, 2}, {6, 5, 12}};
+  options.missing_chunks = MissingChunks::error;
+  const std::string stack = write_slabs(scratch, 4);
+  EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { open_source(stack, options); }),
+            scratch.path("s_7.raw") +
+                ": --missing-chunks error is for Zarr arrays and HDF5 files, and this is raw; leave it out");
+}
+
 TEST(StackSource, RefusesHoles) {
   const auto refusal = [](const std::string& pattern, const SourceOptions& options) {
     return message_of_error(ErrorKind::input, [&] { open_source(pattern, options); });

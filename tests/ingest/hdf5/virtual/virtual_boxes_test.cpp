@@ -154,7 +154,7 @@ with h5py.File("a.h5", "w") as f:
                                       "--missing-chunks fill");
   EXPECT_EQ(refused("a.h5", dataset_options("steps", {1})),
             path +
-                ": /steps: no source is mapped to its element 1, 0, 0, 0, nor to any other of the volume; the "
+                ": /steps: no source is mapped to its element 1, 0, 0, 0, nor to any other that is read; the "
                 "dataset is incomplete");
 }
 
@@ -183,6 +183,36 @@ with h5py.File("a.h5", "w") as f:
             path + ": /v: 1 chunk of its sources was never written (the first at 1, 0, 0, 4 of " +
                 scratch_.path("source.h5") +
                 ": d), and with --missing-chunks error all must be; write them, or use --missing-chunks fill");
+}
+
+TEST_F(VirtualDataset, OfARegion_OnlyItsOwnSourcesAreNeeded) {
+  write_by_h5py(scratch_, R"(
+with h5py.File("source.h5", "w") as f:
+    d = f.create_dataset("d", (4, 4, 8), "f4", chunks=(2, 4, 4), fillvalue=-7)
+    d[:2] = 1
+layout = h5py.VirtualLayout((8, 4, 9), "f4")
+layout[:4, :, :8] = h5py.VirtualSource("source.h5", "d", (4, 4, 8))
+layout[4:, :, :8] = h5py.VirtualSource("not_there_yet.h5", "d", (4, 4, 8))
+with h5py.File("a.h5", "w") as f: f.create_virtual_dataset("v", layout, fillvalue=-1.5)
+)");
+  const std::string where = scratch_.path("a.h5") + ": /v: ";
+  SourceOptions options = dataset_options("v");
+  options.missing_chunks = MissingChunks::error;
+  const auto said = [&](const Box& region) {
+    options.roi = region;
+    return message_of_error(ErrorKind::input, [&] { open_source(scratch_.path("a.h5"), options); });
+  };
+  options.roi = Box{{0, 0, 0}, {8, 4, 2}};
+  EXPECT_EQ(all_values(*open_source(scratch_.path("a.h5"), options)), std::vector<float>(64, 1));
+  const std::string all = "error all must ";
+  EXPECT_EQ(said({{0, 0, 1}, {4, 4, 3}}), where + "1 chunk of its sources was never written (the first at 2, 0, 0 of " +
+                                              scratch_.path("source.h5") + ": d), and with --missing-chunks " + all +
+                                              "be; write them, or use --missing-chunks fill");
+  EXPECT_EQ(said({{7, 0, 0}, {9, 4, 2}}),
+            where + "8 of the region's 16 values have no source (the first at 0, 0, 8), and with --missing-chunks " +
+                all + "have one; map one to them, or use --missing-chunks fill");
+  EXPECT_EQ(said({{0, 0, 3}, {4, 4, 5}}), where + "its source file not_there_yet.h5 is not there; put it beside " +
+                                              scratch_.path("a.h5") + " or set HDF5_VDS_PREFIX");
 }
 
 TEST_F(VirtualDataset, SourcesThatWereNeverWritten_ReadAsTheFillValueThatTheirWriterSet) {
@@ -261,7 +291,7 @@ whole("bad source.h5", [(S[...], V("bad.h5", "v", (4, 4, 4)))])
   };
   const std::string source = "its source " + scratch_.path("source.h5") + ": ";
   const std::string incomplete = "; the dataset is incomplete";
-  EXPECT_EQ(said("bare.h5"), "no source is mapped to its element 0, 0, 0, nor to any other of the volume" + incomplete);
+  EXPECT_EQ(said("bare.h5"), "no source is mapped to its element 0, 0, 0, nor to any other that is read" + incomplete);
   EXPECT_EQ(said("cut.h5"), source + "half: has extents 2, 4, 4, fewer than the mapping needs");
   EXPECT_EQ(said("no file.h5"), "its source file other.h5 is not there; put it beside " + scratch_.path("no file.h5") +
                                     " or set HDF5_VDS_PREFIX");
