@@ -159,7 +159,7 @@ weir_status weir_sample(const weir_grid* grid, int32_t filter, const float* posi
                                   for (std::size_t i = 0; i < count; ++i) {
                                     const Float3 at{positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]};
                                     const bool nowhere = std::isnan(at.x) || std::isnan(at.y) || std::isnan(at.z);
-                                    values[i] = nowhere ? std::numeric_limits<float>::quiet_NaN() : volume.smooth(at);
+                                    values[i] = nowhere ? std::numeric_limits<float>::quiet_NaN() : volume.value(at);
                                   }
                                 });
   });

@@ -23,7 +23,7 @@ void sample_part(const Volume& volume, std::span<const float> positions, const t
                  float* values) {
   for (std::size_t i = part.begin(); i < part.end(); ++i) {
     const float* const at = &positions[3 * i];
-    values[i] = volume.smooth({at[0], at[1], at[2]});
+    values[i] = volume.value({at[0], at[1], at[2]});
   }
 }
 

@@ -41,18 +41,30 @@ struct FilteredVolume {
     return trilinear(p);
   }
 
+  /// As smooth(), for values that are told, not drawn: a voxel of no weight plays no part, though it is NaN or
+  /// infinite, so that the centre of a voxel has that voxel's value.
+  float value(const Float3& p) const {
+    if (filter == Filter::nearest) return table.voxel(nearest(p));
+    return trilinear(p, [](float a, float b, float t) { return t == 0 ? a : mix(a, b, t); });
+  }
+
   WEIR_HOST_DEVICE float trilinear(const Float3& p) const {
+    return trilinear(p, [](float a, float b, float t) { return mix(a, b, t); });
+  }
+
+ private:
+  template <class Mix>
+  WEIR_HOST_DEVICE float trilinear(const Float3& p, const Mix& mixed) const {
     Int3 i;
     Float3 f;
     corner(p, i, f);
     float c[8];
     if (table.taps(i, c)) return c[0];
-    const float y0 = mix(mix(c[0], c[1], f.x), mix(c[2], c[3], f.x), f.y);
-    const float y1 = mix(mix(c[4], c[5], f.x), mix(c[6], c[7], f.x), f.y);
-    return mix(y0, y1, f.z);
+    const float y0 = mixed(mixed(c[0], c[1], f.x), mixed(c[2], c[3], f.x), f.y);
+    const float y1 = mixed(mixed(c[4], c[5], f.x), mixed(c[6], c[7], f.x), f.y);
+    return mixed(y0, y1, f.z);
   }
 
- private:
   WEIR_HOST_DEVICE static std::int32_t voxel_of(float p, std::int32_t extent) {
     return lesser(static_cast<std::int32_t>(clamped(p, 0.0F, static_cast<float>(extent))), extent - 1);
   }

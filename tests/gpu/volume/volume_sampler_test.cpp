@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 #include "tests/gpu/support/test_medium.h"
@@ -71,6 +72,27 @@ TEST_F(SamplerOnNoise, TrilinearAtCentresIsTheVoxel) {
   EXPECT_EQ(sampler.smooth({0.5F, 0.5F, 0.5F}), noise({-3, 2, 5}));
   EXPECT_EQ(sampler.smooth({27.5F, 21.5F, 10.5F}), noise({24, 23, 15}));
   EXPECT_EQ(sampler.smooth({5.5F, 7.5F, 3.5F}), noise({2, 9, 8}));
+}
+
+TEST(VolumeSampler, ValueAtACentre_IsTheVoxelThoughItsNeighbourIsNotANumber) {
+  const Index3 hole{4, 4, 4};
+  const TestGrid grid{{{0, 0, 0}, {8, 8, 8}},
+                      [&](const Index3& i) { return i == hole ? std::numeric_limits<float>::quiet_NaN() : noise(i); }};
+  const LeafTable table(grid.grid());
+  const VolumeSampler sampler{table.view(), Filter::trilinear};
+  const auto centre = [](std::int64_t i) { return static_cast<float>(i) + 0.5F; };
+  for (std::int64_t z = 0; z < 8; ++z) {
+    for (std::int64_t y = 0; y < 8; ++y) {
+      for (std::int64_t x = 0; x < 8; ++x) {
+        const Index3 i{x, y, z};
+        if (i == hole) continue;
+        ASSERT_EQ(sampler.value({centre(x), centre(y), centre(z)}), noise(i)) << x << ", " << y << ", " << z;
+      }
+    }
+  }
+  EXPECT_TRUE(std::isnan(sampler.value({4.5F, 4.5F, 4.5F})));
+  EXPECT_TRUE(std::isnan(sampler.value({3.75F, 4.5F, 4.5F})));
+  EXPECT_EQ(sampler.value({3.25F, 4.5F, 4.5F}), sampler.smooth({3.25F, 4.5F, 4.5F}));
 }
 
 TEST_F(SamplerOnNoise, NearestIsTheVoxelThatCoversThePosition) {
