@@ -106,12 +106,23 @@ void MacrocellGrid::gather(const NvdbGrid& grid) {
       gather_tile(block);
     }
   });
-  // A root entry that is absent is visited by nobody: background all over. Packed regions are all there.
+  if (grid.packed() == nullptr) gather_absent(grid);  // packed regions are all there
+}
+
+// A root entry that is absent is visited by nobody: background all over.
+void MacrocellGrid::gather_absent(const NvdbGrid& grid) {
   const NodeLattice roots = make_lattice(lattice_.domain, kUpperDim);
-  for_each_index({{0, 0, 0}, roots.count}, [&](const Index3& i) {
-    const GridBlock block = grid.block_at(roots.node_box(i).lo);
-    if (!block.coded() && block.dim == kUpperDim) gather_tile(block);
+  const Box all{roots.first, roots.first + roots.count};
+  std::vector<bool> there(static_cast<std::size_t>(roots.size()));
+  grid.for_each_root_entry([&](const RootEntry& entry) {
+    const Index3 root = floor_div(entry.origin, kUpperDim);
+    if (all.contains(root)) there[static_cast<std::size_t>(roots.linear(root - roots.first))] = true;
   });
+  for (std::int64_t i = 0; i < roots.size(); ++i) {
+    if (there[static_cast<std::size_t>(i)]) continue;
+    const Index3 origin = (roots.first + roots.position(i)) * kUpperDim;
+    gather_tile({origin, kUpperDim, false, grid.background(), nullptr});
+  }
 }
 
 void MacrocellGrid::gather_tile(const GridBlock& block) {

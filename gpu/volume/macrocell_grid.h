@@ -49,6 +49,7 @@ class MacrocellGrid {
   void merge();
   void gather(const NvdbGrid& grid);
   void gather_coded(const NvdbGrid& grid, const GridBlock& block);
+  void gather_absent(const NvdbGrid& grid);
   void gather_tile(const GridBlock& block);
   void include(const Index3& cell, float low, float high);
 
