@@ -23,6 +23,7 @@ void include(Box& box, const Box& other) {
 }
 
 Index3 voxel_of(unsigned n) { return {n >> 6U, n >> 3U & 7U, n & 7U}; }
+std::int64_t index_in_leaf(const Index3& voxel) { return voxel.x << 6 | voxel.y << 3 | voxel.z; }
 
 using Walk = void (NvdbGrid::*)(const std::function<void(const GridBlock&)>&) const;
 
@@ -107,11 +108,16 @@ class CensusTally {
     const Box inside = intersect(box, grid_->index_bbox());
     if (inside.empty()) return;
     if (!tile.active && tile.value == background_) census.quiet_voxels += static_cast<std::uint64_t>(inside.voxels());
+    for_each_index(cells_that_see(inside), [&](const Index3& cell) { check(tile.origin, inside, cell, tile.value); });
+  }
+
+  // Voxels beyond the domain's border count with the background.
+  void check_border() {
     if (cells_.cells.empty()) return;
-    const NodeLattice covered = make_lattice(inside, cells_.cell);
-    for (std::int64_t i = 0; i < covered.size(); ++i) {
-      check(tile.origin, cell_at(covered.first + covered.position(i) - cells_.lattice.first), tile.value);
-    }
+    const NodeLattice& lattice = cells_.lattice;
+    for_each_index({lattice.first, lattice.first + lattice.count}, [&](const Index3& cell) {
+      if (!lattice.domain.contains(seen_from(cell))) check({}, {}, cell, background_);
+    });
   }
 
   void merge(const CensusTally& other) {
@@ -127,6 +133,7 @@ class CensusTally {
     census.min = std::min(census.min, o.min);
     census.max = std::max(census.max, o.max);
     if (!census.outside_macrocell) census.outside_macrocell = o.outside_macrocell;
+    if (!census.outside_apron) census.outside_apron = o.outside_apron;
   }
 
   TreeCensus census;
@@ -158,14 +165,11 @@ class CensusTally {
     census.min = std::min(census.min, lo);
     census.max = std::max(census.max, hi);
     include(census.active_bbox, box);
-    if (cells_.cells.empty()) return;
-    const MinMax& cell = cell_of(leaf);
-    check(leaf.origin, cell, lo);
-    check(leaf.origin, cell, hi);
+    check_cells(leaf, box, values, {lo, hi});
   }
 
   void add_partial(const GridBlock& leaf, const Box& inside, std::span<const float, 512> values) {
-    const MinMax* cell = cells_.cells.empty() || inside.empty() ? nullptr : &cell_of(leaf);
+    MinMax all{std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()};
     for (unsigned n = 0; n < values.size(); ++n) {
       const Index3 i = leaf.origin + voxel_of(n);
       if (voxel_active(*grid_, leaf, n)) {
@@ -173,8 +177,23 @@ class CensusTally {
         add_value(values[n], 1);
         include(census.active_bbox, {i, i + Index3{1, 1, 1}});
       }
-      if (cell != nullptr && inside.contains(i)) check(leaf.origin, *cell, values[n]);
+      if (!inside.contains(i)) continue;
+      all.min = values[n] < all.min ? values[n] : all.min;
+      all.max = values[n] > all.max ? values[n] : all.max;
     }
+    check_cells(leaf, inside, values, all);
+  }
+
+  // The cells that see voxels of a block in the domain: their own, and those into whose apron they reach. `all` are
+  // bounds of what the block has inside.
+  void check_cells(const GridBlock& block, const Box& inside, std::span<const float, 512> values, const MinMax& all) {
+    for_each_index(cells_that_see(inside), [&](const Index3& cell) {
+      const MinMax& bounds = cell_at(cell);
+      if (all.min >= bounds.min && all.max <= bounds.max) return;
+      for_each_index(intersect(inside, seen_from(cell)), [&](const Index3& i) {
+        check(block.origin, inside, cell, values[static_cast<std::size_t>(index_in_leaf(i - block.origin))]);
+      });
+    });
   }
 
   void add_value(float value, std::uint64_t voxels) {
@@ -189,17 +208,34 @@ class CensusTally {
   }
 
   const MinMax& cell_at(const Index3& cell) const {
-    return cells_.cells[static_cast<std::size_t>(cells_.lattice.linear(cell))];
+    return cells_.cells[static_cast<std::size_t>(cells_.lattice.linear(cell - cells_.lattice.first))];
   }
 
-  // NaN lies in no cell and needs none: it is no extinction.
-  void check(const Index3& block, const MinMax& cell, float value) {
-    if (std::isnan(value) || (value >= cell.min && value <= cell.max)) return;
-    if (!census.outside_macrocell) census.outside_macrocell = block;
+  // Voxels that a cell's bounds are of.
+  Box seen_from(const Index3& cell) const {
+    const Index3 lo = cell * cells_.cell;
+    return grown({lo, lo + Index3{cells_.cell, cells_.cell, cells_.cell}}, cells_.apron);
   }
 
-  const MinMax& cell_of(const GridBlock& leaf) const {
-    return cell_at(floor_div(leaf.origin, cells_.cell) - cells_.lattice.first);
+  // None where the grid has no macrocells.
+  Box cells_that_see(const Box& voxels) const {
+    if (cells_.cells.empty() || voxels.empty()) return {};
+    const NodeLattice& lattice = cells_.lattice;
+    const Box reach = grown(voxels, cells_.apron);
+    const Box cells{floor_div(reach.lo, cells_.cell),
+                    floor_div(reach.hi - Index3{1, 1, 1}, cells_.cell) + Index3{1, 1, 1}};
+    return intersect(cells, {lattice.first, lattice.first + lattice.count});
+  }
+
+  // NaN lies in no cell and needs none: it is no extinction. `block` has the value in `voxels`, which lie in the cell,
+  // or in its apron alone.
+  void check(const Index3& block, const Box& voxels, const Index3& cell, float value) {
+    const MinMax& bounds = cell_at(cell);
+    if (std::isnan(value) || (value >= bounds.min && value <= bounds.max)) return;
+    const Index3 lo = cell * cells_.cell;
+    const bool own = !intersect(voxels, {lo, lo + Index3{cells_.cell, cells_.cell, cells_.cell}}).empty();
+    std::optional<Index3>& found = own ? census.outside_macrocell : census.outside_apron;
+    if (!found) found = own ? block : lo;
   }
 
   const NvdbGrid* grid_;
@@ -242,7 +278,9 @@ TreeCensus take_census(const NvdbGrid& grid, const CensusProgress& progress, Tra
   const auto add_tile = [](CensusTally& total, const GridBlock& tile) { total.add_tile(tile); };
   const auto census_of = [&](bool tree) {
     const Walk walk = tree ? &NvdbGrid::for_each_tree_block : &NvdbGrid::for_each_block;
-    return reduce_blocks(grid, walk, CensusTally(grid, tree), progress, add_tile, trace).census;
+    CensusTally tally = reduce_blocks(grid, walk, CensusTally(grid, tree), progress, add_tile, trace);
+    tally.check_border();
+    return tally.census;
   };
   TreeCensus census = census_of(true);
   census.valued_voxels = census.active_voxels;
@@ -256,6 +294,7 @@ TreeCensus take_census(const NvdbGrid& grid, const CensusProgress& progress, Tra
   census.min = values.min;
   census.max = values.max;
   census.outside_macrocell = values.outside_macrocell;
+  census.outside_apron = values.outside_apron;
   return census;
 }
 

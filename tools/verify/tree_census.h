@@ -31,6 +31,7 @@ struct TreeCensus {
   float min = std::numeric_limits<float>::infinity();  ///< of the finite active values
   float max = -std::numeric_limits<float>::infinity();
   std::optional<Index3> outside_macrocell;  ///< a block in the domain with a value its macrocell does not hold
+  std::optional<Index3> outside_apron;      ///< lowest voxel of a macrocell that does not hold a value of its apron
 };
 
 /// Called with the number of leaves (of a packed grid: of coded blocks) done so far, from the calling thread; may throw

@@ -110,8 +110,12 @@ std::vector<VolumeCheck> check_structure(const NvdbGrid& grid, const TreeCensus&
   checks.push_back(stored_range(grid, census));
   if (!grid.macrocells().cells.empty()) {
     const auto& outside = census.outside_macrocell;
-    checks.push_back({"macrocells", outside ? "the block at " + text_of(*outside) + " exceeds its cell" : "all hold",
-                      "bounds of every decoded value", !outside});
+    const auto& apron = census.outside_apron;
+    checks.push_back({"macrocells",
+                      outside ? "the block at " + text_of(*outside) + " exceeds its cell"
+                      : apron ? "values around the cell at " + text_of(*apron) + " exceed it"
+                              : "all hold",
+                      "bounds of every decoded value", !outside && !apron});
   }
   return checks;
 }

@@ -93,6 +93,33 @@ TEST_F(PackedCensusTest, MacrocellThatDoesNotHold_IsReported) {
   EXPECT_EQ(floor_div(*take_census(grid, {}).outside_macrocell, 16), (Index3{16, 2, 3}));
 }
 
+// Bounds of a cell's own voxels alone: a filtered look-up at its border reads what lies around it, too.
+TEST_F(PackedCensusTest, MacrocellsWithoutTheirApron_AreReported) {
+  EXPECT_FALSE(take_census(grid_, {}).outside_apron);
+  const MacrocellView cells = grid_.macrocells();
+  std::vector<MinMax> own(cells.cells.size(), kNoBounds);
+  for_each_index(grid_.index_bbox(), [&](const Index3& i) {
+    const Index3 cell = floor_div(i, cells.cell) - cells.lattice.first;
+    const float value = grid_.value(i);
+    if (!std::isnan(value)) widen(own[static_cast<std::size_t>(cells.lattice.linear(cell))], {value, value});
+  });
+  test::PackedFile narrow = made_;
+  const std::size_t first = narrow.packed - own.size() * sizeof(MinMax);
+  for (std::size_t i = 0; i < own.size(); ++i) store(std::span(narrow.file), first + i * sizeof(MinMax), own[i]);
+  const NvdbGrid grid = NvdbGrid::open(narrow.file, "a.nvdb");
+  const TreeCensus census = take_census(grid, {});
+  EXPECT_FALSE(census.outside_macrocell);
+  ASSERT_TRUE(census.outside_apron);
+  bool told = false;
+  for (const VolumeCheck& check : check_structure(grid, census)) {
+    if (check.name != "macrocells") continue;
+    told = true;
+    EXPECT_FALSE(check.ok);
+    EXPECT_TRUE(check.found.starts_with("values around the cell at ")) << check.found;
+  }
+  EXPECT_TRUE(told);
+}
+
 TEST_F(PackedCensusTest, Histogram_PackedGrid_CountsTheDomain) {
   const auto counts = count_values(grid_, -1000, 1000, 8, {});
   EXPECT_EQ(std::accumulate(counts.begin(), counts.end(), std::uint64_t{0}),
