@@ -15,7 +15,12 @@ level of a file that is larger than memory opens. The field data has the certifi
 "weir_rmse" and "weir_max_abs", in the values' own unit, and "weir_psnr_db", if anything was lost.
 
 Several files of one extent are the steps of a series, at the times 0, 1, 2, ...
+
+A file that was replaced or written to since it was read is opened again by the next update, which reader.Modified()
+makes due.
 """
+
+import os
 
 import weir
 from vtkmodules.util.numpy_support import numpy_to_vtk
@@ -37,6 +42,15 @@ except ImportError:
     smdomain = smhint = smproperty = smproxy = _NoProxies()
 
 
+def _version(path):
+    """What tells the file at `path` from one that takes its place; None of a URL, and where there is no file."""
+    try:
+        status = os.stat(path)
+    except (OSError, ValueError):  # the latter of a null byte
+        return None
+    return status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns
+
+
 @smproxy.reader(
     name="WeirReader", label="Weir Reader", extensions="nvdb", file_description="NanoVDB volumes"
 )
@@ -49,6 +63,7 @@ class WeirReader(VTKPythonAlgorithmBase):
         self._level = 0
         self._step = 0
         self._grid = None  # of the step
+        self._version = None  # of its file
 
     @smproperty.stringvector(
         name="FileNames",
@@ -121,9 +136,11 @@ class WeirReader(VTKPythonAlgorithmBase):
         """Makes the grid that of the time that is asked for: the last step up to it."""
         time = information.Get(Pipeline.UPDATE_TIME_STEP()) if information.Has(Pipeline.UPDATE_TIME_STEP()) else 0
         step = min(max(int(time), 0), len(self._paths) - 1)
-        if self._grid is None or step != self._step:
+        version = _version(self._paths[step])
+        if self._grid is None or step != self._step or version != self._version:
             self._grid = weir.open(self._paths[step])
             self._step = step
+            self._version = version
 
     def _level_there_is(self):
         return min(self._level, self._grid.levels - 1)

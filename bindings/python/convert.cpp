@@ -111,6 +111,7 @@ void add_meaning(const py::dict& meaning, DenseArray& array) {
     array.axis_labels.at(i) = text_at(axis, "name");
     details.units = text_at(axis, "units");
     details.note = text_at(axis, "note");
+    if (axis.contains("reversed")) details.reversed = axis["reversed"].cast<bool>();
     if (axis.contains("coordinates")) details.coordinates = axis["coordinates"].cast<std::vector<double>>();
     ++i;
   }

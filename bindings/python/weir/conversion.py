@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 from typing import TYPE_CHECKING, Any, Callable, Optional, Sequence, Union
 
 import numpy
@@ -14,6 +15,7 @@ from .device import DeviceArray, array_of, is_array_elsewhere
 from .errors import UsageError
 from .labelled import is_data_array, take_apart
 from .options import box_text, given_options, input_bytes, is_url, path_bytes, shown_url, text_of
+from .undecoded import missing_number
 
 if TYPE_CHECKING:
     import xarray
@@ -92,7 +94,9 @@ def convert(
         or more and no roi given: then only what becomes of the values crosses the bus. There bfloat16 is known as well.
         Or an xarray.DataArray of three axes: in the order z, y, x where their names (x, y, lat, lon ...) or attributes
         "axis" say which they are, else as they are. Its name, units, long_name and time are kept, its coordinates become
-        spacing and origin; an axis whose coordinates fall is turned round.
+        spacing and origin; an axis whose coordinates fall is turned round, and a notice says so. _FillValue and
+        missing_value in its attrs are taken as missing; with scale_factor or add_offset there, it is not decoded
+        (xarray.decode_cf), and refused.
     output
         May be left out for a path: its stem + ".nvdb", beside it; where the file holds several volumes, with what was
         chosen in the name. An existing file is replaced with overwrite=True only.
@@ -120,17 +124,18 @@ def convert(
     The volume: spacing (x, y, z) in world units per voxel; origin, the world position of the centre of voxel (0, 0,
     0); missing, a stored value that says "no data"; missing_policy "error", "background", "keep" (as data), what
     becomes of such voxels, by default what nonfinite says, which is "error"; roi ((x0, y0, z0), (x1, y1, z1)) in
-    voxels, x0 inclusive, x1 exclusive, or a text as `--roi` takes it; ghost, layers of ghost cells left out at both
-    ends of each axis, a number or (x, y, z); dataset, the name in a container, or of what an array holds. A list of
-    datasets, in which "*" and "/step_%d/rho" stand for several, converts each of them and returns a list of sidecars:
-    output is then a directory ("out/"), a name with {stem}, {dataset} or {step}, or left out. Of files also index, a
-    position on each leading axis, (3, 0), or a text as `--index` takes it, "time=3"; one with a range, "0:2" or "*",
-    converts each and returns a list, too; component (0, 1, ..., "x", "y", "z" or "magnitude" of vectors in HDF5,
-    Zarr, VTK and OpenVDB files), magnitude (("u", "v", "w"), the datasets that are the components of the vectors whose
-    length is the volume), level (of an AMReX plotfile, 0 the coarsest) and upsample ("constant", "linear"), levels
-    ("composite", or "separate", which converts each level to a file of its own, named _level_N with N from 0, the
-    finest, on, and returns a list),
-    missing_chunks (of a Zarr array or an HDF5 dataset: "fill", "error"), dims (x, y, z), type, endian, offset, stack, direct_io.
+    voxels, x0 inclusive, x1 exclusive, or a text as `--roi` takes it; where the coordinates of a file or of an
+    xarray.DataArray fall, the axis is turned round, and roi counts from the lowest one; ghost, layers of ghost
+    cells left out at both ends of each axis, a number or (x, y, z); dataset, the name in a container, or of what an
+    array holds. A list of datasets, in which "*" and "/step_%d/rho" stand for several, converts each of them and
+    returns a list of sidecars: output is then a directory ("out/"), a name with {stem}, {dataset} or {step}, or
+    left out. Of files also index, a position on each leading axis, (3, 0), or a text as `--index` takes it,
+    "time=3"; one with a range, "0:2" or "*", converts each and returns a list, too; component (0, 1, ..., "x", "y",
+    "z" or "magnitude" of vectors in HDF5, Zarr, VTK and OpenVDB files), magnitude (("u", "v", "w"), the datasets
+    that are the components of the vectors whose length is the volume), level (of an AMReX plotfile, 0 the coarsest)
+    and upsample ("constant", "linear"), levels ("composite", or "separate", which converts each level to a file of
+    its own, named _level_N with N from 0, the finest, on, and returns a list), missing_chunks (of a Zarr array or
+    an HDF5 dataset: "fill", "error"), dims (x, y, z), type, endian, offset, stack, direct_io.
 
     memory
         Bytes, or "512MiB" (the default): what the conversion may take besides what the process holds when it
@@ -144,9 +149,9 @@ def convert(
         For spill files; by default a hidden directory beside the output.
     resume
         "auto", "on" or "off": whether what an interrupted conversion of a file did is kept for the next. Never of an
-        array.
+        array, for which "on" is refused.
     save_interval
-        Seconds between two points that it can be continued from; 0: as many as there are.
+        Of files: seconds between two points that it can be continued from; 0: as many as there are.
     progress
         Called in this thread some twenty times a second at most as progress(pass, done, total), in float32 bytes.
         What it raises, KeyboardInterrupt too, ends the conversion and goes on.
@@ -162,13 +167,10 @@ def convert(
     """
     meaning: dict[str, Any] = {}
     if is_data_array(source):
-        labelled = take_apart(source)
+        labelled = take_apart(source, spaced=spacing is not None)
+        missing = missing_number(source) if missing is None else missing
         source, meaning = labelled.values, labelled.meaning
-        if spacing is None:
-            spacing = labelled.spacing
-        else:  # then nothing is to be said of the array's own
-            for axis in meaning["axes"]:
-                axis.pop("note", None)
+        spacing = labelled.spacing if spacing is None else spacing
         origin = labelled.origin if origin is None else origin
         dataset = labelled.name if dataset is None else dataset
     ranges = index is not None and any(letter in text_of(index) for letter in ":*")
@@ -232,6 +234,7 @@ def convert(
             raise UsageError("output is missing: an array has no name to make one from")
         if listed:
             raise UsageError("dataset is a list; an array is one volume, whose name is a text")
+        _refuse_what_is_for_files(options)
         texts = [_convert_array(source, target, options, meaning, progress)]
     else:
         raise TypeError(
@@ -250,6 +253,16 @@ def _remedy(source: Any) -> str:
         array = ", or numpy.asarray(source)" if hasattr(source, "__array__") else ""
         return f"; give the path of its file with dataset=NAME, which is streamed{array}"
     return "; give numpy.asarray(source)" if hasattr(source, "__array__") else ""
+
+
+def _refuse_what_is_for_files(options: dict[str, bytes]) -> None:
+    """Raises UsageError for options without a meaning for arrays. Wrong values are left to the check of all options."""
+    remedy = "which is for files; the conversion of an array cannot be continued, leave it out"
+    if options.get("resume") == b"on":
+        raise UsageError(f"resume is 'on', {remedy}")
+    interval = options.get("save-interval", b"").decode()
+    if re.match(r"[0-9.]", interval):
+        raise UsageError(f"save_interval is {interval}, {remedy}")
 
 
 def _convert_array(

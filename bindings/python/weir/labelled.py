@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from .errors import UsageError
 from .options import described
+from .undecoded import refuse_undecoded
 
 if TYPE_CHECKING:
     import xarray
@@ -31,7 +32,7 @@ class Labelled(NamedTuple):
     origin: tuple[float, float, float]
     name: Optional[str]
     meaning: dict[str, Any]  #: "units", "long_name", "time", "calendar", and of "axes" x, y, z: "name", "units",
-    #: "coordinates", "note"
+    #: "coordinates", "note", "reversed"
 
 
 def is_data_array(source: Any) -> bool:
@@ -40,8 +41,22 @@ def is_data_array(source: Any) -> bool:
     return xarray is not None and isinstance(source, getattr(xarray, "DataArray", ()))
 
 
-def take_apart(array: xarray.DataArray) -> Labelled:
-    """Values are read. Axes whose coordinates fall are turned round. Raises UsageError for other than three axes."""
+class _Axis(NamedTuple):
+    """What the coordinates of an axis say."""
+
+    details: dict[str, Any]  #: of Labelled.meaning
+    spacing: float = 1.0
+    origin: float = 0.0
+    falls: str = ""  #: how coordinates that fall are read; empty where they do not fall
+
+
+def take_apart(array: xarray.DataArray, spaced: bool = False) -> Labelled:
+    """Values are read. Axes whose coordinates fall are turned round. `spaced`: the caller gives another spacing, so
+    that positions of the array's own are left out.
+
+    Raises UsageError for other than three axes, and for values and coordinates that are not decoded.
+    """
+    refuse_undecoded(array, "source")
     array = _without_further_axes(array)
     if array.ndim != 3:
         axes = ", ".join(map(str, array.dims))
@@ -51,11 +66,11 @@ def take_apart(array: xarray.DataArray) -> Labelled:
     values = array.values
     axes, spacing, origin = [], [], []
     for place in (2, 1, 0):
-        axis, step, first, falls = _axis(array, place)
-        axes.append(axis)
-        spacing.append(step)
-        origin.append(first)
-        if falls:
+        axis = _axis(array, place)
+        axes.append(_details(axis, spaced))
+        spacing.append(axis.spacing)
+        origin.append(axis.origin)
+        if axis.falls:
             values = numpy.flip(values, place)
     attributes = {key: _attribute(array, "source", key) for key in ("units", "long_name")}
     meaning: dict[str, Any] = {"axes": axes, **{key: text for key, text in attributes.items() if text}, **_time(array)}
@@ -115,52 +130,78 @@ def _z_y_x(array: xarray.DataArray) -> tuple[Any, ...]:
     return tuple(axis_of[axis] for axis in "zyx") if len(axis_of) == 3 else array.dims
 
 
-def _axis(array: xarray.DataArray, place: int) -> tuple[dict[str, Any], float, float, bool]:
-    """What is said of it, its spacing, its first coordinate, and whether the coordinates fall."""
+def _details(axis: _Axis, spaced: bool) -> dict[str, Any]:
+    """Of Labelled.meaning. Where the axis is `spaced` otherwise, without its own positions; times stay."""
+    details = dict(axis.details)
+    if spaced:
+        details.pop("note", None)
+        counts_time = " since " in details.get("units", "")
+        if not counts_time:
+            details.pop("coordinates", None)
+        elif "coordinates" not in details:  # a distance is no time
+            del details["units"]
+    if axis.falls:
+        details["reversed"] = True
+        details["note"] = "; ".join(note for note in (axis.falls, details.get("note")) if note)
+    return details
+
+
+def _axis(array: xarray.DataArray, place: int) -> _Axis:
     name = array.dims[place]
     axis: dict[str, Any] = {"name": _text(name)}
     if name not in array.coords:
-        return axis, 1.0, 0.0, False
+        return _Axis(axis)
     coordinate = array.coords[name]
-    units = _attribute(coordinate, f"source[{name!r}]", "units")
+    shown = f"source[{name!r}]"
+    refuse_undecoded(coordinate, shown)
+    units = _attribute(coordinate, shown, "units")
     if units:
         axis["units"] = units
     if coordinate.dtype.kind == "M":  # a distance is no time
         axis["units"] = _EPOCH
         axis["coordinates"] = _seconds(coordinate).tolist()
         axis["note"] = f"dates from {coordinate.values[0]} to {coordinate.values[-1]}, taken as indices"
-        return axis, 1.0, 0.0, False
+        return _Axis(axis)
     if coordinate.dtype.kind not in "iuf":
         axis["note"] = f"coordinates of type {coordinate.dtype}, taken as indices"
-        return axis, 1.0, 0.0, False
+        return _Axis(axis)
     positions = coordinate.values.astype(float)
     if not numpy.isfinite(positions).all():
         axis["note"] = "coordinates that are missing or not finite, taken as indices"
-        return axis, 1.0, 0.0, False
+        return _Axis(axis)
     if len(positions) == 1:
-        return axis, 1.0, float(positions[0]), False
+        return _Axis(axis, origin=float(positions[0]))
     steps = numpy.diff(positions)
-    falls = bool((steps < 0).all())
-    if not falls and not (steps > 0).all():
+    falls = ""
+    if (steps < 0).all():
+        falls = _fall(coordinate.values, place)
+        positions = positions[::-1]
+    elif not (steps > 0).all():
         axis["coordinates"] = positions.tolist()
         from_to = f"coordinates from {positions[0]:.9g} to {positions[-1]:.9g}"
         if (steps == 0).any():
             axis["note"] = f"{from_to}, some of them equal, taken as indices"
         else:
             axis["note"] = f"{from_to} that rise and fall, taken as indices; source.sortby({str(name)!r}) puts them in order"
-        return axis, 1.0, 0.0, False
-    if falls:
-        positions = positions[::-1]
+        return _Axis(axis)
     first, last = float(positions[0]), float(positions[-1])
     step = (last - first) / (len(positions) - 1)
-    precision = 2.0**-23 if coordinate.dtype.itemsize <= 4 else 2.0**-52
+    single = coordinate.dtype.kind == "f" and coordinate.dtype.itemsize <= 4
+    precision = 2.0**-23 if single else 2.0**-52
     allowed = _TOLERANCE * step + precision * max(abs(first), abs(last))
     regular = first + step * numpy.arange(len(positions))
     if step > 0 and (abs(positions - regular) <= allowed).all():
-        return axis, step, first, falls
+        return _Axis(axis, step, first, falls)
     axis["coordinates"] = positions.tolist()
     axis["note"] = f"irregular coordinates from {first:.9g} to {last:.9g}, taken as indices"
-    return axis, 1.0, 0.0, falls
+    return _Axis(axis, falls=falls)
+
+
+def _fall(coordinates: NDArray[Any], place: int) -> str:
+    """What is said of coordinates that fall along the axis at `place` of [z, y, x], in the words for files."""
+    first, last = (str(value).removesuffix(".0") for value in (coordinates[0], coordinates[-1]))
+    elements = ("planes", "rows", "columns")[place]
+    return f"falls from {first} to {last}: {elements} are read in reverse order, so that positions rise"
 
 
 def _seconds(coordinate: xarray.DataArray) -> Any:
@@ -176,6 +217,7 @@ def _time(array: xarray.DataArray) -> dict[str, Any]:
     if "time" not in array.coords or array.coords["time"].ndim != 0:
         return {}
     coordinate = array.coords["time"]
+    refuse_undecoded(coordinate, "source['time']")
     found: dict[str, Any] = {}
     if coordinate.dtype.kind == "M":
         found = {"time": (float(_seconds(coordinate)), _EPOCH)}

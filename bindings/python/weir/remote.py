@@ -94,6 +94,8 @@ class RemoteGrid(Grid):
 
         Raises InputError where it is damaged, or of another file.
         """
+        if self.closed:
+            raise UsageError(f"{self._path}: is closed; open it again with weir.open")
         if not self._sidecar_read:
             url = sidecar_url(self._url)
             text = self._file.read_beside(url)

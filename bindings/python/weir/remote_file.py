@@ -221,6 +221,7 @@ class HttpFile(RemoteFile):
             self._headers["Authorization"] = _basic_authorization(user)
         self._connect()
         self._version: Optional[str] = None  # by which the server tells that the file has changed
+        self._tag: Optional[str] = None  # by which we tell that, where the server does not
         self._total: Optional[str] = None  # bytes of the file, as the server says
 
     def _connect(self) -> None:
@@ -286,6 +287,11 @@ class HttpFile(RemoteFile):
                 f"{self._shown}: its server answers bytes {offset} to {offset + count - 1} with status "
                 f'{response.status} and Content-Range "{said}"; copy the file to this machine'
             )
+        tag = _tag(response)
+        if self._tag is None:
+            self._tag = tag
+        elif tag is not None and tag != self._tag:
+            raise _changed(self._shown)
         version = _version(response)
         if self._version is None:
             self._version = version
@@ -546,6 +552,12 @@ def _version(response: urllib3.HTTPResponse) -> Optional[str]:
     if tag is not None and not tag.startswith("W/"):
         return tag
     return response.headers.get("Last-Modified")
+
+
+def _tag(response: urllib3.HTTPResponse) -> Optional[str]:
+    """The ETag of an answer, weak or not: other bytes have another one."""
+    tag = response.headers.get("ETag")
+    return None if tag is None else tag.removeprefix("W/")
 
 
 def _changed(url: str) -> InputError:

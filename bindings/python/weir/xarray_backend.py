@@ -7,7 +7,7 @@ import logging
 import math
 import os
 import re
-from typing import TYPE_CHECKING, Any, Iterable, Optional
+from typing import TYPE_CHECKING, Any, Iterable, Optional, Union
 
 import numpy
 import xarray
@@ -194,7 +194,9 @@ class WeirBackendEntrypoint(BackendEntrypoint):  # type: ignore[misc]
     """The engine "weir" of xarray.open_dataset: a dataset with the one variable that the file has."""
 
     description = "NanoVDB files, with the sidecars of weir"
-    open_dataset_parameters = ("filename_or_obj", "drop_variables", "decode_times", "level")
+    open_dataset_parameters = (
+        "filename_or_obj", "drop_variables", "decode_times", "level", "storage_options", "remote_cache"
+    )
 
     def open_dataset(
         self,
@@ -203,13 +205,17 @@ class WeirBackendEntrypoint(BackendEntrypoint):  # type: ignore[misc]
         drop_variables: Optional[Iterable[str]] = None,
         decode_times: bool = True,
         level: int = 0,
+        storage_options: Optional[dict[str, Any]] = None,
+        remote_cache: Union[int, str] = "256MiB",
     ) -> xarray.Dataset:
-        """xarray calls it. level, as of Grid.to_numpy: means over cubes of 2^level voxels along an edge."""
+        """xarray calls it. level, as of Grid.to_numpy: means over cubes of 2^level voxels along an edge;
+        storage_options, as of weir.open, and remote_cache, its cache, for which xarray has another meaning.
+        """
         from .grid import open as open_grid
 
         if not isinstance(filename_or_obj, (str, os.PathLike)):
             raise UsageError(f"filename_or_obj is {filename_or_obj!r}, it must be the path or URL of a NanoVDB file")
-        grid = open_grid(filename_or_obj)
+        grid = open_grid(filename_or_obj, cache=remote_cache, storage_options=storage_options)
         try:
             array = data_array(grid, level, decode_times)
             dataset = array.to_dataset(name=array.name or _UNNAMED).drop_vars(_listed(drop_variables), errors="ignore")

@@ -15,17 +15,19 @@ class QuietServer(http.server.ThreadingHTTPServer):
 class RangeServer:
     """Serves `files`, {"/a.nvdb": bytes}. `asked` has (path, first byte, last byte) of each range that was sent.
 
-    ranges: whether it knows ranges. tags: whether it tells versions apart. failures: how many requests it refuses with
-    status 503 from now on. cut: how many answers end in the middle from now on. beyond: whether answers go on to the
-    file's end. stalled: while it is set, no request is answered. coding: the Content-Encoding that it claims. moved:
-    where it redirects a path to, with a body of 64 MiB; wasted: bytes of these that were sent. needs: headers without
-    which it answers 401; headers: those of the last request. changed(path) makes another version of a file of it.
+    ranges: whether it knows ranges. tags: whether it tells versions apart. failures: how many requests it refuses
+    with status 503 from now on. weak: whether its tags are weak. cut: how many answers end in the middle from now on.
+    beyond: whether answers go on to the file's end. stalled: while it is set, no request is answered. coding: the
+    Content-Encoding that it claims. moved: where it redirects a path to, with a body of 64 MiB; wasted: bytes of
+    these that were sent. needs: headers without which it answers 401; headers: those of the last request.
+    changed(path) makes another version of a file of it.
     """
 
-    def __init__(self, files, ranges=True, tags=True):
+    def __init__(self, files, ranges=True, tags=True, weak=False):
         self.files = dict(files)
         self.ranges = ranges
         self.tags = tags
+        self.weak = weak
         self.failures = 0
         self.cut = 0
         self.beyond = False
@@ -110,8 +112,8 @@ class RangeServer:
                         return self.answer(404)
                     tag = f'"{owner.versions[path]}"'
                     found = re.fullmatch(r"bytes=(\d+)-(\d+)", self.headers.get("Range", ""))
-                    same = self.headers.get("If-Range", tag) == tag
-                    headers = {"ETag": tag} if owner.tags else {}
+                    same = self.headers.get("If-Range", tag) == tag  # never of a weak one
+                    headers = {"ETag": f"W/{tag}" if owner.weak else tag} if owner.tags else {}
                     if owner.coding is not None:
                         headers["Content_Encoding"] = owner.coding
                     if not found or not owner.ranges or not same:

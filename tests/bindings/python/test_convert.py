@@ -47,6 +47,19 @@ class Convert(FolderTest):
         self.assertEqual(record["file"]["bytes"], longest)
         self.assertEqual(os.path.getsize(self.folder / "c.nvdb"), longest)
 
+    def test_options_of_files_are_refused_of_arrays(self):
+        remedy = "which is for files; the conversion of an array cannot be continued, leave it out"
+        for given, said in (
+            ({"resume": "on"}, "resume is 'on'"),
+            ({"save_interval": 5}, "save_interval is 5"),
+            ({"save_interval": 0.5}, "save_interval is 0.5"),
+        ):
+            message = self.refused(weir.UsageError, weir.convert, ramp(9, 9, 9), self.folder / "a.nvdb", **given)
+            self.assertEqual(message, f"{said}, {remedy}")
+        self.assertEqual(self.names(), [])
+        for resume in ("auto", "off", None):
+            weir.convert(ramp(9, 9, 9), self.folder / "a.nvdb", resume=resume, overwrite=True)
+
     def test_the_record_is_the_sidecar(self):
         record = weir.convert(noise((20, 30, 40)), self.folder / "a.nvdb", psnr=40)
         self.assertEqual(record, json.loads((self.folder / "a.nvdb.json").read_text()))

@@ -4,6 +4,7 @@ import gc
 import shutil
 import sys
 import unittest
+import unittest.mock
 
 import numpy
 
@@ -133,6 +134,48 @@ class Reader(FolderTest):
         self.assertEqual((reader.GetFileNames(), reader.GetLevel()), ([grid.path], 1))
         with self.assertRaisesRegex(ValueError, "^level is -1, it must be 0 or more$"):
             reader.SetLevel(-1)
+
+    def test_a_file_that_was_replaced_is_opened_again(self):
+        first, second = ramp(9, 9, 9), ramp(12, 10, 9) + 1
+        reader = WeirReader()
+        reader.SetFileName(self.lossless(first).path)
+        reader.Update()
+        self.lossless(second, overwrite=True)
+        reader.Modified()
+        reader.Update()
+        image = reader.GetOutputDataObject(0)
+        self.assertTrue(same(values_of(image), second))
+        self.assertEqual(image.GetFieldData().GetArray("weir_max_abs").GetValue(0), 0)
+        (self.folder / "a.nvdb").unlink()
+        message = self.refused(InputNotFoundError, weir.open, self.folder / "a.nvdb")
+        reader.Modified()
+        self.assertEqual(self.told(reader.Update), f"WeirReader: {message}")
+        self.lossless(first, overwrite=True)
+        reader.Modified()
+        reader.Update()
+        self.assertTrue(same(values_of(reader.GetOutputDataObject(0)), first))
+
+    def test_a_file_that_was_written_to_in_place_is_opened_again(self):
+        path = self.folder / "a.nvdb"
+        weir.convert(ramp(9, 9, 9), path, lossless=True)
+        weir.convert(ramp(9, 9, 9) + 1, self.folder / "b.nvdb", lossless=True)
+        reader = WeirReader()
+        reader.SetFileName(str(path))
+        reader.Update()
+        path.write_bytes((self.folder / "b.nvdb").read_bytes())
+        shutil.copy(self.folder / "b.nvdb.json", self.folder / "a.nvdb.json")
+        reader.Modified()
+        reader.Update()
+        self.assertTrue(same(values_of(reader.GetOutputDataObject(0)), ramp(9, 9, 9) + 1))
+
+    def test_a_file_as_it_was_is_not_opened_again(self):
+        reader = WeirReader()
+        reader.SetFileName(self.lossless(ramp(9, 9, 9)).path)
+        reader.Update()
+        with unittest.mock.patch.object(weir, "open", side_effect=AssertionError):
+            reader.Modified()
+            reader.Update()
+        self.assertEqual(reader.GetOutputDataObject(0).GetDimensions(), (9, 9, 9))
 
     def test_a_series_is_read_by_time(self):
         steps = [ramp(9, 9, 9) + step for step in range(3)]

@@ -277,6 +277,7 @@ class Convert(FolderTest):
         self.assertEqual(
             [line.split(": ", 1)[1] for line in logs.output if "axis" in line],
             [
+                "qc: axis y (lat) falls from 50 to 48: rows are read in reverse order, so that positions rise",
                 "qc: axis z (height): irregular coordinates from 0 to 150, taken as indices, 1 apart; spacing sets "
                 "another distance"
             ],
