@@ -219,8 +219,9 @@ StatusView ServiceControl::status() {
   StatusView view;
   view.version = state_.version;
   view.config = state_.config;
-  view.reason = runner_.hold();
-  view.state = state_.stopping ? "stopping" : view.reason.empty() ? "running" : "paused";
+  const std::string hold = runner_.hold();
+  view.reason = hold.empty() ? runner_.waits_for_room() : hold;
+  view.state = state_.stopping ? "stopping" : hold.empty() ? "running" : "paused";
   view.started_at = started_at_;
   view.queue_age_s = seconds_of(store_.queue_age_ms().value_or(0));
   view.bytes_per_s = runner_.figures().bytes_per_s();

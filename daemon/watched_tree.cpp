@@ -5,9 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/jobs/conversion_task.h"
-#include "daemon/store/file_identity.h"
 #include "daemon/watch/choosing_watch.h"
-#include "daemon/watch/path_filter.h"
 #include "daemon/watch/repeated_events.h"
 #include "format/base/error.h"
 #include "format/io/is_directory.h"
@@ -121,12 +119,10 @@ void WatchedTree::work() {
   Clock::duration looking{};  // without the flush, which takes as long for few as for many
   const std::vector<FileEvent> events(events_.begin(), events_.begin() + count);
   const std::size_t first = std::min(events.size(), first_events_);
-  const bool known_listed = known_listed_;
-  const std::size_t known_looked_at = known_looked_at_;
+  const KnownJobs::Progress known = known_.progress();
   try {
     store_.together([&] {
-      if (!std::exchange(known_listed_, true)) list_known_jobs();
-      look_at_known_jobs();
+      known_.step(kTransactionTime);
       const Time begin = Clock::now();
       work_off(events, first);
       looking = Clock::now() - begin;
@@ -140,8 +136,7 @@ void WatchedTree::work() {
     written_.clear();
     ready_ = false;
     superseded_.clear();
-    known_listed_ = known_listed;
-    known_looked_at_ = known_looked_at;
+    known_.go_back_to(known);
     // What was looked at is due again; what was thought to be known is new again. The events themselves are there yet.
     for (const FileEvent& event : events) looked_at_.erase(event.path);
     for (const std::string& path : looked_at_) {
@@ -161,7 +156,7 @@ void WatchedTree::work() {
   for (const auto& say : std::exchange(written_, {})) say();
   for (const std::int64_t job : std::exchange(superseded_, {})) reports_.superseded(job);
   if (std::exchange(ready_, false)) reports_.ready();
-  if (!events_.empty() || !known_listed_ || known_looked_at_ < known_.size()) {
+  if (!events_.empty() || !known_.over()) {
     schedule(milliseconds(0));
   } else if (!agenda_.empty()) {
     schedule(std::max(milliseconds(0), std::chrono::ceil<milliseconds>(agenda_.begin()->first - Clock::now())));
@@ -187,38 +182,6 @@ void WatchedTree::fit_batch(Clock::duration looking) {
   batch_ = static_cast<std::size_t>(std::clamp(fit, double{kLeastBatch}, double{kMostBatch}));
 }
 
-void WatchedTree::list_known_jobs() {
-  known_.clear();
-  known_looked_at_ = 0;
-  const PathFilter filter(config_);
-  for (const JobState state : kForgottenStates) {
-    const JobFilter jobs{state, config_.label};
-    for (const Job& job : store_.jobs(jobs, 0, store_.count(jobs))) {
-      const std::string relative = job.source.substr(std::min(job.source.size(), config_.directory.size() + 1));
-      if (filter.accepts_file(relative)) {
-        known_.push_back(job.id);
-      } else {
-        store_.remove(job.id);
-      }
-    }
-  }
-}
-
-void WatchedTree::look_at_known_jobs() {
-  if (known_looked_at_ == known_.size()) return;
-  // In a directory that is not there, as before it is mounted, all seems to be gone: then they are listed again.
-  if (!is_directory(config_.directory)) {
-    known_looked_at_ = known_.size();
-    return;
-  }
-  const Time begin = Clock::now();
-  for (; known_looked_at_ < known_.size() && Clock::now() - begin < kTransactionTime; ++known_looked_at_) {
-    const std::optional<Job> job = store_.job(known_[known_looked_at_]);
-    if (!job || std::ranges::find(kForgottenStates, job->state) == kForgottenStates.end()) continue;
-    if (is_gone_from(config_.directory, job->source)) store_.remove(job->id);
-  }
-}
-
 void WatchedTree::work_off(const std::vector<FileEvent>& events, std::size_t first) {
   const Time now = Clock::now();
   std::set<std::string>& changed = looked_at_;
@@ -235,7 +198,7 @@ void WatchedTree::work_off(const std::vector<FileEvent>& events, std::size_t fir
         break;
       case FileEventKind::root_lost:
       case FileEventKind::root_back:
-        known_listed_ = known_listed_ && event.kind != FileEventKind::root_back;
+        if (event.kind == FileEventKind::root_back) known_.begin_anew();
         ready_ = ready_ || event.kind == FileEventKind::root_back;  // jobs waited for it
         log_.warn(
             "watch",

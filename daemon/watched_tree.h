@@ -22,6 +22,7 @@
 
 #include "daemon/config/config.h"
 #include "daemon/disks/recent_rate.h"
+#include "daemon/known_jobs.h"
 #include "daemon/log/event_log.h"
 #include "daemon/store/disk_turns.h"
 #include "daemon/store/job_store.h"
@@ -82,11 +83,6 @@ class WatchedTree {
   void work();
   /// The first `first` of `events` are of the first look at the directory.
   void work_off(const std::vector<FileEvent>& events, std::size_t first);
-  /// Of the jobs that are known at the start, removes those that the configuration no longer takes, and has the others
-  /// looked at.
-  void list_known_jobs();
-  /// Removes those whose files are not there any more, as many as a transaction's time holds.
-  void look_at_known_jobs();
   void look(const std::string& path, Time now);
   bool keeps_growing(const std::string& path, const FileSample& sample, Time now);
   void log_look(std::size_t events) const;
@@ -114,9 +110,7 @@ class WatchedTree {
   std::set<std::string> looked_at_;               ///< paths, in the last transaction
   std::size_t batch_ = 100;                       ///< events and looks in the next one, at most
   std::size_t repeats_dropped_at_ = kManyEvents;  ///< so many events are gone through for equal ones
-  std::vector<std::int64_t> known_;               ///< jobs to look at once, when the directory is there
-  std::size_t known_looked_at_ = 0;               ///< so many of them have been
-  bool known_listed_ = false;
+  KnownJobs known_{config_, store_};
   std::string store_fault_;  ///< why what was seen cannot be written down; empty: it can
   bool scheduled_ = false;
   /// For after the transaction: what is logged and counted of it, whether a job is ready, which are superseded.

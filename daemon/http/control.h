@@ -149,8 +149,8 @@ struct ViewerView {
 struct StatusView {
   std::string version;
   std::string config;      ///< path
-  std::string state;       ///< "running", "paused", "stopping"
-  std::string reason;      ///< why it is paused; else empty
+  std::string state;       ///< "running", "paused" (nothing starts), "stopping"
+  std::string reason;      ///< why it is paused; while it runs, which full disks jobs wait for; else empty
   double started_at = 0;   ///< of this process
   double queue_age_s = 0;  ///< since the oldest waiting job was complete; 0 where none waits
   double bytes_per_s = 0;  ///< source bytes converted, over the last minute

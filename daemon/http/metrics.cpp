@@ -71,7 +71,9 @@ void write_service(MetricsWriter& out, const StatusView& status, const MetricsVi
   out.family("build_info", "gauge", "The version that runs; always 1.");
   out.sample({{"version", status.version}}, std::uint64_t{1});
   out.single("start_time_seconds", "gauge", "When the service was started, Unix time.", status.started_at);
-  out.single("paused", "gauge", "1 while no new conversion is started: asked for, or short of disk.",
+  out.single("paused", "gauge",
+             "1 while no new conversion is started: asked for, the state file cannot be written, or no output's disk "
+             "has room.",
              flag(status.state == "paused"));
   out.family("config_reloads_total", "counter", "Reloads of the configuration; a rejected one changed nothing.");
   out.sample({{"result", "applied"}}, metrics.reloads);
@@ -157,6 +159,8 @@ void write_disks(MetricsWriter& out, const StatusView& status) {
   for (const DiskView& disk : status.disks) out.sample({{"disk", disk.path}}, disk.free_bytes);
   out.family("output_disk_size_bytes", "gauge", "Size of the file systems of outputs.");
   for (const DiskView& disk : status.disks) out.sample({{"disk", disk.path}}, disk.total_bytes);
+  out.family("disk_held", "gauge", "1 while jobs wait for room on that file system of outputs, or it does not answer.");
+  for (const DiskView& disk : status.disks) out.sample({{"disk", disk.path}}, flag(!disk.held.empty()));
 }
 
 void write_process(MetricsWriter& out, const StatusView& status, const ProcessUsage& usage) {

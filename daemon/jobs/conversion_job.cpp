@@ -33,6 +33,12 @@ std::string directory_at(const std::string& path) {
   return is_directory(path) ? path : fs::path(path).parent_path().string();
 }
 
+// The nearest one there is: `directory` may not have been made.
+std::string existing_directory(fs::path directory) {
+  while (!is_directory(directory.string()) && directory != directory.parent_path()) directory = directory.parent_path();
+  return directory.string();
+}
+
 // The source's own identity says nothing of the planes of a stack and of the files that a header names.
 bool says_changed(const std::string& reason) {
   return reason.ends_with(kConvertAgain) && reason.find(kChangedWhileRead) != std::string::npos;
@@ -133,7 +139,12 @@ void ConversionJob::convert() {
   const fs::path directory = fs::path(task_.output).parent_path();
   fs::create_directories(directory, error);
   if (error) {
-    fail(kIo, cat(directory.string(), ": make the directory: ", error.message()));
+    Message reason = cat(directory.string(), ": make the directory: ", error.message());
+    if (is_disk_full(error.value())) {
+      report_.full_directory = existing_directory(directory);
+      reason += disk_full_remedy();
+    }
+    fail(kIo, reason.worded(key_wording));
     return;
   }
   std::vector<std::string> arguments{task_.source,    cat("--output=", task_.output), "--skip-done",
@@ -177,7 +188,7 @@ void ConversionJob::heard(std::string_view line) {
     failed_ = told.value("failed", "");
     const int error = told.value("errno", 0);
     const std::string path = told.value("path", task_.output);
-    if (error == ENOSPC || error == EDQUOT) report_.full_directory = directory_at(path);
+    if (is_disk_full(error)) report_.full_directory = directory_at(path);
     output_busy_ = error == EWOULDBLOCK && is_in_output_or_work_dir(path);
     return;
   }
@@ -299,6 +310,13 @@ void ConversionJob::rendered(const WorkerEnd& end) {
     return;
   }
   JobOutput& output = outputs_[next_].job;
+  const std::string reason = end.exit_code == 0 ? "" : worker_reason(step_, end);
+  if (end.exit_code == kIo && says_disk_full(reason)) {  // nor will the next one find room
+    report_.full_directory = existing_directory(fs::path(output.path).parent_path());
+    report_.result.reason = cat("no thumbnail: ", reason);
+    this->end(TaskEnd::disk_full);
+    return;
+  }
   // Killed, out of memory, or disturbed in its directory: what goes wrong once may go well the next time.
   if (end.exit_code != 0 && !std::exchange(repeated_, true)) {
     render_next();
@@ -308,7 +326,7 @@ void ConversionJob::rendered(const WorkerEnd& end) {
   if (end.exit_code == 0) {
     output.thumbnail = thumbnail_path_of(output.path);
   } else {
-    report_.notices.push_back(cat("no thumbnail: ", worker_reason(step_, end)));
+    report_.notices.push_back(cat("no thumbnail: ", reason));
   }
   ++next_;
   render_next();

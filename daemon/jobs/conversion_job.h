@@ -23,7 +23,7 @@ namespace weir {
 enum class TaskEnd {
   done,
   failed,          ///< by itself: JobResult::exit_code and reason say why
-  disk_full,       ///< nothing wrong with source or options
+  disk_full,       ///< nothing wrong with source or options; where it was done already, of a thumbnail
   output_busy,     ///< another process writes the output
   source_changed,  ///< it or a file that it names was rewritten meanwhile: what was made of it is worth nothing
   source_gone,     ///< deleted before it was converted

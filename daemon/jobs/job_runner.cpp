@@ -25,6 +25,8 @@ using std::chrono::milliseconds;
 constexpr milliseconds kLook{1000};
 /// A process that was asked to end and does not.
 constexpr milliseconds kAbandon{5000};
+/// One that was killed and does not end.
+constexpr milliseconds kLeave{1000};
 
 std::string seconds_text(double seconds) { return cat(static_cast<double>(static_cast<long>(seconds * 1000)) / 1000); }
 
@@ -52,31 +54,6 @@ void JobRunner::configure(const DaemonConfig& config) {
   for (const WatchConfig& watch : config.watches) outputs.push_back(watch.output);
   disks_.watch(outputs);
   writes_.add([this] { deletion_.configure(config_); });
-}
-
-void JobRunner::resume_thumbnails() {
-  writes_.add([this] {
-    for (const Job& job : store_.unrendered()) unrendered_.insert(unrendered_.begin(), job.id);
-  });
-}
-
-bool JobRunner::start_next_rendering() {
-  while (!unrendered_.empty()) {
-    const std::int64_t id = unrendered_.back();
-    unrendered_.pop_back();
-    const std::optional<Job> job = store_.job(id);
-    if (!job || job->state != JobState::done) continue;
-    const WatchConfig* watch = watch_of(job->watch);
-    std::optional<ConversionTask> task;
-    if (watch != nullptr) task = make_rendering_task(program_, config_.service, *watch, *job);
-    if (task) {
-      run(*job, *std::move(task));
-      running_.at(id).only_rendering = true;
-      return true;
-    }
-    writes_.add([this, id] { store_.finish_rendering(id, {}); });
-  }
-  return false;
 }
 
 void JobRunner::forget_other_watches() {
@@ -183,8 +160,7 @@ void JobRunner::ended(std::int64_t id, const TaskReport& report) {
   for (const std::string& notice : report.notices) log_.warn("notice", {{"job", id}, {"reason", notice}});
   scheduler_.finished(report.result.bytes_read, run.begin);
   if (run.only_rendering) {
-    if (report.end == TaskEnd::done || !stopping_)
-      writes_.add([this, id, outputs = report.result.outputs] { store_.finish_rendering(id, outputs); });
+    rendering_ended(run, report);
   } else {
     attempt_ended(run, report);
   }
@@ -195,10 +171,7 @@ void JobRunner::ended(std::int64_t id, const TaskReport& report) {
   if (const WatchConfig* watch = watch_of(run.job.watch); watch == nullptr || !is_source_of(*watch, run.job.source)) {
     forget_other_watches();
   }
-  if (stopping_ && running_.empty() && stopped_) {
-    grace_timer_.cancel();
-    boost::asio::post(io_, std::exchange(stopped_, nullptr));
-  }
+  if (stopping_ && running_.empty()) end_stop();
   wake();
 }
 
@@ -349,14 +322,6 @@ void JobRunner::abandon(std::int64_t id) {
   if (at != running_.end()) at->second.work->stop(kAbandon);
 }
 
-bool JobRunner::end_rendering(const Job& job) {
-  const auto at = running_.find(job.id);
-  if (at == running_.end() || !at->second.only_rendering) return false;
-  log_.info("no-thumbnail", {{"job", job.id}, {"source", job.source}, {"reason", "cancelled"}});
-  abandon(job.id);
-  return true;
-}
-
 void JobRunner::cancelled(const Job& job) {
   log_.info("cancelled", {{"job", job.id}, {"source", job.source}});
   if (running_.contains(job.id)) {
@@ -377,19 +342,39 @@ void JobRunner::shut_down(milliseconds grace, std::function<void()> stopped) {
   stopping_ = true;
   stopped_ = std::move(stopped);
   if (running_.empty()) {
-    boost::asio::post(io_, std::exchange(stopped_, nullptr));
+    end_stop();
     return;
   }
   grace_timer_.expires_after(grace);
   grace_timer_.async_wait([this](boost::system::error_code error) {
-    if (error) return;
+    if (error || killed_) return;
     for (auto& [id, run] : running_) run.work->stop(kAbandon);
+    end_stop_after(kAbandon + kLeave);
   });
 }
 
 void JobRunner::kill() {
-  grace_timer_.cancel();
+  if (std::exchange(killed_, true)) return;
   for (auto& [id, run] : running_) run.work->stop(milliseconds(0));
+  end_stop_after(kLeave);
+}
+
+// A process that waits for a device or a file server that hangs ends when that answers, whoever kills it. Its job is
+// running in the state file, and waits at the next start.
+void JobRunner::end_stop_after(milliseconds patience) {
+  grace_timer_.expires_after(patience);
+  grace_timer_.async_wait([this](boost::system::error_code error) {
+    if (error || !stopped_) return;
+    for (const auto& [id, run] : running_) {
+      log_.warn("left-running", {{"job", id}, {"source", run.job.source}, {"step", run.work->step()}});
+    }
+    end_stop();
+  });
+}
+
+void JobRunner::end_stop() {
+  grace_timer_.cancel();
+  if (stopped_) boost::asio::post(io_, std::exchange(stopped_, nullptr));
 }
 
 }  // namespace weir

@@ -52,15 +52,19 @@ class JobRunner {
   /// Takes `config` from now on; running jobs finish as they began. Jobs that are not over are forgotten where their
   /// watch is gone, and found again where it comes back.
   void configure(const DaemonConfig& config);
-  /// Renders, before all else, the thumbnails that the service ended before; call it after configure().
+  /// Renders, before all else, the thumbnails that the service ended before; call it after configure(). These, and
+  /// those that find no room, wait while a disk is full.
   void resume_thumbnails();
   /// Something may be able to start: a job became complete, or due, or a stop is over. Starts what can.
   void wake();
 
   void pause();
   void resume();
-  /// Why nothing starts, in words; empty: nothing prevents it.
+  /// Why nothing starts, in words: the state file cannot be written, no output's file system has room, or it was asked
+  /// for. Empty: nothing prevents it.
   std::string hold() const;
+  /// Which file systems jobs wait for, those on others going on; empty: none.
+  std::string waits_for_room() const;
   bool paused() const { return scheduler_.paused(); }
   /// Why the state file cannot be written; empty: it can.
   const std::string& store_fault() const { return writes_.fault(); }
@@ -72,9 +76,9 @@ class JobRunner {
   /// `job` was cancelled: ends its work, if it runs, and removes what it could be continued from.
   void cancelled(const Job& job);
   /// Starts nothing more; `stopped` is called when nothing runs any more. What still runs after `grace` is abandoned
-  /// and waits for the next start of the service.
+  /// and waits for the next start of the service; a process that cannot be killed is left behind.
   void shut_down(std::chrono::milliseconds grace, std::function<void()> stopped);
-  /// Ends shut_down's grace at once, without asking the jobs to end.
+  /// Ends shut_down's grace at once, without asking the jobs to end. To be called after it.
   void kill();
 
   const std::map<std::int64_t, RunningJob>& running() const { return running_; }
@@ -97,6 +101,11 @@ class JobRunner {
   void done(const RunningJob& run, const TaskReport& report);
   void failed(const RunningJob& run, const TaskReport& report);
   void disk_full(const RunningJob& run, const TaskReport& report);
+  void hold_disk(const RunningJob& run, const TaskReport& report, std::uint64_t needed);
+  bool no_disk_has_room() const;
+  void rendering_ended(const RunningJob& run, const TaskReport& report);
+  void end_stop_after(std::chrono::milliseconds patience);
+  void end_stop();
   void output_busy(const RunningJob& run, const TaskReport& report);
   void forget_other_watches();
   void arm_timer();
@@ -116,13 +125,14 @@ class JobRunner {
   FullDisks full_disks_;
   SourceDeletion deletion_;
   std::map<std::int64_t, RunningJob> running_;
-  std::vector<std::int64_t> unrendered_;  ///< jobs done before this start, the next one last
+  std::vector<std::int64_t> unrendered_;  ///< done jobs whose thumbnails are to come, the next one last
   JobFigures figures_;
   OutputDisks disks_;
   boost::asio::steady_timer timer_;
   boost::asio::steady_timer grace_timer_;
   std::function<void()> stopped_;
   bool stopping_ = false;
+  bool killed_ = false;
 };
 
 }  // namespace weir

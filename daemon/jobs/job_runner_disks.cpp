@@ -1,17 +1,25 @@
 // What a JobRunner does where a file system has no room or an output another writer, and what it says of that.
+#include <algorithm>
 #include <filesystem>
+#include <optional>
 
 #include "daemon/disks/disk_room.h"
 #include "daemon/jobs/job_runner.h"
 #include "format/base/text.h"
 
 namespace weir {
+namespace {
+
+/// Until a job is tried again where nothing tells that what it waits for is over.
+constexpr std::int64_t kAgain_ms = 30'000;
+
+}  // namespace
 
 void JobRunner::disk_full(const RunningJob& run, const TaskReport& report) {
   const std::string& directory = report.full_directory;
+  const ConversionTask& task = run.work->task();
   const DiskRoom room = room_in(directory);  // as it is now: it has just answered the job
-  const bool of_output =
-      room.device == room_in(std::filesystem::path(run.work->task().output).parent_path().string()).device;
+  const bool of_output = room.device == room_in(std::filesystem::path(task.output).parent_path().string()).device;
   // Waiting makes no disk larger. Of some, as of a file server behind FUSE, the size is not told.
   if (of_output && room.total > 0 && report.planned_bytes > room.total) {
     TaskReport never = report;
@@ -22,19 +30,30 @@ void JobRunner::disk_full(const RunningJob& run, const TaskReport& report) {
     return;
   }
   figures_.attempt_failed("disk-full");
-  full_disks_.add(room.device, directory, room.free, run.job.id, run.job.identity.bytes,
-                  of_output ? report.planned_bytes : 0, std::chrono::steady_clock::now());
+  hold_disk(run, report, of_output ? report.planned_bytes : 0);
+  // next_job() asks for room on the file systems of output and work_dir alone: it may be another one, as where an
+  // output in memory spills to /var/tmp.
+  const bool asked_for = of_output || (!task.work_dir.empty() && room.device == room_in(task.work_dir).device);
+  const std::int64_t delay_ms = asked_for ? 0 : kAgain_ms;
+  writes_.add(
+      [this, id = run.job.id, reason = report.result.reason, delay_ms] { store_.postpone(id, reason, delay_ms); });
+}
+
+// `needed`: bytes of an output on the file system that is full; 0: not known, or it was no output.
+void JobRunner::hold_disk(const RunningJob& run, const TaskReport& report, std::uint64_t needed) {
+  const std::string& directory = report.full_directory;
+  const DiskRoom room = room_in(directory);
+  full_disks_.add(room.device, directory, room.free, run.job.id, run.job.identity.bytes, needed,
+                  std::chrono::steady_clock::now());
   for (const std::string& full : full_disks_.directories()) disks_.look_anew(full);
   log_.error("disk-full", {{"job", run.job.id}, {"directory", directory}, {"reason", report.result.reason}});
-  writes_.add([this, id = run.job.id, reason = report.result.reason] { store_.postpone(id, reason); });
 }
 
 // However long that takes, it is no fault of the job.
 void JobRunner::output_busy(const RunningJob& run, const TaskReport& report) {
-  constexpr std::int64_t kBusyAgain_ms = 30'000;
   const std::string& reason = report.result.reason;
   if (run.job.result.reason != reason) log_.warn("output-busy", {{"job", run.job.id}, {"reason", reason}});
-  writes_.add([this, id = run.job.id, reason] { store_.postpone(id, reason, kBusyAgain_ms); });
+  writes_.add([this, id = run.job.id, reason] { store_.postpone(id, reason, kAgain_ms); });
 }
 
 void JobRunner::look_at_disks() {
@@ -48,14 +67,28 @@ void JobRunner::look_at_disks() {
 
 std::string JobRunner::hold() const {
   if (!writes_.fault().empty()) return writes_.fault();
+  if (no_disk_has_room()) return waits_for_room();
+  return scheduler_.paused() ? "paused by request" : "";
+}
+
+// What was never looked at counts for nothing: no job is started there either while a disk is full.
+bool JobRunner::no_disk_has_room() const {
+  if (full_disks_.empty()) return false;
+  const std::string& work_dir = config_.service.work_dir;
+  const auto work_room = work_dir.empty() ? std::nullopt : disks_.room(work_dir);
+  if (work_room && !hold_of(*work_room).empty()) return true;
+  const std::vector<OutputDisk> all = disks();
+  return std::ranges::all_of(all, [this](const OutputDisk& disk) { return !hold_of(disk.room).empty(); });
+}
+
+std::string JobRunner::waits_for_room() const {
   std::string full;
   for (const OutputDisk& disk : disks()) {
     const std::string held = hold_of(disk.room);
     if (!held.empty()) full += cat(full.empty() ? "" : "; ", held);
   }
   if (full.empty() && !full_disks_.empty()) full = cat("no room in ", full_disks_.directories().front());
-  if (!full.empty()) return full;
-  return scheduler_.paused() ? "paused by request" : "";
+  return full;
 }
 
 std::string JobRunner::hold_of(const DiskRoom& disk) const { return full_disks_.hold_of(disk); }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "daemon/config/watch_conflicts.h"
@@ -47,6 +48,17 @@ milliseconds delay_of(const WatchConfig& watch) {
 void flush_file(const std::string& path) {
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   if (!file || ::fsync(file.get()) != 0) throw io_error(path, "flush it", errno);
+}
+
+// What is identified by such a name is another file, and what is renamed or removed the link.
+bool is_symbolic_link(const std::string& path) {
+  std::error_code ignored;
+  return fs::is_symlink(path, ignored);
+}
+
+// Whether the file of that name, itself, is the source of `job`.
+bool is_source_file(const std::string& path, const Job& job) {
+  return !is_symbolic_link(path) && identify(path) == job.identity;
 }
 
 std::string left_fault(const std::string& hidden, bool is_source) {
@@ -191,6 +203,10 @@ SourceDeletion::Outcome SourceDeletion::look_at(const Job& job, const WatchConfi
     keep(job, "it stands for a directory, whose files are never deleted");
     return Outcome::over;
   }
+  if (is_symbolic_link(job.source)) {
+    keep(job, "it is a symbolic link, whose target would stay");
+    return Outcome::over;
+  }
   const auto identity = identify(job.source);
   if (!identity) return Outcome::later;                 // a server that does not answer
   if (*identity != job.identity) return Outcome::over;  // the watch sees that, too
@@ -244,7 +260,7 @@ SourceDeletion::Outcome SourceDeletion::remove(const Job& job, const WatchConfig
   const std::string doomed = hidden_name(job);
   files_->rename_new(job.source, doomed);
   try {
-    const bool is_source = identify(doomed) == job.identity;
+    const bool is_source = is_source_file(doomed, job);
     const bool one_waits = writers.one_waits();
     if (is_source && !one_waits) {
       files_->remove(doomed);
@@ -273,7 +289,7 @@ void SourceDeletion::removed(const Job& job, const WatchConfig& watch, bool writ
 // The source under its hidden name was to be deleted: all that must hold held then. Its status has changed since.
 SourceDeletion::Outcome SourceDeletion::finish_interrupted(const Job& job, const WatchConfig& watch) {
   const std::string doomed = hidden_name(job);
-  const bool is_source = identify(doomed) == job.identity;
+  const bool is_source = is_source_file(doomed, job);
   const FileWriters writers(doomed);
   if (is_source && writers.some()) return wait_for(job, kInUse);  // who opened it before it was hidden
   std::string fault = is_source ? outputs_fault(job, std::nullopt) : "";

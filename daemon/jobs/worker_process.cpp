@@ -15,6 +15,7 @@
 #include <cerrno>
 #include <csignal>
 #include <fstream>
+#include <optional>
 #include <sstream>
 #include <system_error>
 #include <utility>
@@ -165,7 +166,7 @@ class WorkerProcess::Running : public std::enable_shared_from_this<Running> {
     ::kill(pid_, SIGTERM);
     kill_timer_.expires_after(grace);
     kill_timer_.async_wait([self = shared_from_this()](error_code error) {
-      if (!error && self->pid_ > 0) ::kill(self->pid_, SIGKILL);
+      if (!error && self->pid_ > 0) self->kill_child();
     });
   }
 
@@ -254,11 +255,17 @@ class WorkerProcess::Running : public std::enable_shared_from_this<Running> {
     if (const Ended ended = std::exchange(ended_, nullptr)) ended(end);
   }
 
-  // Whether there is no child from here on.
+  void kill_child() {
+    ::kill(pid_, SIGKILL);
+    if (!killed_) killed_ = std::chrono::steady_clock::now();
+  }
+
+  // Whether there is no child from here on. One that was killed before has had its time: of many that hang, each would
+  // have the daemon wait.
   bool kill_and_reap() {
     if (pid_ <= 0) return true;
-    ::kill(pid_, SIGKILL);
-    const auto end = std::chrono::steady_clock::now() + reap_wait_;
+    kill_child();
+    const auto end = *killed_ + reap_wait_;
     do {
       const pid_t reaped = ::waitpid(pid_, nullptr, WNOHANG);
       if (reaped == pid_ || (reaped < 0 && errno != EINTR)) {
@@ -293,6 +300,7 @@ class WorkerProcess::Running : public std::enable_shared_from_this<Running> {
   std::string announced_;  ///< begin of a line
   pid_t pid_ = -1;
   std::chrono::milliseconds reap_wait_{0};
+  std::optional<std::chrono::steady_clock::time_point> killed_;  ///< first
 };
 
 WorkerProcess::WorkerProcess(asio::io_context& io, const WorkerCommand& command, Line line, Ended ended)

@@ -14,4 +14,9 @@ inline constexpr int kSignalExit = 128;  ///< and the signal's number: WorkerEnd
 /// the subcommand.
 std::string worker_reason(std::string_view step, const WorkerEnd& end);
 
+/// Whether the system says by this number that a file system, or a quota of it, is full.
+bool is_disk_full(int errno_value);
+/// Whether `reason` does, in the system's words: of a program that announces no numbers.
+bool says_disk_full(std::string_view reason);
+
 }  // namespace weir

@@ -39,9 +39,14 @@ function show_banner(text, bad) {
 
 /** What keeps jobs from going on, and whether that is a fault. */
 function troubles(status) {
-  const paused = status.state === "paused" && status.reason ? [`Paused: ${status.reason}.`] : [];
-  const held = status.disks.filter((disk) => disk.held && !status.reason.includes(disk.held))
+  const reason = status.state === "paused" ? status.reason : "";
+  const paused = reason ? [`Paused: ${reason}.`] : [];
+  const held = status.disks.filter((disk) => disk.held && !reason.includes(disk.held))
                    .map((disk) => `Jobs wait for room on ${disk.path}: ${disk.held}.`);
+  // On a disk that no output lies on: where a conversion spills.
+  if (status.state === "running" && status.reason && !status.disks.some((disk) => disk.held)) {
+    held.push(`Jobs wait: ${status.reason}.`);
+  }
   const down = status.watches.filter((watch) => !watch.up).map((watch) => `${watch.directory} is not watched: ${watch.reason}.`);
   return {text: [...paused, ...held, ...down].join(" "), bad: held.length + down.length > 0};
 }

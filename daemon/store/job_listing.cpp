@@ -133,9 +133,23 @@ std::vector<Job> JobListing::over_since(std::int64_t age_ms, std::int64_t after,
   return read_jobs(database_, std::move(rows));
 }
 
-std::vector<Job> JobListing::unrendered() const {
-  return read_jobs(database_, database_.prepare(cat(kColumns, "WHERE rendering = 1 AND ", in_state({JobState::done}),
-                                                    " ORDER BY id")));
+std::vector<std::int64_t> JobListing::unrendered() const {
+  Statement rows = database_.prepare(
+      cat("SELECT id FROM jobs WHERE rendering = 1 AND ", in_state({JobState::done}), " ORDER BY id"));
+  std::vector<std::int64_t> ids;
+  while (rows.step()) ids.push_back(rows.integer(0));
+  return ids;
+}
+
+std::vector<JobListing::Source> JobListing::sources(const std::string& watch, JobState state, const SourcePlace& place,
+                                                    std::size_t limit) const {
+  Statement rows =
+      database_.prepare(cat("SELECT id, source, mtime_ns FROM jobs INDEXED BY jobs_queue WHERE watch = ? AND state = '",
+                            job_state_name(state), "' AND (mtime_ns, id) > (?, ?) ORDER BY mtime_ns, id LIMIT ?"));
+  rows.bind(watch).bind(place.mtime_ns).bind(place.id).bind(std::uint64_t{limit});
+  std::vector<Source> sources;
+  while (rows.step()) sources.push_back({rows.integer(0), rows.text(1), rows.integer(2)});
+  return sources;
 }
 
 std::uint64_t JobListing::count(const JobFilter& filter) const {

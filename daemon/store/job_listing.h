@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <initializer_list>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -71,8 +72,23 @@ class JobListing {
   /// The first `limit` jobs above the id `after`, in the order of ids, that are done or cancelled for `age_ms`
   /// milliseconds or longer.
   std::vector<Job> over_since(std::int64_t age_ms, std::int64_t after, std::size_t limit) const;
-  /// Those that are done and whose thumbnails have not come.
-  std::vector<Job> unrendered() const;
+  /// IDs of those that are done and whose thumbnails have not come, in their order.
+  std::vector<std::int64_t> unrendered() const;
+  struct Source {
+    std::int64_t id = 0;
+    std::string source;
+    std::int64_t mtime_ns = 0;
+    bool operator==(const Source&) const = default;
+  };
+  /// Which job sources() goes on behind; as it is made: before the first.
+  struct SourcePlace {
+    std::int64_t mtime_ns = std::numeric_limits<std::int64_t>::min();
+    std::int64_t id = 0;
+  };
+  /// Of the jobs of `watch` that are in `state`, by time and ID, the first `limit` behind `place`: a piece of what may
+  /// be a hundred thousand.
+  std::vector<Source> sources(const std::string& watch, JobState state, const SourcePlace& place,
+                              std::size_t limit) const;
   /// By watch; watches without jobs are absent.
   std::map<std::string, JobCounts> counts() const;
   /// Source bytes of the jobs that wait, by watch; watches without such jobs are absent.

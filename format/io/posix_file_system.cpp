@@ -23,7 +23,13 @@ namespace {
 class PosixFile final : public File {
  public:
   PosixFile(int descriptor, std::string path, bool exclusive)
-      : descriptor_(descriptor), path_(std::move(path)), exclusive_(exclusive) {}
+      : descriptor_(descriptor), path_(std::move(path)), place_(path_), exclusive_(exclusive) {}
+  /// One without a name, in `directory`, which is the path that its errors carry for programs.
+  static std::unique_ptr<PosixFile> unnamed(int descriptor, const std::string& directory) {
+    auto file = std::make_unique<PosixFile>(descriptor, directory + " (temporary file)", true);
+    file->place_ = directory;
+    return file;
+  }
   ~PosixFile() override { ::close(descriptor_); }
   PosixFile(const PosixFile&) = delete;
   PosixFile& operator=(const PosixFile&) = delete;
@@ -34,7 +40,7 @@ class PosixFile final : public File {
     while (!bytes.empty()) {
       const ssize_t done = ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
       if (done < 0 && errno == EINTR) continue;
-      if (done < 0) throw io_error(path_, cat("write ", bytes.size(), " bytes at offset ", offset), errno);
+      if (done < 0) throw failed(cat("write ", bytes.size(), " bytes at offset ", offset), errno);
       offset += static_cast<std::uint64_t>(done);
       bytes = bytes.subspan(static_cast<std::size_t>(done));
     }
@@ -44,7 +50,7 @@ class PosixFile final : public File {
     while (!bytes.empty()) {
       const ssize_t done = ::pread(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
       if (done < 0 && errno == EINTR) continue;
-      if (done < 0) throw io_error(path_, cat("read ", bytes.size(), " bytes at offset ", offset), errno);
+      if (done < 0) throw failed(cat("read ", bytes.size(), " bytes at offset ", offset), errno);
       if (done == 0)
         throw Error(ErrorKind::io, cat(path_, ": ends at offset ", offset, ", expected ", bytes.size(), " bytes more"));
       offset += static_cast<std::uint64_t>(done);
@@ -59,25 +65,24 @@ class PosixFile final : public File {
       status = bytes == 0 ? 0 : ::fallocate(descriptor_, 0, 0, static_cast<off_t>(bytes));
     } while (status != 0 && errno == EINTR);
     if (status == 0) return true;
-    if (errno != EOPNOTSUPP && errno != ENOSYS) throw io_error(path_, cat("reserve ", bytes, " bytes"), errno);
-    if (::ftruncate(descriptor_, static_cast<off_t>(bytes)) != 0)
-      throw io_error(path_, cat("set the size to ", bytes), errno);
+    if (errno != EOPNOTSUPP && errno != ENOSYS) throw failed(cat("reserve ", bytes, " bytes"), errno);
+    if (::ftruncate(descriptor_, static_cast<off_t>(bytes)) != 0) throw failed(cat("set the size to ", bytes), errno);
     return false;
   }
 
   void clear() override {
-    if (::ftruncate(descriptor_, 0) != 0) throw io_error(path_, "set the size to 0", errno);
+    if (::ftruncate(descriptor_, 0) != 0) throw failed("set the size to 0", errno);
   }
 
   void start_writeback() override { ::sync_file_range(descriptor_, 0, 0, SYNC_FILE_RANGE_WRITE); }
 
   void sync() override {
-    if (::fsync(descriptor_) != 0) throw io_error(path_, "flush to the device", errno);
+    if (::fsync(descriptor_) != 0) throw failed("flush to the device", errno);
   }
 
   std::uint64_t size() override {
     struct stat status {};
-    if (::fstat(descriptor_, &status) != 0) throw io_error(path_, "read the size", errno);
+    if (::fstat(descriptor_, &status) != 0) throw failed("read the size", errno);
     return static_cast<std::uint64_t>(status.st_size);
   }
 
@@ -86,8 +91,13 @@ class PosixFile final : public File {
   void set_exclusive() { exclusive_ = true; }
 
  private:
+  Error failed(const Message& action, int errno_value) const {
+    return {ErrorKind::io, io_error(path_, action, errno_value).message(), SystemFailure{errno_value, place_}};
+  }
+
   int descriptor_;
-  std::string path_;
+  std::string path_;   ///< as messages call it
+  std::string place_;  ///< of its file system: the path, or the directory of a file without a name
   bool exclusive_;
 };
 
@@ -158,7 +168,7 @@ class PosixFileSystem final : public FileSystem {
       if (descriptor >= 0) ::unlink(name.c_str());
     }
     if (descriptor < 0) throw io_error(directory, "create a temporary file in it", errno);
-    return std::make_unique<PosixFile>(descriptor, directory + " (temporary file)", true);
+    return PosixFile::unnamed(descriptor, directory);
   }
 
   void rename(const std::string& from, const std::string& to) override {

@@ -18,12 +18,13 @@ struct ResumeArguments {
   bool json = false;
 };
 
-// A full disk holds jobs, too.
+// Full disks hold jobs, too: all, or those that write to them.
 std::string resume_text(const ServiceClient::Json& status) {
   const std::string held = printable(status.at("reason").get<std::string>());
+  if (status.at("state") == "paused" && !held.empty()) return cat("resumed, but nothing starts yet: ", held, '\n');
   const auto waiting = status.at("jobs").at("waiting").get<std::uint64_t>();
-  return held.empty() ? cat("resumed: ", waiting, waiting == 1 ? " job waits\n" : " jobs wait\n")
-                      : cat("resumed, but nothing starts yet: ", held, '\n');
+  return cat("resumed: ", waiting, waiting == 1 ? " job waits" : " jobs wait",
+             held.empty() ? "" : cat("; those that write to a full disk do not start yet: ", held), '\n');
 }
 
 void run(const ResumeArguments& a) {

@@ -119,6 +119,21 @@ TEST(Metrics, ShowFreeAndTotalBytesOfOutputDisks) {
       "weir_output_disk_free_bytes{disk=\"/scratch\"} 1000\nweir_output_disk_size_bytes{disk=\"/scratch\"} 4000\n");
 }
 
+// Where other disks have room, the service is not paused.
+TEST(Metrics, TellWhichDisksHoldJobs) {
+  StatusView status = sample_status();
+  status.state = "running";
+  status.disks.push_back({"/data", {"/data/out"}, 0, 4000, 0, {}, "no room in /data/out"});
+  const std::string text = metrics_text(status, {}, {});
+  EXPECT_EQ(lines_with(text, "weir_disk_held"),
+            "weir_disk_held{disk=\"/scratch\"} 0\nweir_disk_held{disk=\"/data\"} 1\n");
+  EXPECT_EQ(lines_with(text, "weir_paused"), "weir_paused 0\n");
+  EXPECT_EQ(
+      lines_with(text, "# HELP weir_paused"),
+      "# HELP weir_paused 1 while no new conversion is started: asked for, the state file cannot be written, or no "
+      "output's disk has room.\n");
+}
+
 TEST(Metrics, PassPromtoolCheck) {
   if (std::system("command -v promtool >/dev/null") != 0) GTEST_SKIP() << "promtool is not installed";
   const TemporaryDirectory directory;

@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <csignal>
 #include <filesystem>
@@ -14,9 +13,8 @@
 #include <thread>
 #include <vector>
 
-#include "daemon/store/file_identity.h"
-#include "format/base/error.h"
 #include "format/base/text.h"
+#include "tests/daemon/support/one_conversion_job.h"
 #include "tests/support/run_command.h"
 
 namespace weir::conversion_job_test {
@@ -25,51 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using Names = std::vector<std::string>;
 
-class ConversionJobTest : public testing::Test {
- protected:
-  std::string write_source(const std::string& name, std::size_t voxels) const {
-    std::string bytes(voxels, '\0');
-    for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<char>(i * 7);
-    write_file(directory_ / name, bytes);
-    return directory_ / name;
-  }
-
-  ConversionTask task(const std::string& source) const {
-    ConversionTask task;
-    task.program = WEIR_COMMAND;
-    task.source = source;
-    task.identity = identify(source).value_or(FileIdentity{});
-    task.output = directory_ / "out/";
-    task.memory = std::uint64_t{256} << 20U;
-    task.threads = 1;
-    return task;
-  }
-
-  /// The last report; the one before it, if any, is first_report_.
-  TaskReport run(const ConversionTask& task, const std::function<void(ConversionJob&)>& meanwhile = {}) {
-    boost::asio::io_context io;
-    std::optional<TaskReport> report;
-    first_report_.reset();
-    std::unique_ptr<ConversionJob> job = std::make_unique<ConversionJob>(io, task, [&](const TaskReport& ended) {
-      EXPECT_FALSE(report);
-      if (ended.rendering) {
-        EXPECT_FALSE(first_report_);
-        first_report_ = ended;
-        return;
-      }
-      report = ended;
-      job.reset();
-    });
-    while (!report && io.run_one() > 0) {
-      if (job && meanwhile) meanwhile(*job);
-    }
-    EXPECT_TRUE(report);
-    return report.value_or(TaskReport{});
-  }
-
-  TemporaryDirectory directory_;
-  std::optional<TaskReport> first_report_;
-};
+using ConversionJobTest = OneConversionJob;
 
 TEST_F(ConversionJobTest, KeepsToItsBandwidth) {
   ConversionTask limited = task(write_source("a_128x128x128_uint8.raw", 128 << 14U));
@@ -133,29 +87,6 @@ TEST_F(ConversionJobTest, ProcessThatComputesAndSaysNothing_IsAStall) {
   EXPECT_EQ(
       job.stall(std::chrono::seconds(60), std::chrono::seconds(0)),
       "convert computes for 0 s and has not begun to read values: the file may be damaged, cancel the job to end it");
-}
-
-// Whatever the message says behind it, as where the work is kept.
-TEST_F(ConversionJobTest, FullDiskAndBusyOutput_AreToldByTheErrorsNumberAndPath) {
-  ConversionTask full = task(write_source("a_8x8x8_uint8.raw", 512));
-  full.program = directory_ / "weir";
-  const auto report_of = [&](int error, const std::string& path) {
-    const nlohmann::json said{{"failed", "no room; what is done is kept"}, {"errno", error}, {"path", path}};
-    write_file(full.program, cat("#!/bin/sh\nfor a; do case $a in --progress-fd=*) fd=${a#*=};; esac; done\n", "echo '",
-                                 said.dump(), "' >&$fd\nexit 5\n"));
-    fs::permissions(full.program, fs::perms::owner_all);
-    return run(full);
-  };
-  for (const int error : {ENOSPC, EDQUOT}) {
-    const TaskReport report = report_of(error, directory_ / "work/.a.nvdb.work/rows");
-    EXPECT_EQ(report.end, TaskEnd::disk_full);
-    EXPECT_EQ(report.full_directory, directory_ / "work/.a.nvdb.work");
-    EXPECT_EQ(report.result.reason, "no room; what is done is kept");
-  }
-  EXPECT_EQ(report_of(ENOSPC, directory_.path()).full_directory, directory_.path());
-  EXPECT_EQ(report_of(EIO, directory_ / "out/a.nvdb").end, TaskEnd::failed);
-  EXPECT_EQ(report_of(EWOULDBLOCK, directory_ / "out/a.nvdb.partial").end, TaskEnd::output_busy);
-  EXPECT_EQ(report_of(EWOULDBLOCK, full.source).end, TaskEnd::failed) << "a server that does not answer";
 }
 
 TEST_F(ConversionJobTest, LosslessOverValidVoxelsAlone_HasAnInfinitePsnr) {

@@ -63,6 +63,19 @@ TEST_F(InterruptedDeletion, AnotherFileUnderTheHiddenName_GetsItsNameBack) {
   EXPECT_EQ(list_directory(directory_ / "in").size(), 1U);
 }
 
+// As a service left it that deleted links, too.
+TEST_F(InterruptedDeletion, LinkToTheSourceUnderTheHiddenName_GetsItsNameBack) {
+  const std::string target = directory_ / "in/.target";
+  const std::int64_t id = convert();
+  fs::rename(source_, target);
+  fs::create_symlink(target, hidden(id));
+  deletion_.configure(config_);
+  EXPECT_TRUE(run_until([&] { return deletion_.idle(); }));
+  EXPECT_TRUE(fs::is_symlink(source_));
+  EXPECT_EQ(read_file(target), "values");
+  EXPECT_FALSE(logged(" deleted "));
+}
+
 TEST_F(InterruptedDeletion, AnotherFileUnderTheHiddenNameWhoseNameIsTaken_IsSaid) {
   const std::int64_t id = convert();
   write_file(hidden(id), "what came meanwhile");

@@ -6,9 +6,10 @@
 #include <filesystem>
 
 #include "compressor/resume/journal.h"
-#include "daemon/store/file_identity.h"
 #include "format/base/text.h"
 #include "format/io/file_system.h"
+#include "tests/daemon/support/running_jobs.h"
+#include "tests/daemon/support/unkillable.h"
 #include "tests/support/run_command.h"
 
 namespace weir::job_runner_test {
@@ -17,60 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using std::chrono::milliseconds;
 
-class JobRunnerTest : public testing::Test {
- protected:
-  JobRunnerTest() {
-    config_.service.log_file = directory_ / "log";
-    config_.service.threads = 1;
-    for (const char* label : {"a", "b"}) {
-      WatchConfig watch;
-      watch.label = label;
-      watch.directory = directory_ / label;
-      watch.output = directory_ / "out";
-      watch.thumbnails = false;
-      fs::create_directory(watch.directory);
-      config_.watches.push_back(watch);
-    }
-    runner_.configure(config_);
-  }
-
-  /// A complete source, and its job waiting.
-  Job add(const std::string& label, const std::string& name, std::size_t bytes = 24 * 20 * 16) {
-    const std::string source = directory_ / (label + "/" + name + "_24x20x16_uint8.raw");
-    write_file(source, std::string(bytes, 'x'));
-    const Job job = store_.observe(label, source, *identify(source), "options").job;
-    EXPECT_TRUE(store_.enqueue(job.id));
-    return job;
-  }
-  /// A job that takes a while: a gibibyte of zeros.
-  Job add_long() {
-    const std::string source = directory_ / "a/long_1024x1024x1024_uint8.raw";
-    write_file(source, "");
-    fs::resize_file(source, std::uintmax_t{1} << 30U);
-    const Job job = store_.observe("a", source, *identify(source), "options").job;
-    EXPECT_TRUE(store_.enqueue(job.id));
-    return job;
-  }
-  void run_until(const std::function<bool()>& over) {
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(30);
-    while (!over() && std::chrono::steady_clock::now() < deadline) io_.run_one_for(milliseconds(50));
-    EXPECT_TRUE(over());
-  }
-  JobState state(const Job& job) const { return store_.job(job.id)->state; }
-  bool idle() const { return runner_.running().empty(); }
-
-  TemporaryDirectory directory_;
-  DaemonConfig config_ = [this] {
-    DaemonConfig config;
-    config.service.log_file = directory_ / "log";
-    return config;
-  }();
-  boost::asio::io_context io_;
-  JobStore store_{directory_ / "weir.db"};
-  EventLog log_{config_.service};
-  std::vector<std::string> changed_;
-  JobRunner runner_{io_, store_, log_, WEIR_COMMAND, [this](const Job& job) { changed_.push_back(job.source); }};
-};
+using JobRunnerTest = RunningJobs;
 
 TEST_F(JobRunnerTest, ConvertsWaitingJobs) {
   const Job one = add("a", "one");
@@ -215,25 +163,6 @@ TEST_F(JobRunnerTest, OutputThatAnotherProcessWrites_IsWaitedForWithoutAnAttempt
   run_until([&] { return state(job) == JobState::done; });
 }
 
-// As of a file server behind FUSE.
-TEST_F(JobRunnerTest, FullDiskOfUnknownSize_IsWaitedForWithoutAnAttempt) {
-  const std::string program = directory_ / "weir";
-  write_file(program,
-             "#!/bin/sh\nfor a; do case $a in --progress-fd=*) fd=${a#*=};; esac; done\n"
-             "echo '{\"planned\": 1000}' >&$fd\n"
-             "echo '{\"failed\": \"no room\", \"errno\": 28, \"path\": \"/proc/a.nvdb\"}' >&$fd\nexit 5\n");
-  fs::permissions(program, fs::perms::owner_all);
-  config_.watches[0].output = "/proc";
-  JobRunner runner(io_, store_, log_, program, [](const Job&) {});
-  runner.configure(config_);
-  const Job job = add("a", "one");
-  runner.wake();
-  EXPECT_EQ(state(job), JobState::running);
-  run_until([&] { return state(job) == JobState::waiting; });
-  EXPECT_EQ(store_.job(job.id)->attempts, 0);
-  EXPECT_EQ(store_.job(job.id)->result.reason, "no room");
-}
-
 TEST_F(JobRunnerTest, StartsNothingWhilePaused) {
   const Job job = add("a", "one");
   runner_.pause();
@@ -317,6 +246,71 @@ TEST_F(JobRunnerTest, ShutDown_JobOutlastsTheGrace_WaitsAgainWithoutAnAttempt) {
   for (const std::string& left : list_directory(directory_ / "out")) {
     EXPECT_NE(left.find(".nvdb.work/"), std::string::npos) << left << " is neither nothing nor where it continues";
   }
+}
+
+// As one that waits for a disk that hangs.
+TEST_F(JobRunnerTest, Kill_ProcessThatDoesNotEnd_IsLeftBehind) {
+  if (!Unkillable::possible()) GTEST_SKIP() << "only root may have processes that it cannot kill";
+  JobRunner runner(io_, store_, log_, write_program("exec sleep 600\n"), [](const Job&) {});
+  runner.configure(config_);
+  const Job job = add("a", "one");
+  runner.wake();
+  ASSERT_EQ(state(job), JobState::running);
+  int stopped = 0;
+  const auto begin = std::chrono::steady_clock::now();
+  {
+    const Unkillable unkillable;
+    runner.shut_down(milliseconds(600'000), [&] { ++stopped; });
+    runner.kill();
+    runner.kill();
+    run_until([&] { return stopped > 0; });
+  }
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, milliseconds(5000));
+  for (int i = 0; i < 5; ++i) io_.run_one_for(milliseconds(10));
+  EXPECT_EQ(stopped, 1);
+  EXPECT_EQ(runner.running().count(job.id), 1U);
+  EXPECT_EQ(state(job), JobState::running) << "it waits at the next start";
+  EXPECT_EQ(store_.job(job.id)->attempts, 0);
+  const std::string log = read_file(config_.service.log_file);
+  EXPECT_NE(log.find(cat(" warning left-running job=", job.id, " source=", job.source, " step=convert")),
+            std::string::npos)
+      << log;
+}
+
+TEST_F(JobRunnerTest, ShutDown_ProcessThatDoesNotEnd_IsLeftBehindAfterTheGrace) {
+  if (!Unkillable::possible()) GTEST_SKIP() << "only root may have processes that it cannot kill";
+  JobRunner runner(io_, store_, log_, write_program("exec sleep 600\n"), [](const Job&) {});
+  runner.configure(config_);
+  const Job job = add("a", "one");
+  runner.wake();
+  ASSERT_EQ(state(job), JobState::running);
+  bool stopped = false;
+  const auto begin = std::chrono::steady_clock::now();
+  {
+    const Unkillable unkillable;
+    runner.shut_down(milliseconds(1), [&] { stopped = true; });
+    run_until([&] { return stopped; });
+  }
+  EXPECT_GE(std::chrono::steady_clock::now() - begin, milliseconds(5000)) << "it had the time to end by itself";
+  EXPECT_EQ(runner.running().count(job.id), 1U);
+  EXPECT_EQ(state(job), JobState::running);
+}
+
+// The usual case: what was killed is written down.
+TEST_F(JobRunnerTest, Kill_EndsTheStopWithTheLastProcess) {
+  const Job job = add_long();
+  runner_.wake();
+  run_until([&] { return runner_.running().at(job.id).work->fraction().has_value(); });
+  int stopped = 0;
+  runner_.shut_down(milliseconds(600'000), [&] { ++stopped; });
+  runner_.kill();
+  run_until([&] { return stopped > 0; });
+  EXPECT_TRUE(idle());
+  EXPECT_EQ(state(job), JobState::waiting);
+  EXPECT_EQ(store_.job(job.id)->attempts, 0);
+  for (int i = 0; i < 30; ++i) io_.run_one_for(milliseconds(50));
+  EXPECT_EQ(stopped, 1);
+  EXPECT_EQ(read_file(config_.service.log_file).find(" left-running "), std::string::npos);
 }
 
 }  // namespace

@@ -267,6 +267,39 @@ TEST_F(SourceDeletionTest, HeadOfADirectory_Stays) {
   }
 }
 
+// The link would go, and what takes the room would stay.
+TEST_F(SourceDeletionTest, SymbolicLink_StaysWithItsTarget) {
+  const std::string target = directory_ / "in/.target";
+  fs::rename(source_, target);
+  fs::create_symlink(target, source_);
+  pass_file_tick();
+  write_output("");
+  delete_done();
+  EXPECT_TRUE(stays());
+  EXPECT_TRUE(fs::is_symlink(source_));
+  EXPECT_EQ(read_file(target), "values");
+  EXPECT_TRUE(logged(source_ + " reason=\"it is a symbolic link, whose target would stay\""));
+  EXPECT_FALSE(logged(" deleted "));
+}
+
+// As where the source is moved to another disk, and a link made in its place, at that moment.
+TEST_F(SourceDeletionTest, ReplacedByALinkToItWhileItIsDeleted_GetsItsNameBack) {
+  const std::string target = directory_ / "in/.target";
+  auto files = std::make_unique<SteppedFileSystem>();
+  files->before_rename = [target](const std::string& from) {
+    if (fs::exists(target)) return;
+    fs::rename(from, target);
+    fs::create_symlink(target, from);
+  };
+  SourceDeletion deletion(io_, store_, log_, {}, std::move(files));
+  deletion.configure(config_);
+  deletion.done(convert());
+  EXPECT_TRUE(run_until([&] { return deletion.idle(); }));
+  EXPECT_TRUE(fs::is_symlink(source_));
+  EXPECT_EQ(read_file(target), "values");
+  EXPECT_FALSE(logged(" deleted "));
+}
+
 TEST_F(SourceDeletionTest, DoneByAnEarlierProcess_IsDeleted) {
   convert();
   deletion_.configure(config_);

@@ -21,6 +21,7 @@
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "tests/daemon/support/unkillable.h"
 #include "tests/support/child_answer.h"
 #include "tests/support/message_of_error.h"
 #include "tests/support/run_command.h"
@@ -193,6 +194,25 @@ TEST(WorkerProcess, KilledProcessThatEndsLater_IsReapedThen) {
     EXPECT_FALSE(shell.end);
   }
   EXPECT_EQ(open_descriptors(), before);
+}
+
+// Of many that hang, each would have the service wait.
+TEST(WorkerProcess, KilledProcessThatDoesNotEnd_IsWaitedForOnce) {
+  if (!Unkillable::possible()) GTEST_SKIP() << "only root may have processes that it cannot kill";
+  ShellRun shell("echo $$ >&3; exec sleep 600", 0, milliseconds(1000));
+  while (shell.lines.empty()) shell.io.run_one();
+  const pid_t pid = std::stoi(shell.lines[0]);
+  {
+    const Unkillable unkillable;
+    shell.worker->stop(milliseconds(0));
+    shell.io.run_for(milliseconds(1100));
+    const auto begin = steady_clock::now();
+    shell.worker.reset();
+    EXPECT_LT(steady_clock::now() - begin, milliseconds(500));
+  }
+  EXPECT_FALSE(shell.end);
+  ::kill(pid, SIGKILL);
+  EXPECT_EQ(::waitpid(pid, nullptr, 0), pid);
 }
 
 TEST(WorkerProcess, RunsInItsOwnGroupWithItsPriorityAndNoInheritedDescriptors) {

@@ -50,6 +50,32 @@ TEST_F(JobListing, ListsFiltersAndCountsJobs) {
   EXPECT_EQ(store_->queue_age_ms(), 2000);
 }
 
+TEST_F(JobListing, ListsSourcesInPieces) {
+  const std::int64_t late = waiting("/in/late.raw", {1, 200, 1});
+  const std::int64_t one = waiting("/in/one.raw", {1, 100, 1});
+  const std::int64_t two = waiting("/in/two.raw", {1, 100, 1});  // of the same time
+  const std::int64_t early = waiting("/in/early.raw", {1, -5, 1});
+  waiting("/in/other.raw", {1, 100, 1}, "another watch");
+  observe("/in/discovered.raw", {1, 100, 1});
+  using Sources = std::vector<JobStore::Source>;
+  const Sources first = store_->sources("w", JobState::waiting, {}, 2);
+  EXPECT_EQ(first, (Sources{{early, "/in/early.raw", -5}, {one, "/in/one.raw", 100}}));
+  const Sources second = store_->sources("w", JobState::waiting, {100, one}, 2);
+  EXPECT_EQ(second, (Sources{{two, "/in/two.raw", 100}, {late, "/in/late.raw", 200}}));
+  EXPECT_EQ(store_->sources("w", JobState::waiting, {200, late}, 2), Sources{});
+}
+
+TEST_F(JobListing, ListsTheIdsOfDoneJobsWithoutTheirThumbnails) {
+  std::vector<std::int64_t> ids;
+  for (const bool rendering : {true, false, true}) {
+    ids.push_back(running(cat("/in/", ids.size(), ".raw")));
+    ASSERT_TRUE(store_->finish(ids.back(), success(), rendering));
+  }
+  EXPECT_EQ(store_->unrendered(), (std::vector<std::int64_t>{ids[0], ids[2]}));
+  store_->finish_rendering(ids[0], {});
+  EXPECT_EQ(store_->unrendered(), std::vector<std::int64_t>{ids[2]});
+}
+
 TEST_F(JobListing, SearchMatchesTheReason) {
   store_->fail(running("/in/a.raw"), failure(3, "/in/a.raw: is CUT"));
   EXPECT_EQ(sources({{}, "", "is cut"}), Names{"/in/a.raw"});

@@ -15,8 +15,9 @@ namespace weir {
 
 class FakeControl : public Control {
  public:
-  std::vector<JobView> all;  ///< in the order jobs() gives them
-  StatusView now;            ///< counts are those of `all`
+  std::vector<JobView> all;   ///< in the order jobs() gives them
+  StatusView now;             ///< counts are those of `all`
+  bool stays_paused = false;  ///< when it is resumed: a fault holds all jobs
   MetricsView figures;
   Readiness readiness_now{true, ""};
   std::map<std::pair<std::int64_t, std::size_t>, std::string> thumbnails;
@@ -90,7 +91,7 @@ class FakeControl : public Control {
   }
   void resume() override {
     asked.emplace_back("resume");
-    now.state = "running";
+    now.state = stays_paused ? "paused" : "running";
   }
   StatusView status() override {
     if (before_answer) before_answer();

@@ -150,10 +150,13 @@ TEST_F(ServiceCommands, PauseAndResume) {
   EXPECT_EQ(paused.out, "paused: nothing starts until weir resume, and 0 jobs go on to the end\n");
   EXPECT_EQ(weir(served, {"resume"}).out, "resumed: 0 jobs wait\n");
   served.run([&] { return control_.now.reason = "no room in /scratch"; });
+  EXPECT_EQ(weir(served, {"resume"}).out,
+            "resumed: 0 jobs wait; those that write to a full disk do not start yet: no room in /scratch\n");
+  served.run([&] { return control_.stays_paused = true; });
   EXPECT_EQ(weir(served, {"resume"}).out, "resumed, but nothing starts yet: no room in /scratch\n");
   EXPECT_EQ(nlohmann::json::parse(weir(served, {"pause", "--json"}).out).at("version"), "0.1.0");
   EXPECT_EQ(served.run([&] { return control_.asked; }),
-            (std::vector<std::string>{"pause", "resume", "resume", "pause"}));
+            (std::vector<std::string>{"pause", "resume", "resume", "resume", "pause"}));
 }
 
 TEST_F(ServiceCommands, AskAtTheUnixSocket) {

@@ -1,0 +1,151 @@
+// What a JobRunner does where file systems have no room.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "format/base/text.h"
+#include "tests/daemon/support/running_jobs.h"
+#include "tests/support/run_command.h"
+#include "tests/support/scoped_mount.h"
+
+namespace weir::job_runner_disks_test {
+namespace {
+
+namespace fs = std::filesystem;
+using std::chrono::milliseconds;
+
+// /proc is the disk that is full: it is there everywhere, and a file system of its own.
+class JobRunnerDisksTest : public RunningJobs {
+ protected:
+  /// A `weir` that finds no room at `path`, and counts how often it was started.
+  std::string full_at(const std::string& path) const {
+    return write_program(cat("echo >>", starts_, "\necho '{\"failed\": \"no room\", \"errno\": 28, \"path\": \"", path,
+                             "\"}' >&$fd\nexit 5\n"));
+  }
+  std::size_t starts() const {
+    const std::string lines = read_file(starts_);
+    return static_cast<std::size_t>(std::ranges::count(lines, '\n'));
+  }
+  void run_for(milliseconds time) {
+    const auto end = std::chrono::steady_clock::now() + time;
+    while (std::chrono::steady_clock::now() < end) io_.run_one_for(milliseconds(20));
+  }
+
+  std::string starts_ = directory_ / "starts";
+};
+
+// As of a file server behind FUSE.
+TEST_F(JobRunnerDisksTest, FullDiskOfUnknownSize_IsWaitedForWithoutAnAttempt) {
+  const std::string program = write_program(
+      "echo '{\"planned\": 1000}' >&$fd\n"
+      "echo '{\"failed\": \"no room\", \"errno\": 28, \"path\": \"/proc/a.nvdb\"}' >&$fd\nexit 5\n");
+  config_.watches[0].output = "/proc";
+  JobRunner runner(io_, store_, log_, program, [](const Job&) {});
+  runner.configure(config_);
+  const Job job = add("a", "one");
+  runner.wake();
+  EXPECT_EQ(state(job), JobState::running);
+  run_until([&] { return state(job) == JobState::waiting; });
+  EXPECT_EQ(store_.job(job.id)->attempts, 0);
+  EXPECT_EQ(store_.job(job.id)->result.reason, "no room");
+}
+
+// As where an output in memory spills to /var/tmp: nothing that is asked for room tells when there is some.
+TEST_F(JobRunnerDisksTest, FullDiskOfNeitherOutputNorWorkDir_IsTriedAgainAfterAWhile) {
+  JobRunner runner(io_, store_, log_, full_at("/proc"), [](const Job&) {});
+  runner.configure(config_);
+  const Job job = add("a", "one");
+  runner.wake();
+  run_until([&] { return state(job) == JobState::waiting; });
+  const std::int64_t delay_ms = store_.job(job.id)->due_ms - JobStore::wall_clock_ms();
+  EXPECT_GT(delay_ms, 20'000);
+  EXPECT_LE(delay_ms, 30'000);
+  EXPECT_EQ(store_.job(job.id)->attempts, 0);
+  run_for(milliseconds(1500));
+  EXPECT_EQ(starts(), 1U) << "started again and again";
+  EXPECT_EQ(runner.hold(), "") << "others may find room where they spill";
+  EXPECT_EQ(runner.waits_for_room(), "no room in /proc");
+}
+
+TEST_F(JobRunnerDisksTest, FullWorkDir_IsWaitedForByAll) {
+  config_.service.work_dir = "/proc";
+  JobRunner runner(io_, store_, log_, full_at("/proc"), [](const Job&) {});
+  runner.configure(config_);
+  const Job job = add("a", "one");
+  runner.wake();
+  run_until([&] { return state(job) == JobState::waiting; });
+  EXPECT_EQ(store_.job(job.id)->due_ms, 0) << "it goes on as soon as there is room";
+  run_until([&] { return !runner.hold().empty(); });
+  EXPECT_EQ(runner.hold(), "no room in /proc");
+  add("b", "two");
+  run_for(milliseconds(1500));
+  EXPECT_EQ(starts(), 1U);
+}
+
+TEST_F(JobRunnerDisksTest, FullDiskOfOneOutput_HoldsOnlyItsJobs) {
+  const std::string program =
+      write_program(cat("case \"$*\" in *--output=/proc*) echo '{\"failed\": \"no room\", \"errno\": 28, \"path\": "
+                        "\"/proc/a.nvdb\"}' >&$fd; exit 5;; esac\nexec ",
+                        WEIR_COMMAND, " \"$@\"\n"));
+  config_.watches[0].output = "/proc";
+  JobRunner runner(io_, store_, log_, program, [](const Job&) {});
+  runner.configure(config_);
+  const Job waits = add("a", "one");
+  runner.wake();
+  run_until([&] { return state(waits) == JobState::waiting && runner.disks().size() == 2; });
+  const Job goes_on = add("b", "two");
+  EXPECT_EQ(runner.hold(), "") << "nothing is paused";
+  EXPECT_TRUE(runner.waits_for_room().starts_with("no room in /proc, where ")) << runner.waits_for_room();
+  run_until([&] { return state(goes_on) == JobState::done; });
+  EXPECT_EQ(state(waits), JobState::waiting);
+  runner.pause();
+  EXPECT_EQ(runner.hold(), "paused by request");
+  runner.resume();
+
+  config_.watches[1].output = "/proc";
+  runner.configure(config_);
+  run_until([&] { return runner.disks().size() == 1; });
+  EXPECT_TRUE(runner.hold().starts_with("no room in /proc, where ")) << runner.hold();
+}
+
+// A picture is lost by no full disk: the job is done, and nothing would ever ask for it again.
+TEST_F(JobRunnerDisksTest, ThumbnailThatFindsNoRoom_IsRenderedWhenThereIsSome) {
+  const std::string out = directory_ / "out";
+  const std::string ballast = out + "/ballast";
+  fs::create_directory(out);
+  const ScopedMount mount(out, 8 << 20);
+  if (!mount.refused().empty()) GTEST_SKIP() << mount.refused();
+  write_file(ballast, std::string(3 << 20, 'x'));
+  const std::string program = write_program(
+      cat("if [ $1 = render ] && [ -e ", ballast, " ]; then echo >>", starts_,
+          "; echo 'weir: a.png.partial: cannot write 9 bytes at offset 0: No space left on device' >&2; exit 5; fi\n",
+          "exec ", WEIR_COMMAND, " \"$@\"\n"));
+  config_.watches[0].thumbnails = true;
+  JobRunner runner(io_, store_, log_, program, [](const Job&) {});
+  runner.configure(config_);
+  const Job job = add("a", "one");
+  runner.wake();
+  run_until([&] { return state(job) == JobState::done && runner.running().empty(); });
+  EXPECT_EQ(store_.unrendered(), std::vector<std::int64_t>{job.id}) << "a restart takes it up, too";
+  EXPECT_EQ(store_.job(job.id)->result.outputs.at(0).thumbnail, "");
+  const std::string log = read_file(config_.service.log_file);
+  EXPECT_NE(
+      log.find(cat(" error disk-full job=", job.id, " directory=", out, " reason=\"no thumbnail: a.png.partial: ")),
+      std::string::npos)
+      << log;
+  run_for(milliseconds(1500));
+  EXPECT_EQ(starts(), 1U) << "tried again without room";
+  fs::remove(ballast);
+  run_until([&] { return store_.unrendered().empty(); });
+  EXPECT_EQ(store_.job(job.id)->result.outputs.at(0).thumbnail, out + "/one_24x20x16_uint8.nvdb.png");
+  EXPECT_TRUE(fs::exists(out + "/one_24x20x16_uint8.nvdb.png"));
+  EXPECT_EQ(runner.figures().totals().done, 1U);
+}
+
+}  // namespace
+}  // namespace weir::job_runner_disks_test
