@@ -220,9 +220,10 @@ typedef struct weir_input_options {
   const char* missing; /* as weir_volume's, besides what the file says */
   double spacing[3];   /* in place of the file's; all 0: the file's */
   double origin[3];    /* the same, with has_origin */
-  int64_t roi_min[3];  /* only the voxels from roi_min to before roi_max, by the file's own indices; a number below 0 is
-                        * counted from the end as in Python, where -3 is the third last, unless these indices begin
-                        * below 0; both all 0: the whole volume */
+  int64_t roi_min[3]; /* only the voxels from roi_min to before roi_max, by the file's own indices, which count from the
+                       * lowest coordinate where coordinates fall; a number below 0 is counted from the end as in
+                       * Python, where -3 is the third last, unless these indices begin below 0; both all 0: the
+                       * whole volume */
   int64_t roi_max[3];
   int32_t type;   /* of a raw file, WEIR_UINT8 ...; 0: as its name says */
   int32_t endian; /* of a raw file, WEIR_ENDIAN_...; AUTO: as its name says, else little */

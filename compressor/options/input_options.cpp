@@ -262,8 +262,10 @@ constexpr ConversionOption kInputOptions[] = {
       .argument = "x0:x1,y0:y1,z0:z1",
       .unit = "voxels",
       .standard = "the whole volume",
-      .help = "only this box of voxels, x0 inclusive, x1 exclusive, by the file's own indices; an end left out is the "
-              "volume's, one below 0 counts from its end unless the file's indices begin below 0",
+      .help =
+          "only this box of voxels, x0 inclusive, x1 exclusive, by the file's own indices, which count from the lowest "
+          "coordinate where coordinates fall; an end left out is the volume's, one below 0 counts from its end unless "
+          "the file's indices begin below 0",
       .group = "region"},
      read_roi},
     {{.key = "ghost",
