@@ -91,6 +91,7 @@ struct Opening {
   }
   std::uint64_t slice_bytes() const { return static_cast<std::uint64_t>(volume(slice.extent)) * voxel_bytes(); }
   Box voxels_read() const { return weir::voxels_read(slice, options.roi); }
+  WantedVoxels wanted() const { return {voxels_read(), !options.roi}; }
   /// Whose the elements are that are read.
   const char* of_read() const { return options.roi ? " of the region's " : " of its "; }
   std::size_t voxel_bytes() const {
@@ -226,9 +227,8 @@ void note_unwritten_in_sources(Opening& opening, const UnwrittenInSources& unwri
 }
 
 std::unique_ptr<StoredBoxes> open_mapped(Opening& opening, const std::string& parent) {
-  VirtualVolume mapped =
-      make_virtual_boxes(std::move(opening.object.handle), opening.slice.positions, opening.voxels_read(),
-                         opening.slice.components.count, parent, opening.object.where());
+  VirtualVolume mapped = make_virtual_boxes(std::move(opening.object.handle), opening.slice.positions, opening.wanted(),
+                                            opening.slice.components.count, parent, opening.object.where());
   note_unmapped(opening, mapped.unmapped);
   note_unwritten_in_sources(opening, mapped.unwritten);
   return std::move(mapped.boxes);
@@ -252,7 +252,7 @@ std::unique_ptr<VolumeSource> open_planar(Opening opening) {
     H5Iinc_ref(opening.object.handle.get());
     Hdf5Handle dataset(opening.object.handle.get());
     if (kind == StorageKind::mapped) {
-      VirtualVolume part = make_virtual_boxes(std::move(dataset), index, opening.voxels_read(), 1, parent, where);
+      VirtualVolume part = make_virtual_boxes(std::move(dataset), index, opening.wanted(), 1, parent, where);
       unmapped.count += part.unmapped.count;
       if (unmapped.first.empty()) unmapped.first = part.unmapped.first;
       unwritten.add(part.unwritten);

@@ -43,7 +43,7 @@ bool overlap(const AxisBox& a, const AxisBox& b) {
 
 class VirtualBoxes final : public StoredBoxes {
  public:
-  VirtualBoxes(Hdf5Handle dataset, std::vector<std::int64_t> index, const Box& voxels, std::int64_t components,
+  VirtualBoxes(Hdf5Handle dataset, std::vector<std::int64_t> index, const WantedVoxels& wanted, std::int64_t components,
                const std::string& parent, std::string where)
       : dataset_(std::move(dataset)),
         index_(std::move(index)),
@@ -52,7 +52,8 @@ class VirtualBoxes final : public StoredBoxes {
         crash_line_(hdf5_crash_line(where_)),
         type_(H5Dget_type(dataset_.get())),
         space_(H5Dget_space(dataset_.get())),
-        mapped_(virtual_mappings(dataset_.get(), axis_box(index_, voxels, components_), parent, where_)) {
+        mapped_(virtual_mappings(dataset_.get(), {axis_box(index_, wanted.box, components_), wanted.need_a_source},
+                                 parent, where_)) {
     // A source that is never to be filled leaves what is in memory.
     if (mapped_.unmapped.count > 0 || mapped_.unwritten.count > 0) fill_ = storage_of(dataset_.get()).fill;
     for (const VirtualMapping& mapping : mapped_.mappings) {
@@ -149,9 +150,9 @@ class VirtualBoxes final : public StoredBoxes {
 
 }  // namespace
 
-VirtualVolume make_virtual_boxes(Hdf5Handle dataset, std::vector<std::int64_t> index, const Box& voxels,
+VirtualVolume make_virtual_boxes(Hdf5Handle dataset, std::vector<std::int64_t> index, const WantedVoxels& wanted,
                                  std::int64_t components, const std::string& parent, const std::string& where) {
-  auto boxes = std::make_unique<VirtualBoxes>(std::move(dataset), std::move(index), voxels, components, parent, where);
+  auto boxes = std::make_unique<VirtualBoxes>(std::move(dataset), std::move(index), wanted, components, parent, where);
   Uncovered unmapped = boxes->unmapped();
   UnwrittenInSources unwritten = boxes->unwritten();
   return {std::move(boxes), std::move(unmapped), std::move(unwritten)};

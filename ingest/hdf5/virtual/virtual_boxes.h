@@ -19,10 +19,16 @@ struct VirtualVolume {
   UnwrittenInSources unwritten;
 };
 
+/// Of a volume, what is read; a region may lie where there are no sources.
+struct WantedVoxels {
+  Box box;
+  bool need_a_source = true;
+};
+
 /// The three axes of `dataset` (in the file `parent`) behind the leading ones, at `index`, one position per leading
-/// axis; of several `components` a voxel these are the last axis. Only boxes inside `voxels` are read: sources of
+/// axis; of several `components` a voxel these are the last axis. Only boxes inside `wanted` are read: sources of
 /// others are not looked at. Throws what virtual_mappings throws. The caller holds Hdf5Lock.
-VirtualVolume make_virtual_boxes(Hdf5Handle dataset, std::vector<std::int64_t> index, const Box& voxels,
+VirtualVolume make_virtual_boxes(Hdf5Handle dataset, std::vector<std::int64_t> index, const WantedVoxels& wanted,
                                  std::int64_t components, const std::string& parent, const std::string& where);
 
 }  // namespace weir

@@ -97,17 +97,22 @@ struct StoredMapping {
 
 class MappingReader {
  public:
-  MappingReader(hid_t dataset, const AxisBox& wanted, const std::string& parent, const std::string& where)
-      : dataset_(dataset), wanted_(wanted), parent_(parent), where_(where), space_(H5Dget_space(dataset)) {}
+  MappingReader(hid_t dataset, const WantedElements& wanted, const std::string& parent, const std::string& where)
+      : dataset_(dataset),
+        wanted_(wanted.box),
+        need_a_source_(wanted.need_a_source),
+        parent_(parent),
+        where_(where),
+        space_(H5Dget_space(dataset)) {}
 
   VirtualMappings run() {
     const Hdf5Handle creation(H5Dget_create_plist(dataset_));
     std::size_t count = 0;
     H5Pget_virtual_count(creation.get(), &count);
     for (std::size_t i = 0; i < count; ++i) take(stored(creation.get(), i));
-    if (mappings_.empty()) {
+    if (mappings_.empty() && need_a_source_) {
       throw error(cat("no source is mapped to its element ", list_text(wanted_.lo),
-                      ", nor to any other that is read; the dataset is incomplete"));
+                      ", nor to any other of the volume; the dataset is incomplete"));
     }
     Uncovered unmapped = uncovered(wanted_, blocks_);
     return {std::move(mappings_), std::move(unmapped), std::move(unwritten_)};
@@ -274,6 +279,7 @@ class MappingReader {
 
   hid_t dataset_;
   const AxisBox& wanted_;
+  const bool need_a_source_;
   const std::string& parent_;
   const std::string& where_;
   Hdf5Handle space_;
@@ -289,7 +295,7 @@ void UnwrittenInSources::add(const UnwrittenInSources& further) {
   count += further.count;
 }
 
-VirtualMappings virtual_mappings(hid_t dataset, const AxisBox& wanted, const std::string& parent,
+VirtualMappings virtual_mappings(hid_t dataset, const WantedElements& wanted, const std::string& parent,
                                  const std::string& where) {
   return MappingReader(dataset, wanted, parent, where).run();
 }

@@ -41,13 +41,19 @@ struct VirtualMappings {
   UnwrittenInSources unwritten;
 };
 
+/// Of a virtual dataset: a volume, or a region of one, which may lie where there are no sources.
+struct WantedElements {
+  AxisBox box;
+  bool need_a_source = true;
+};
+
 /// The mappings of `dataset` (in the file `parent`) that have elements in `wanted`, in the file's order; those
 /// that go on without end are cut to what there is, those with a block number in the source's name become one
 /// for each block. Every source is opened once and closed again. Throws Error(input), beginning with `where`:
 /// naming the source where it is missing, too small, never written and without a fill value of its writer, behind a
-/// missing filter, or itself spread over files; and where no element of `wanted` has a mapping. The caller holds
+/// missing filter, or itself spread over files; and where none of `wanted` has a source that it needs. The caller holds
 /// Hdf5Lock.
-VirtualMappings virtual_mappings(hid_t dataset, const AxisBox& wanted, const std::string& parent,
+VirtualMappings virtual_mappings(hid_t dataset, const WantedElements& wanted, const std::string& parent,
                                  const std::string& where);
 
 /// The source dataset of a mapping. Throws as above. The caller holds Hdf5Lock.

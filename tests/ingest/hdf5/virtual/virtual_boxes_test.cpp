@@ -154,7 +154,7 @@ with h5py.File("a.h5", "w") as f:
                                       "--missing-chunks fill");
   EXPECT_EQ(refused("a.h5", dataset_options("steps", {1})),
             path +
-                ": /steps: no source is mapped to its element 1, 0, 0, 0, nor to any other that is read; the "
+                ": /steps: no source is mapped to its element 1, 0, 0, 0, nor to any other of the volume; the "
                 "dataset is incomplete");
 }
 
@@ -211,6 +211,11 @@ with h5py.File("a.h5", "w") as f: f.create_virtual_dataset("v", layout, fillvalu
   EXPECT_EQ(said({{7, 0, 0}, {9, 4, 2}}),
             where + "8 of the region's 16 values have no source (the first at 0, 0, 8), and with --missing-chunks " +
                 all + "have one; map one to them, or use --missing-chunks fill");
+  options.missing_chunks = MissingChunks::fill;
+  options.roi = Box{{8, 0, 0}, {9, 4, 2}};
+  EXPECT_EQ(all_values(*open_source(scratch_.path("a.h5"), options)), std::vector<float>(8, -1.5F));
+  EXPECT_EQ(open_source(scratch_.path("a.h5"), options)->info().details.chunks_note,
+            "8 of the region's 8 values have no source and read as its fill value, -1.5");
   EXPECT_EQ(said({{0, 0, 3}, {4, 4, 5}}), where + "its source file not_there_yet.h5 is not there; put it beside " +
                                               scratch_.path("a.h5") + " or set HDF5_VDS_PREFIX");
 }
@@ -291,7 +296,7 @@ whole("bad source.h5", [(S[...], V("bad.h5", "v", (4, 4, 4)))])
   };
   const std::string source = "its source " + scratch_.path("source.h5") + ": ";
   const std::string incomplete = "; the dataset is incomplete";
-  EXPECT_EQ(said("bare.h5"), "no source is mapped to its element 0, 0, 0, nor to any other that is read" + incomplete);
+  EXPECT_EQ(said("bare.h5"), "no source is mapped to its element 0, 0, 0, nor to any other of the volume" + incomplete);
   EXPECT_EQ(said("cut.h5"), source + "half: has extents 2, 4, 4, fewer than the mapping needs");
   EXPECT_EQ(said("no file.h5"), "its source file other.h5 is not there; put it beside " + scratch_.path("no file.h5") +
                                     " or set HDF5_VDS_PREFIX");
