@@ -295,7 +295,7 @@ class HttpFile(RemoteFile):
         version = _version(response)
         if self._version is None:
             self._version = version
-        elif version is not None and version != self._version:
+        elif tag is None and version is not None and version != self._version:
             raise _changed(self._shown)
         if self._total is None:
             self._total = total

@@ -20,14 +20,15 @@ class RangeServer:
     beyond: whether answers go on to the file's end. stalled: while it is set, no request is answered. coding: the
     Content-Encoding that it claims. moved: where it redirects a path to, with a body of 64 MiB; wasted: bytes of
     these that were sent. needs: headers without which it answers 401; headers: those of the last request.
-    changed(path) makes another version of a file of it.
+    dated: the Last-Modified of all answers. changed(path) makes another version of a file of it.
     """
 
-    def __init__(self, files, ranges=True, tags=True, weak=False):
+    def __init__(self, files, ranges=True, tags=True, weak=False, dated=None):
         self.files = dict(files)
         self.ranges = ranges
         self.tags = tags
         self.weak = weak
+        self.dated = dated
         self.failures = 0
         self.cut = 0
         self.beyond = False
@@ -114,6 +115,8 @@ class RangeServer:
                     found = re.fullmatch(r"bytes=(\d+)-(\d+)", self.headers.get("Range", ""))
                     same = self.headers.get("If-Range", tag) == tag  # never of a weak one
                     headers = {"ETag": f"W/{tag}" if owner.weak else tag} if owner.tags else {}
+                    if owner.dated is not None:
+                        headers["Last_Modified"] = owner.dated
                     if owner.coding is not None:
                         headers["Content_Encoding"] = owner.coding
                     if not found or not owner.ranges or not same:

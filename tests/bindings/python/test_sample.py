@@ -32,6 +32,14 @@ class Sample(FolderTest):
         for filter in ("trilinear", "nearest"):
             self.assertTrue(same(grid.sample(centres, filter), values.astype(numpy.float32)))
 
+    def test_a_centre_is_its_voxel_beside_one_that_is_not_a_number(self):
+        values = noise((9, 17, 30)).astype(numpy.float32)
+        values[4, 8, 15] = numpy.nan
+        grid = self.lossless(values, nonfinite="keep")
+        z, y, x = numpy.mgrid[0:9, 0:17, 0:30]
+        self.assertTrue(same(grid.sample(numpy.stack([x, y, z], axis=-1) + 0.5), values))
+        self.assertTrue(numpy.isnan(grid.sample([[15, 8.5, 4.5]])).all())
+
     def test_the_origin_is_the_centre_of_voxel_0(self):
         values = noise((9, 17, 30))
         grid = self.lossless(values, spacing=(2, 4, 8), origin=(10, 20, 30))
