@@ -344,8 +344,8 @@ void WatchedTree::gone(const std::string& path) {
   stores_.forget(path);
   forget(path);
   const auto job = store_.find(config_.label, path);
-  // A done job is the record of its result; a running one finds out by itself.
-  if (!job || job->state == JobState::done || job->state == JobState::running) return;
+  // A done job is the record of its result, and a cancelled one of a decision; a running one finds out by itself.
+  if (!job || std::ranges::find(kForgottenStates, job->state) == kForgottenStates.end()) return;
   if (!is_directory(config_.directory)) return;  // once it is back, the file is found again, or the job forgotten
   store_.remove(job->id);
   written_.emplace_back([this, path, id = job->id] { log_.info("source-gone", {{"job", id}, {"source", path}}); });

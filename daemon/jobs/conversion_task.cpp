@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "daemon/watch/path_filter.h"
 #include "format/base/text.h"
 #include "ingest/files/input_directory.h"
 
@@ -12,6 +13,11 @@ namespace fs = std::filesystem;
 
 bool is_source_of(const WatchConfig& watch, const std::string& source) {
   return source.starts_with(watch.directory.ends_with('/') ? watch.directory : watch.directory + '/');
+}
+
+bool takes_source(const WatchConfig& watch, const std::string& source) {
+  const std::size_t place = watch.directory.size() + (watch.directory.ends_with('/') ? 0 : 1);
+  return is_source_of(watch, source) && PathFilter(watch).accepts_file(source.substr(place));
 }
 
 std::string output_directory(const WatchConfig& watch, const std::string& source) {

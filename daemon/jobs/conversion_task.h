@@ -43,6 +43,9 @@ std::optional<ConversionTask> make_rendering_task(const std::string& program, co
 /// Whether `source`, an absolute path, is named as one in the watch's directory or below it.
 bool is_source_of(const WatchConfig& watch, const std::string& source);
 
+/// Whether that holds, and the watch's include and exclude take it. Looks at the file system.
+bool takes_source(const WatchConfig& watch, const std::string& source);
+
 /// Where the outputs of `source`, which lies in the watch, go: the watch's output directory and below it the source's
 /// own place in the tree. Ends without a slash.
 std::string output_directory(const WatchConfig& watch, const std::string& source);

@@ -130,6 +130,11 @@ void JobRunner::start(const WatchConfig& watch, const Job& job) {
     store_.cancel(job.id);
     return;
   }
+  // KnownJobs may not have come to it yet.
+  if (!takes_source(watch, job.source)) {
+    store_.remove(job.id);
+    return;
+  }
   scheduler_.started(watch.label);
   const auto now = identify_source(job.source, watch.convert_options);
   if (now ? *now != job.identity : is_gone_from(watch.directory, job.source)) {

@@ -101,8 +101,9 @@ class JobRunner {
   void done(const RunningJob& run, const TaskReport& report);
   void failed(const RunningJob& run, const TaskReport& report);
   void disk_full(const RunningJob& run, const TaskReport& report);
-  void hold_disk(const RunningJob& run, const TaskReport& report, std::uint64_t needed);
+  void hold_disk(const RunningJob& run, const TaskReport& report, const DiskRoom& room, std::uint64_t needed);
   bool no_disk_has_room() const;
+  bool rendering_waits(const WatchConfig& watch, const Job& job) const;
   void rendering_ended(const RunningJob& run, const TaskReport& report);
   void end_stop_after(std::chrono::milliseconds patience);
   void end_stop();

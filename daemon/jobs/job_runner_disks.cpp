@@ -30,7 +30,7 @@ void JobRunner::disk_full(const RunningJob& run, const TaskReport& report) {
     return;
   }
   figures_.attempt_failed("disk-full");
-  hold_disk(run, report, of_output ? report.planned_bytes : 0);
+  hold_disk(run, report, room, of_output ? report.planned_bytes : 0);
   // next_job() asks for room on the file systems of output and work_dir alone: it may be another one, as where an
   // output in memory spills to /var/tmp.
   const bool asked_for = of_output || (!task.work_dir.empty() && room.device == room_in(task.work_dir).device);
@@ -40,9 +40,8 @@ void JobRunner::disk_full(const RunningJob& run, const TaskReport& report) {
 }
 
 // `needed`: bytes of an output on the file system that is full; 0: not known, or it was no output.
-void JobRunner::hold_disk(const RunningJob& run, const TaskReport& report, std::uint64_t needed) {
+void JobRunner::hold_disk(const RunningJob& run, const TaskReport& report, const DiskRoom& room, std::uint64_t needed) {
   const std::string& directory = report.full_directory;
-  const DiskRoom room = room_in(directory);
   full_disks_.add(room.device, directory, room.free, run.job.id, run.job.identity.bytes, needed,
                   std::chrono::steady_clock::now());
   for (const std::string& full : full_disks_.directories()) disks_.look_anew(full);
@@ -81,14 +80,18 @@ bool JobRunner::no_disk_has_room() const {
   return std::ranges::all_of(all, [this](const OutputDisk& disk) { return !hold_of(disk.room).empty(); });
 }
 
+// First the file systems that have no outputs, as that of work_dir, which all jobs may wait for.
 std::string JobRunner::waits_for_room() const {
-  std::string full;
+  std::vector<std::string> others = full_disks_.directories();
+  std::vector<std::string> held;
   for (const OutputDisk& disk : disks()) {
-    const std::string held = hold_of(disk.room);
-    if (!held.empty()) full += cat(full.empty() ? "" : "; ", held);
+    std::erase(others, full_disks_.directory_on(disk.room.device));
+    if (const std::string of_outputs = hold_of(disk.room); !of_outputs.empty()) held.push_back(of_outputs);
   }
-  if (full.empty() && !full_disks_.empty()) full = cat("no room in ", full_disks_.directories().front());
-  return full;
+  std::string text;
+  for (const std::string& directory : others) text += cat(text.empty() ? "" : "; ", "no room in ", directory);
+  for (const std::string& of_outputs : held) text += cat(text.empty() ? "" : "; ", of_outputs);
+  return text;
 }
 
 std::string JobRunner::hold_of(const DiskRoom& disk) const { return full_disks_.hold_of(disk); }

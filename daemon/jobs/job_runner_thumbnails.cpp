@@ -20,14 +20,20 @@ void JobRunner::resume_thumbnails() {
 }
 
 bool JobRunner::start_next_rendering() {
-  if (!full_disks_.empty()) return false;
-  while (!unrendered_.empty()) {
-    const std::int64_t id = unrendered_.back();
-    unrendered_.pop_back();
-    if (running_.contains(id)) continue;  // it was done again meanwhile
-    const std::optional<Job> job = store_.job(id);
-    if (!job || job->state != JobState::done) continue;
-    const WatchConfig* watch = watch_of(job->watch);
+  constexpr std::size_t kMostLooked = 100;  // for one whose disk has room
+  std::size_t waiting = 0;
+  for (std::size_t i = unrendered_.size(); i-- > 0 && waiting < kMostLooked;) {
+    const std::int64_t id = unrendered_[i];
+    std::optional<Job> job = store_.job(id);
+    // It may be done again meanwhile.
+    if (job && (job->state != JobState::done || running_.contains(id))) job.reset();
+    const WatchConfig* watch = job ? watch_of(job->watch) : nullptr;
+    if (watch != nullptr && rendering_waits(*watch, *job)) {
+      ++waiting;
+      continue;
+    }
+    unrendered_.erase(unrendered_.begin() + static_cast<std::ptrdiff_t>(i));
+    if (!job) continue;
     std::optional<ConversionTask> task;
     if (watch != nullptr) task = make_rendering_task(program_, config_.service, *watch, *job);
     if (task) {
@@ -40,11 +46,19 @@ bool JobRunner::start_next_rendering() {
   return false;
 }
 
+// Where that is not known yet, in this round.
+bool JobRunner::rendering_waits(const WatchConfig& watch, const Job& job) const {
+  if (full_disks_.empty()) return false;
+  const std::optional<DiskRoom> room = disks_.room(output_directory(watch, job.source));
+  return !room || !full_disks_.directory_on(room->device).empty();
+}
+
 // One that found no room is still to come, in the state file, too.
 void JobRunner::rendering_ended(const RunningJob& run, const TaskReport& report) {
   const std::int64_t id = run.job.id;
   if (report.end == TaskEnd::disk_full) {
-    hold_disk(run, report, 0);
+    const DiskRoom room = room_in(report.full_directory);
+    if (full_disks_.directory_on(room.device).empty()) hold_disk(run, report, room, 0);
     if (std::find(unrendered_.begin(), unrendered_.end(), id) == unrendered_.end()) {
       unrendered_.insert(unrendered_.begin(), id);
     }

@@ -194,8 +194,7 @@ SourceDeletion::Outcome SourceDeletion::try_to_delete(const Job& job, const Watc
 SourceDeletion::Outcome SourceDeletion::look_at(const Job& job, const WatchConfig& watch) {
   if (files_->exists(hidden_name(job))) return finish_interrupted(job, watch);
   if (is_gone(job.source)) return Outcome::over;
-  if (!is_source_of(watch, job.source) || job.options != options_text(watch) ||
-      !PathFilter(watch).accepts_file(job.source.substr(watch.directory.size() + 1))) {
+  if (!takes_source(watch, job.source) || job.options != options_text(watch)) {
     keep(job, "the watch does not take it any more, or converts it otherwise");
     return Outcome::over;
   }

@@ -106,6 +106,22 @@ TEST_F(WatchedTreeTest, JobsOfFilesThatAreGone_AreForgotten) {
   EXPECT_TRUE(store_.job(done)) << "the record of its result";
 }
 
+// As of those whose sources go away while no service runs: for as long as `history` says.
+TEST_F(WatchedTreeTest, ACancelledJob_IsKeptWhenItsSourceGoes) {
+  std::filesystem::create_directory(watch().directory);
+  const auto path = [&](const char* name) { return watch().directory + '/' + name; };
+  for (const char* name : {"a_2x2x2_uint8.raw", "b_2x2x2_uint8.raw"}) std::ofstream(path(name)) << "12345678";
+  const WatchedTree tree = this->tree();
+  const auto job = [&](const char* name) { return store_.find(watch().label, path(name)); };
+  ASSERT_TRUE(run_until([&] { return job("a_2x2x2_uint8.raw") && job("b_2x2x2_uint8.raw"); }));
+  ASSERT_TRUE(store_.cancel(job("a_2x2x2_uint8.raw")->id));
+  std::filesystem::remove(path("a_2x2x2_uint8.raw"));
+  std::filesystem::remove(path("b_2x2x2_uint8.raw"));
+  ASSERT_TRUE(run_until([&] { return !job("b_2x2x2_uint8.raw"); }));
+  ASSERT_TRUE(job("a_2x2x2_uint8.raw"));
+  EXPECT_EQ(job("a_2x2x2_uint8.raw")->state, JobState::cancelled);
+}
+
 TEST_F(WatchedTreeTest, JobsOfADirectoryThatIsNotMountedYet_AreKept) {
   const std::int64_t id = observe("a_2x2x2_uint8.raw");
   const WatchedTree tree = this->tree();

@@ -60,6 +60,18 @@ TEST_F(JobRunnerTest, JobWaitsWhileTheDirectoryOfItsWatchIsNotThere) {
   run_until([&] { return idle() && state(job) == JobState::done; });
 }
 
+// Jobs of an earlier configuration are looked through in pieces, between which others start.
+TEST_F(JobRunnerTest, JobThatTheWatchNoLongerTakes_IsForgottenNotConverted) {
+  const Job one = add("a", "one");
+  const Job two = add("a", "two");
+  config_.watches[0].exclude = {"one_*"};
+  runner_.configure(config_);
+  runner_.wake();
+  run_until([&] { return idle() && state(two) == JobState::done; });
+  EXPECT_FALSE(store_.job(one.id));
+  EXPECT_EQ(list_directory(directory_ / "out").size(), 2U) << "more than the volume and its sidecar";
+}
+
 TEST_F(JobRunnerTest, JobIsDoneBeforeItsThumbnailIsRendered) {
   config_.watches[0].thumbnails = true;
   runner_.configure(config_);
