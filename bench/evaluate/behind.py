@@ -70,13 +70,13 @@ def _peers_time(measured):
     """Of volumes of which starting up is no part, by all threads."""
     found = {}
     for ours, own, peer, theirs in _peers_pairs(measured):
-        for key, way in (("compress_s", "there"), ("decompress_s", "back")):
+        for key, way in (("compress_s", "compression"), ("decompress_s", "decompression")):
             if own["dense_bytes"] >= LARGE_BYTES and own["speeds"] and theirs["speeds"]:
                 mine, other = own["speeds"][-1], theirs["speeds"][-1]
                 where = f"{own['volume']}, {mine[key]:.2f} s against {other[key]:.2f} s, {mine['threads']} threads"
                 found.setdefault((ours, peer, way), []).append((mine[key] / other[key], where))
     return [line for (ours, peer, way), ratios in found.items()
-            for line in _times_line(ours, f"{peer}, seconds {way}{_how_often(ratios, 1)}", ratios)]
+            for line in _times_line(ours, f"{peer}, seconds of {way}{_how_often(ratios, 1)}", ratios)]
 
 
 def _how_often(found, even):

@@ -40,8 +40,8 @@ def targets_table(measured):
             least = min((point["bytes"] for point in points.values() if point["bytes"]), default=0)
             cells = [_bytes_text(points.get(method), results.get(method), least) for method in methods]
             lines.append([f"{volume}, {extent}" if target == TARGETS_DB[0] else "", f"{target} dB", *cells])
-    for key, way in (("compress_s", "there"), ("decompress_s", "back")):
-        lines.append([f"MB/s {way}, median", f"{SPEED_DB} dB", *(_median_speed(by, method, key) for method in methods)])
+    for key, way in (("compress_s", "compression"), ("decompress_s", "decompression")):
+        lines.append([f"MB/s of {way}, median", f"{SPEED_DB} dB", *(_median_speed(by, method, key) for method in methods)])
     return table(["bytes of dense for", "", *(TITLES[method] for method in methods)], lines)
 
 
@@ -85,7 +85,7 @@ def speed_table(measured):
             lines.append([volume if method == next(iter(results)) else "", TITLES[method], *cells])
     counts = sorted({row["threads"] for results in by.values() for r in results.values() for row in r["speeds"]})
     header = [f"seconds at {SPEED_DB} dB", "method", *(f"{count} thread{'s' if count > 1 else ''}, {way}"
-                                                       for count in counts for way in ("there", "back"))]
+                                                       for count in counts for way in ("compression", "decompression"))]
     return table(header, [line + ["-"] * (len(header) - len(line)) for line in lines])
 
 

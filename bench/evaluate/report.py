@@ -44,9 +44,10 @@ def broken_promises(experiments, measured):
 
 def promises_text(broken):
     if not broken:
-        return ("Checked, of what is measured here: sizes are met to the byte, no error is above that of the paper's\n"
-                "preset, more bytes are never more error (of packed files but for one step, where the preview comes in),\n"
-                "noise stays below its bound, no voxel's error is above `--max-error`, lossless is lossless and looks so, memory stays below its ceiling.")
+        return ("The run checks, for all that is measured here: sizes are met to the byte. No error is above that of the paper's preset.\n"
+                "More bytes never give more error (packed files may have one exception, the step from which on they have a preview).\n"
+                "Noise stays below its bound. No voxel's error is above `--max-error`. Lossless files have no error, and their pictures\n"
+                "show none. Memory stays below its ceiling.")
     return "**Promises that are not kept:**\n\n" + "\n".join(f"* {line}" for line in broken)
 
 

@@ -140,8 +140,8 @@ class Derived(Experiment):
                 lines = [[row["method"], decibel(row), *(f"{in_percent(row[f'{what}_relative_rms'])} %"
                                                          for what in ("vorticity", "divergence"))] for row in result["field"]]
                 edge = result["edge"]
-                return (f"A vector field of {edge}^3: three components of turbulence, each converted at a rate of {FIELD_RATE}; relative\n"
-                        "RMS of what is derived of all three:\n\n"
+                return (f"The next table is for a vector field of {edge}^3: three components of turbulence, each converted\n"
+                        f"at rate {FIELD_RATE}. It has the relative RMS error of what is derived from all three:\n\n"
                         + table(["method", "PSNR of a component, dB", "vorticity", "divergence"], lines))
         return ""
 

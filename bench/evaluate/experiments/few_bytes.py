@@ -159,7 +159,7 @@ class FewBytes(Experiment):
     def _left_out(results):
         names = [f"{result['volume']} at {row['share']} %" for result in results for row in result["rows"]
                  if not judged(row)]
-        return "Left out of the table above, for their fixed part: " + (", ".join(names) or "none") + "."
+        return "The table above leaves out, because of their fixed part: " + (", ".join(names) or "none") + "."
 
     @staticmethod
     def _table(results):

@@ -111,10 +111,10 @@ class Headline(Experiment):
         lines = [[parts[0][0], *(field for _, *fields in parts for field in fields)] for parts in zip(*columns)]
         header = ["", *(field for result in largest_results for field in (f"{result['encoding']}: seconds", ""))]
         first = largest_results[0]
-        volume = f"{size_text(first['extent'])} voxels, {largest / 1e9:.2f} GB, nothing of it in the page cache."
+        volume = f"The volume has {size_text(first['extent'])} voxels ({largest / 1e9:.2f} GB), none of them in the page cache."
         return "\n\n".join((" ".join((volume, *heads)), table(header, lines),
                             command("bench/evaluate.sh --only headline --again --full"),
-                            f"![What weir render makes of it](images/evaluation/{PICTURE})"))
+                            f"![The picture that weir render makes](images/evaluation/{PICTURE})"))
 
     @staticmethod
     def _head(r):
@@ -132,7 +132,7 @@ class Headline(Experiment):
             [f"`weir convert --rate {RATE} --memory {MEMORY}`", f"{r['seconds']:.1f}",
              f"{rate / r['seconds']:.2f} GB/s; {r['bytes_read'] / r['dense_bytes']:.2f} times read, in "
              f"{r['seconds'] / of_disk:.2f} of the time that reading as much takes plainly"],
-            ["of it the survey", f"{r['survey_s']:.1f}", f"{rate / r['survey_s']:.2f} GB/s"],
+            ["of that, the survey", f"{r['survey_s']:.1f}", f"{rate / r['survey_s']:.2f} GB/s"],
             *(Headline._small_line(r, key, memory) for key, (memory, _) in SMALL_RUNS.items()),
             ["`weir verify`", f"{r['verify_s']:.1f}", ""],
             ["`weir compare`", f"{r['compare_s']:.1f}", "the certificate's PSNR, measured again"],

@@ -129,8 +129,8 @@ class Speed(Experiment):
                 there = [row for row in found if row is not None]
                 lines.append([*line, f"{max(row['bytes_read'] / row['dense_bytes'] for row in there):.2f}",
                               f"{max(row['peak_rss_bytes'] for row in there) / 2**20:.0f}"] if there else line)
-        header = ["cloud", "encoding", "cold: s", "GB/s", "of reading twice", "CPU s", "warm: s", "GB/s",
-                  "of reading twice", "CPU s", "times read", "peak MiB"]
+        header = ["cloud", "encoding", "cold: s", "GB/s", "times reading twice", "CPU s", "warm: s", "GB/s",
+                  "times reading twice", "CPU s", "times read", "peak MiB"]
         return table(header, lines)
 
     @staticmethod

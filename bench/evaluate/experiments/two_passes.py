@@ -56,7 +56,7 @@ class TwoPasses(Experiment):
                   f"{row['survey_s']:.2f}", f"{row['encode_s']:.2f}", f"{row['cpu_s']:.2f}",
                   f"{row['dense_bytes'] / row['seconds'] / 1e9:.2f}"]
                  for row in sorted(self.rows(measured), key=lambda row: list(PLACES).index(row["place"]))]
-        header = ["file in", "volume", "encoding", "reading twice: s", "conversion: s", "of reading twice", "survey: s",
+        header = ["file in", "volume", "encoding", "reading twice: s", "conversion: s", "times reading twice", "survey: s",
                   "encode: s", "CPU s", "GB/s"]
         return table(header, lines) + "\n\n" + command(
             "bench/evaluate.sh --only two_passes --again      # on a machine that does nothing else",
