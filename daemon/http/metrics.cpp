@@ -72,8 +72,8 @@ void write_service(MetricsWriter& out, const StatusView& status, const MetricsVi
   out.sample({{"version", status.version}}, std::uint64_t{1});
   out.single("start_time_seconds", "gauge", "When the service was started, Unix time.", status.started_at);
   out.single("paused", "gauge",
-             "1 while no new conversion is started: asked for, the state file cannot be written, or no output's disk "
-             "has room.",
+             "1 while no new conversion is started: asked for, the state file cannot be written, or no output's disk, "
+             "or not that of work_dir, has room.",
              flag(status.state == "paused"));
   out.family("config_reloads_total", "counter", "Reloads of the configuration; a rejected one changed nothing.");
   out.sample({{"result", "applied"}}, metrics.reloads);

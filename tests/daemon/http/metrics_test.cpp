@@ -131,7 +131,7 @@ TEST(Metrics, TellWhichDisksHoldJobs) {
   EXPECT_EQ(
       lines_with(text, "# HELP weir_paused"),
       "# HELP weir_paused 1 while no new conversion is started: asked for, the state file cannot be written, or no "
-      "output's disk has room.\n");
+      "output's disk, or not that of work_dir, has room.\n");
 }
 
 TEST(Metrics, PassPromtoolCheck) {
