@@ -53,7 +53,7 @@ class JobRunner {
   /// watch is gone, and found again where it comes back.
   void configure(const DaemonConfig& config);
   /// Renders, before all else, the thumbnails that the service ended before; call it after configure(). These, and
-  /// those that find no room, wait while a disk is full.
+  /// those that find no room, wait while their disk is full.
   void resume_thumbnails();
   /// Something may be able to start: a job became complete, or due, or a stop is over. Starts what can.
   void wake();

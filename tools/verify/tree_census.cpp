@@ -211,11 +211,10 @@ class CensusTally {
     return cells_.cells[static_cast<std::size_t>(cells_.lattice.linear(cell - cells_.lattice.first))];
   }
 
+  Box box_of(const Index3& cell) const { return cells_.lattice.node_box(cell - cells_.lattice.first); }
+
   // Voxels that a cell's bounds are of.
-  Box seen_from(const Index3& cell) const {
-    const Index3 lo = cell * cells_.cell;
-    return grown({lo, lo + Index3{cells_.cell, cells_.cell, cells_.cell}}, cells_.apron);
-  }
+  Box seen_from(const Index3& cell) const { return grown(box_of(cell), cells_.apron); }
 
   // None where the grid has no macrocells.
   Box cells_that_see(const Box& voxels) const {
@@ -232,10 +231,9 @@ class CensusTally {
   void check(const Index3& block, const Box& voxels, const Index3& cell, float value) {
     const MinMax& bounds = cell_at(cell);
     if (std::isnan(value) || (value >= bounds.min && value <= bounds.max)) return;
-    const Index3 lo = cell * cells_.cell;
-    const bool own = !intersect(voxels, {lo, lo + Index3{cells_.cell, cells_.cell, cells_.cell}}).empty();
+    const bool own = !intersect(voxels, box_of(cell)).empty();
     std::optional<Index3>& found = own ? census.outside_macrocell : census.outside_apron;
-    if (!found) found = own ? block : lo;
+    if (!found) found = own ? block : box_of(cell).lo;
   }
 
   const NvdbGrid* grid_;
