@@ -1,6 +1,8 @@
 #include "compressor/plan/startable_threads.h"
 
+#include <chrono>
 #include <latch>
+#include <mutex>
 #include <system_error>
 #include <thread>
 #include <vector>
@@ -10,8 +12,9 @@
 #include "ingest/plan/staging.h"
 
 namespace weir {
+namespace {
 
-std::size_t startable_threads(std::size_t wanted) {
+std::size_t start_threads(std::size_t wanted) {
   std::latch counted(1);  // before the threads, which are joined first
   std::vector<std::jthread> started;
   started.reserve(wanted);
@@ -26,6 +29,20 @@ std::size_t startable_threads(std::size_t wanted) {
   const std::size_t count = started.size();
   counted.count_down();
   return count;
+}
+
+}  // namespace
+
+std::size_t startable_threads(std::size_t wanted) {
+  using Clock = std::chrono::steady_clock;
+  static std::mutex mutex;
+  static std::size_t started = 0;
+  static Clock::time_point at{};
+  const std::lock_guard lock(mutex);  // two that start threads at once would find too few
+  if (wanted <= started && Clock::now() - at < kStartableFor) return wanted;
+  started = start_threads(wanted);
+  at = Clock::now();
+  return started;
 }
 
 std::size_t startable_workers(std::size_t threads, const Notice& notice) {
