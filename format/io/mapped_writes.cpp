@@ -1,10 +1,35 @@
 #include "format/io/mapped_writes.h"
 
+#include <fcntl.h>
 #include <sys/mman.h>
 
 #include <algorithm>
+#include <cstdint>
 
 namespace weir {
+namespace {
+
+// Has the system map the pages that `bytes` of a mapping lie in, 16 together where they are cleared: it does so for a
+// read alone.
+void map_pages(std::span<const std::byte> bytes) {
+  constexpr std::size_t kTogether = std::size_t{64} << 10U;
+  const std::size_t first = kTogether - reinterpret_cast<std::uintptr_t>(bytes.data()) % kTogether;
+  for (std::size_t at = 0; at < bytes.size(); at = at == 0 ? first : at + kTogether) {
+    static_cast<void>(*static_cast<const volatile std::byte*>(&bytes[at]));
+  }
+}
+
+}  // namespace
+
+void clear_reserved_pages(File& file, std::uint64_t bytes, const std::atomic<bool>& stop) {
+  if (file.descriptor() < 0) return;
+  constexpr std::uint64_t kPiece = std::uint64_t{4} << 20U;
+  for (std::uint64_t at = 0; at < bytes && !stop; at += kPiece) {
+    // Space that is reserved once more is cleared.
+    const auto piece = static_cast<off_t>(std::min(kPiece, bytes - at));
+    if (::fallocate(file.descriptor(), 0, static_cast<off_t>(at), piece) != 0) return;
+  }
+}
 
 std::unique_ptr<MappedWrites> MappedWrites::of(File& file, std::uint64_t bytes) {
   if (file.descriptor() < 0 || bytes == 0) return nullptr;
@@ -17,7 +42,9 @@ MappedWrites::~MappedWrites() { ::munmap(mapped_.data(), mapped_.size()); }
 
 void MappedWrites::write_at(std::uint64_t offset, std::span<const std::byte> bytes) {
   if (offset > mapped_.size() || bytes.size() > mapped_.size() - offset) return file_.write_at(offset, bytes);
-  std::copy(bytes.begin(), bytes.end(), mapped_.subspan(offset).begin());
+  const std::span<std::byte> to = mapped_.subspan(offset, bytes.size());
+  map_pages(to);
+  std::copy(bytes.begin(), bytes.end(), to.begin());
 }
 
 }  // namespace weir

@@ -2,6 +2,7 @@
 // and 16 that copy into its pages take a fifth of the time.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -10,6 +11,11 @@
 #include "format/io/file_system.h"
 
 namespace weir {
+
+/// Clears the pages of the first `bytes` of a file of a memory file system, whose space is reserved and to which
+/// nothing is written yet, until `stop`. Of pages that are cleared the system maps 16 at a time, of others one: 16
+/// threads copy 0.5 GB there in 0.013 s, not 0.032. Clearing takes one thread 0.1 s, to be spent beside other work.
+void clear_reserved_pages(File& file, std::uint64_t bytes, const std::atomic<bool>& stop);
 
 /// The first bytes of a file, whose space is reserved, so that no write finds the file system full. While it is there
 /// the pages that are written count as the process's memory; a process that truncates the file meanwhile ends this one

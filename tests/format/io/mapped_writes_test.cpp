@@ -1,6 +1,7 @@
 #include "format/io/mapped_writes.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <thread>
@@ -43,6 +44,36 @@ TEST(MappedWrites, AreTheFilesBytes_WhatLiesBehindTheMappingToo) {
   EXPECT_EQ(found == all, true);
   EXPECT_EQ(mapped->memory().size(), kMapped);
   EXPECT_EQ(std::ranges::equal(mapped->memory(), std::span(all).first(kMapped)), true);
+}
+
+long page_faults() {
+  rusage usage{};
+  ::getrusage(RUSAGE_THREAD, &usage);
+  return usage.ru_minflt;
+}
+
+TEST(MappedWrites, PagesThatAreClearedAreMappedManyAtATime) {
+  const auto files = make_posix_file_system();
+  if (!files->exists("/dev/shm") || !files->is_memory("/dev/shm")) GTEST_SKIP() << "/dev/shm is no memory file system";
+  const auto file = files->create_unnamed("/dev/shm");
+  constexpr std::uint64_t kBytes = std::uint64_t{8} << 20U;
+  const std::vector<std::byte> all = bytes_of(kBytes, 5);
+  const auto faults_of_writing = [&](bool cleared) {
+    file->clear();
+    file->preallocate(kBytes);
+    if (cleared) clear_reserved_pages(*file, kBytes, false);
+    const auto mapped = MappedWrites::of(*file, kBytes);
+    const long before = page_faults();
+    constexpr std::size_t kPiece = 70'000;
+    for (std::size_t at = 0; at < all.size(); at += kPiece) {
+      mapped->write_at(at, std::span(all).subspan(at, std::min(kPiece, all.size() - at)));
+    }
+    const long faults = page_faults() - before;
+    EXPECT_EQ(std::ranges::equal(mapped->memory(), all), true);
+    return faults;
+  };
+  const long one_by_one = faults_of_writing(false);
+  EXPECT_LT(faults_of_writing(true), one_by_one / 4);
 }
 
 TEST(MappedWrites, AreNotOfAFileWithoutADescriptor) {
