@@ -78,13 +78,15 @@ void say_axes(const SourceInfo& info, const Notice& notice) {
 // Takes the room of a file whose size is known beforehand, while its volume is surveyed. Not where somebody has to be
 // asked for the room, and not for so little that it is soon done.
 void reserve_ahead(OutputFiles& output, const ConversionOptions& options, const ConversionControl& control,
-                   const Box& domain) {
+                   VolumeSource& source) {
   constexpr std::uint64_t kLeastBytes = std::uint64_t{16} << 20U;
   const Budget::Kind kind = options.budget.kind;
   if (control.planned || !control.pads_file || (kind != Budget::Kind::size && kind != Budget::Kind::rate)) return;
-  const auto dense = static_cast<std::uint64_t>(domain.voxels()) * sizeof(float);
+  const auto dense = static_cast<std::uint64_t>(source.info().domain().voxels()) * sizeof(float);
   const std::uint64_t bytes = asked_bytes(options.budget, dense);
-  if (bytes >= kLeastBytes && bytes < dense) output.reserve_ahead(bytes);
+  if (bytes < kLeastBytes || bytes >= dense) return;
+  using Pages = OutputFiles::Pages;  // files of volumes on a device are mapped
+  output.reserve_ahead(bytes, source.resident() != nullptr ? Pages::cleared : Pages::as_they_are);
 }
 
 // What was surveyed by an earlier process does not count if its files are not as it wrote them.
@@ -147,7 +149,7 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
     using PagesOf = MemoryFileSystem::PagesOf;
     work.hold_records(reuses_pages(source, options) ? PagesOf::earlier_files : PagesOf::the_system);
   }
-  if (journal == nullptr && team.alone() && threads == workers.threads) reserve_ahead(output, options, control, domain);
+  if (journal == nullptr && team.alone() && threads == workers.threads) reserve_ahead(output, options, control, source);
   StreamOptions stream = stream_options(control);
   // Of use to the survey, whose blocks are smaller; where threads are few, one has to do for reading.
   if (threads == workers.threads) stream.buffer_bytes = 2 * memory.block_bytes;

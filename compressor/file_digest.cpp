@@ -2,6 +2,7 @@
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <vector>
@@ -13,7 +14,8 @@ namespace {
 template <typename Hash>
 void hash_pieces(std::vector<Digest>& pieces, const Share& own, std::uint64_t bytes, const DigestAdvanced& advanced,
                  const Hash& hash) {
-  const std::int64_t batch = advanced ? 32 : own.end - own.begin;  // pieces between two calls
+  // Pieces between two calls: enough to keep all threads at work.
+  const std::int64_t batch = advanced ? 2 * tbb::this_task_arena::max_concurrency() : own.end - own.begin;
   for (std::int64_t begin = own.begin; begin < own.end; begin += batch) {
     const std::int64_t end = std::min(begin + batch, own.end);
     tbb::parallel_for(static_cast<std::size_t>(begin), static_cast<std::size_t>(end),

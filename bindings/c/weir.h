@@ -259,8 +259,9 @@ typedef struct weir_push weir_push;
 
 /* Begins `output`. Strings of `volume` and `options` are copied, callbacks and `user` are used until the end; a
  * relative path stays what it is at this call. Values are kept in options->memory bytes and, where they do not fit,
- * compactly in the work directory. WEIR_ERROR_IO where another push, conversion or process is writing that output. The
- * caller frees *push by weir_push_free. */
+ * compactly in the work directory. WEIR_ERROR_IO where another push, conversion or process is writing that output. A
+ * child that is forked meanwhile shares the output's lock: if its parent is killed, the output stays locked until the
+ * child ends or calls exec. The caller frees *push by weir_push_free. */
 WEIR_API weir_status weir_push_begin(const weir_volume* volume, const weir_convert_options* options, const char* output,
                                      weir_push** push, weir_error* error);
 /* Takes planes z0 to z0 + nz - 1: `data` is voxel (0, 0, z0), `stride` as in weir_convert. The values may be changed

@@ -67,6 +67,12 @@ class MpiFile final : public File {
     team_.follow(alone);
     return alone;
   }
+  bool has_its_name() const override {
+    bool named = true;
+    team_.lead([&] { named = own_->has_its_name(); });
+    team_.follow(named);
+    return named;
+  }
   std::uint64_t size() override {
     MPI_Offset bytes = 0;
     const std::lock_guard lock(team_.calls());

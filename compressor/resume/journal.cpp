@@ -68,6 +68,17 @@ std::optional<Checkpoint> read_checkpoint(FileSystem& files, const std::string& 
   return parse_checkpoint(text);
 }
 
+// The spill files in `spills`, locked. Another host or container may convert to the same path, on a disk of its own,
+// with the same --work-dir: Error(io) where one of them is being written.
+std::vector<std::unique_ptr<File>> hold_spills(FileSystem& files, const std::string& spills) {
+  std::vector<std::unique_ptr<File>> held;
+  if (spills.empty()) return held;  // beside the output, whose lock the caller has
+  for (const std::string_view name : kSpills) {
+    if (const std::string path = in(spills, name); files.exists(path)) held.push_back(files.open(path));
+  }
+  return held;
+}
+
 // Whether the files that a checkpoint stands on are as it says.
 bool stands(FileSystem& files, const std::string& directory, const Checkpoint& checkpoint) {
   for (const auto& [name, bytes] : checkpoint.files) {
@@ -124,9 +135,32 @@ Journal::Journal(FileSystem& files, const std::string& output, ConversionIdentit
   identity = as_saved(std::move(identity));
   adopt(output, identity);
   files_.make_directory(directory_);
-  if (!spill_directory_.empty()) files_.make_directory(spill_directory_);
+  if (!spill_directory_.empty()) {
+    files_.make_directory(spill_directory_);
+    hold_spill_directory();
+  }
   state.identity = std::move(identity);
   state.spill_directory = spill_directory_;
+}
+
+// Whoever else comes there finds its files locked from here on.
+void Journal::hold_spill_directory() {
+  try {
+    open("rows");
+  } catch (const Error&) {
+    remove_if_empty(files_, directory_);
+    throw;
+  }
+}
+
+// Those files stay open, and locked.
+bool Journal::adopts(const Checkpoint& found) {
+  for (const auto& [name, bytes] : found.files) {
+    if (files_.exists(path_of(name)) && open(name)->size() == bytes) continue;
+    open_.clear();
+    return false;
+  }
+  return true;
 }
 
 void Journal::adopt(const std::string& output, const ConversionIdentity& identity) {
@@ -140,7 +174,7 @@ void Journal::adopt(const std::string& output, const ConversionIdentity& identit
     } else if (found->spill_directory != spill_directory_) {
       reason = cat("its spill files were in ", spills_text(found->spill_directory), ", now they go to ",
                    spills_text(spill_directory_));
-    } else if (!stands(files_, directory_, *found)) {
+    } else if (!adopts(*found)) {
       reason = "files that its journal names are missing or shorter";
     } else {
       state = std::move(*found);
@@ -149,6 +183,7 @@ void Journal::adopt(const std::string& output, const ConversionIdentity& identit
     }
   }
   remove_leftovers(files_, output);
+  const auto held = hold_spills(files_, spill_directory_);
   remove_all(files_, directory_, spill_directory_);
   if (!reason.empty()) say_not_continued(reason);
 }
@@ -268,13 +303,13 @@ void Journal::discard() noexcept {
   } catch (const std::exception&) {
     // Not needed any more.
   }
-  open_.clear();
   saved_.clear();
   try {
     remove_all(files_, directory_, spill_directory_);
   } catch (const Error&) {
     // The result counts, or the failure that led here; the next conversion of this output removes what is left.
   }
+  open_.clear();  // not before: who found them free might begin there
   if (!spill_directory_.empty()) remove_if_empty(files_, spill_directory_);
   remove_if_empty(files_, directory_);
 }
@@ -296,7 +331,9 @@ bool remove_leftovers(FileSystem& files, const std::string& output) {
     const std::optional<Checkpoint> found = read_checkpoint(files, path);
     if (found && has_own_spills(*found, output)) spills = found->spill_directory;
   }
+  auto held = hold_spills(files, spills);
   const bool any = remove_all(files, directory, spills);
+  held.clear();
   if (!spills.empty()) remove_if_empty(files, spills);
   return any;
 }

@@ -41,7 +41,8 @@ struct JournalOptions {
 class Journal {
  public:
   /// Takes up what an interrupted conversion of that identity left at `output`, in `state`. What another one left, or
-  /// what is not whole, is removed, with a notice.
+  /// what is not whole, is removed, with a notice. Throws Error(io) where another host or container, whose output has
+  /// the same path, has spill files in the same work directory: they stay.
   Journal(FileSystem& files, const std::string& output, ConversionIdentity identity, JournalOptions options);
   /// Removes everything that no saved checkpoint depends on.
   ~Journal();
@@ -83,6 +84,8 @@ class Journal {
 
   void say_not_continued(const std::string& reason);
   void adopt(const std::string& output, const ConversionIdentity& identity);
+  bool adopts(const Checkpoint& found);
+  void hold_spill_directory();
   void write(const std::vector<std::shared_ptr<File>>& open, const std::string& text);
   void wait();
 
@@ -103,7 +106,7 @@ class Journal {
 std::optional<Checkpoint> read_journal(FileSystem& files, const std::string& output);
 
 /// Removes whatever a conversion of `output` may have left to be continued; false where there is nothing. The caller
-/// holds the lock on the output.
+/// holds the lock on the output. Throws Error(io) where spill files of it are being written.
 bool remove_leftovers(FileSystem& files, const std::string& output);
 /// The notice that it was true of `output`.
 std::string leftovers_notice(const std::string& output);

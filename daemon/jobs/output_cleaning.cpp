@@ -143,6 +143,7 @@ class Cleaner {
         }
       }
       if (was_there) {
+        remove_early_sidecar(output.string(), *lock);
         remove(lock_path);
       } else {
         files->remove(lock_path);
@@ -204,16 +205,27 @@ class Cleaner {
     const fs::path record = fs::path(path).replace_extension();  // without .previous
     const std::string volume = fs::path(record).replace_extension().string();
     try {
-      if (is_missing(record) || belongs_back(*files, path.string(), record.string(), volume)) {
-        files->rename(path.string(), record.string());
-      } else if (is_missing(volume) || describes(*files, record.string(), volume)) {
-        remove(path);
-      } else {
-        leave(path, cat("may be the sidecar of ", volume, ", which cannot be told; compare it by weir verify"));
+      if (is_missing(record)) return files->rename(path.string(), record.string());
+      if (is_missing(volume)) return remove(path);
+      switch (find_own_sidecar(*files, path.string(), record.string(), volume)) {
+        case OwnSidecar::previous:
+          return files->rename(path.string(), record.string());
+        case OwnSidecar::in_place:
+          return remove(path);
+        case OwnSidecar::neither:
+          return leave(path,
+                       cat("may be the sidecar of ", volume, ", which cannot be told; compare it by weir verify"));
       }
     } catch (const Error& error) {
       leave(path, error.what());
     }
+  }
+
+  // Beside a volume that had none: once OUT.nvdb.partial is gone, it may be taken for that volume's.
+  void remove_early_sidecar(const std::string& output, File& partial) {
+    const std::string sidecar = cat(output, kSidecarEnding);
+    if (!files->exists(output) || !files->exists(sidecar) || files->exists(cat(output, kSidecarPreviousEnding))) return;
+    if (came_too_early(*files, sidecar, output, partial)) remove(sidecar);
   }
 
   void leave(const fs::path& path, const std::string& reason) {

@@ -17,8 +17,9 @@ struct CleaningReport {
 /// X.nvdb.json.partial, pictures that nobody writes any more (X.nvdb.png.partial) and work directories
 /// (.X.nvdb.work), but not one that a conversion can be continued from: of a source elsewhere than in `sources` as long
 /// as it is there (a user's, who will come back to it), of one in it until that source has gone or changed or the
-/// directory was not written to for seven days. X.nvdb.json.previous becomes X.nvdb.json again where that is missing.
-/// All that under the output's lock, X.nvdb.partial: one that a living process holds is waited for, `patience`
+/// directory was not written to for seven days. X.nvdb.json.previous becomes X.nvdb.json again where that is missing,
+/// or where a commit that was killed has put it beside the old volume (commit_leftovers.h); if that had none, it is
+/// removed. All that under the output's lock, X.nvdb.partial: one that a living process holds is waited for, `patience`
 /// altogether (the children of a daemon that was killed die a moment after it), and then that output is left alone.
 CleaningReport clean_outputs(const std::string& directory, const std::string& sources, bool recursive,
                              std::chrono::milliseconds patience);

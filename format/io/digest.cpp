@@ -82,4 +82,20 @@ std::span<const std::byte> file_piece(std::span<const std::byte> file, std::uint
   return file.subspan(begin, std::min<std::uint64_t>(kDigestPieceBytes, file.size() - begin));
 }
 
+Digest whole_digest(File& file) {
+  const std::uint64_t bytes = file.size();
+  std::vector<std::byte> scratch(kDigestScratchBytes);
+  DigestStream pieces;
+  for (std::uint64_t offset = 0; offset < bytes; offset += kDigestPieceBytes) {
+    pieces.update(piece_digest(file, offset, std::min(kDigestPieceBytes, bytes - offset), scratch));
+  }
+  return pieces.digest();
+}
+
+Digest whole_digest(std::span<const std::byte> file) {
+  DigestStream pieces;
+  for (std::uint64_t i = 0; i < piece_count(file.size()); ++i) pieces.update(piece_digest(file_piece(file, i)));
+  return pieces.digest();
+}
+
 }  // namespace weir

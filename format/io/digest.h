@@ -69,6 +69,11 @@ class DigestStream {
 /// DigestStream of all `pieces` at once.
 Digest combine(std::span<const Digest> pieces);
 
+/// The digest of a whole file, its pieces read one after the other.
+Digest whole_digest(File& file);
+/// The same of one in memory.
+Digest whole_digest(std::span<const std::byte> file);
+
 /// Number of pieces of a file of `bytes`.
 constexpr std::uint64_t piece_count(std::uint64_t bytes) {
   return bytes / kDigestPieceBytes + (bytes % kDigestPieceBytes != 0 ? 1 : 0);

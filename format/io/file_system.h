@@ -37,6 +37,8 @@ class File {
   /// Whether no other process writes it through a FileSystem: it is locked, or did not exist before. False for a file
   /// that existed before, on a file system without locks.
   virtual bool exclusive() const { return true; }
+  /// Whether its path still leads to it: nobody has removed or replaced it since. True where that cannot be told.
+  virtual bool has_its_name() const { return true; }
 };
 
 /// All paths are as the user wrote them. Thread-safe.
@@ -66,7 +68,7 @@ class FileSystem {
   virtual void sync_directory(const std::string& path) = 0;
   virtual bool exists(const std::string& path) = 0;
   /// Whether a rename to `path` would replace nothing but a regular file: `path` is missing or is one, symbolic links
-  /// followed.
+  /// followed. It replaces a link itself: what that leads to stays.
   virtual bool is_replaceable(const std::string&) { return true; }
   virtual bool is_memory(const std::string& directory) = 0;  ///< tmpfs or ramfs
   virtual std::uint64_t free_bytes(const std::string& directory) = 0;

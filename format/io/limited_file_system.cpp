@@ -26,6 +26,7 @@ class LimitedFile final : public File {
   int descriptor() const override { return file_->descriptor(); }
   std::span<const std::byte> memory() const override { return file_->memory(); }
   bool exclusive() const override { return file_->exclusive(); }
+  bool has_its_name() const override { return file_->has_its_name(); }
 
  private:
   std::unique_ptr<File> file_;

@@ -90,6 +90,20 @@ class PosixFile final : public File {
   bool exclusive() const override { return exclusive_; }
   void set_exclusive() { exclusive_ = true; }
 
+  bool has_its_name() const override {
+    struct stat mine {};
+    struct stat named {};
+    if (::fstat(descriptor_, &mine) != 0) {
+      if (errno == ESTALE) return false;  // another client of the file server has removed it
+      throw failed("look at", errno);
+    }
+    if (::lstat(path_.c_str(), &named) != 0) {
+      if (errno == ENOENT) return false;
+      throw failed("look at", errno);
+    }
+    return mine.st_ino == named.st_ino && mine.st_dev == named.st_dev;
+  }
+
  private:
   Error failed(const Message& action, int errno_value) const {
     return {ErrorKind::io, io_error(path_, action, errno_value).message(), SystemFailure{errno_value, place_}};
@@ -141,11 +155,10 @@ class PosixFileSystem final : public FileSystem {
       }
       // Between open and lock the writer before us may have renamed this very file to its result:
       // writing to it then would destroy that.
+      if (!file->has_its_name()) continue;
       struct stat mine {};
-      struct stat named {};
       if (::fstat(descriptor, &mine) != 0) throw io_error(path, "look at", errno);
       if (!S_ISREG(mine.st_mode)) refuse_foreign(path, "is no regular file");
-      if (::lstat(path.c_str(), &named) != 0 || mine.st_ino != named.st_ino || mine.st_dev != named.st_dev) continue;
       return file;
     }
   }

@@ -2,7 +2,10 @@
 
 #include <cerrno>
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <span>
+#include <utility>
 
 #include "format/base/error.h"
 #include "format/io/digest.h"
@@ -37,15 +40,11 @@ bool unless_foreign(const Check& check) {
   }
 }
 
-}  // namespace
-
-std::string commit_record(const std::string& sidecar_text) {
-  return piece_digest(std::as_bytes(std::span(sidecar_text))).hex();
-}
-
-bool describes(FileSystem& files, const std::string& sidecar, File& volume) {
-  return unless_foreign([&] {
-    const Sidecar::File record = parse_sidecar(text_at(files, sidecar), sidecar).file;
+// What `sidecar` records of its file, if that has the length and the head checksum of `volume`: so may another one.
+std::optional<Sidecar::File> head_described(FileSystem& files, const std::string& sidecar, File& volume) {
+  Sidecar::File record;
+  const bool agrees = unless_foreign([&] {
+    record = parse_sidecar(text_at(files, sidecar), sidecar).file;
     constexpr std::uint64_t kHeadBytes = nvdb::grid::kChecksum + sizeof(std::uint32_t);
     if (volume.size() != record.bytes || record.grid_offset > record.bytes) return false;
     if (record.bytes - record.grid_offset < kHeadBytes) return false;
@@ -53,15 +52,49 @@ bool describes(FileSystem& files, const std::string& sidecar, File& volume) {
     volume.read_at(record.grid_offset + nvdb::grid::kChecksum, std::as_writable_bytes(std::span(&checksum, 1)));
     return checksum == record.head_checksum;
   });
+  return agrees ? std::optional(std::move(record)) : std::nullopt;
+}
+
+}  // namespace
+
+std::string commit_record(const std::string& sidecar_text) {
+  return piece_digest(std::as_bytes(std::span(sidecar_text))).hex();
+}
+
+bool describes(FileSystem& files, const std::string& sidecar, File& volume) {
+  const std::optional<Sidecar::File> record = head_described(files, sidecar, volume);
+  return record && whole_digest(volume).hex() == record->digest;
 }
 
 bool describes(FileSystem& files, const std::string& sidecar, const std::string& volume) {
   return unless_foreign([&] { return describes(files, sidecar, *files.open_to_read(volume)); });
 }
 
+OwnSidecar find_own_sidecar(FileSystem& files, const std::string& previous, const std::string& sidecar,
+                            const std::string& volume) {
+  OwnSidecar own = OwnSidecar::neither;
+  unless_foreign([&] {
+    const std::unique_ptr<File> file = files.open_to_read(volume);
+    const std::optional<Sidecar::File> in_place = head_described(files, sidecar, *file);
+    const std::optional<Sidecar::File> before = head_described(files, previous, *file);
+    if (in_place) {
+      const std::string digest = whole_digest(*file).hex();
+      if (digest == in_place->digest) {
+        own = OwnSidecar::in_place;
+      } else if (before && digest == before->digest) {
+        own = OwnSidecar::previous;
+      }
+    } else if (before) {  // no need to read it: also a damaged volume gets back the sidecar that tells so
+      own = OwnSidecar::previous;
+    }
+    return true;
+  });
+  return own;
+}
+
 bool belongs_back(FileSystem& files, const std::string& previous, const std::string& sidecar,
                   const std::string& volume) {
-  return !describes(files, sidecar, volume) && describes(files, previous, volume);
+  return find_own_sidecar(files, previous, sidecar, volume) == OwnSidecar::previous;
 }
 
 bool placed_by_commit(FileSystem& files, const std::string& sidecar, File& partial) {
@@ -72,14 +105,19 @@ bool placed_by_commit(FileSystem& files, const std::string& sidecar, File& parti
   });
 }
 
+bool came_too_early(FileSystem& files, const std::string& sidecar, const std::string& volume, File& partial) {
+  return placed_by_commit(files, sidecar, partial) && !describes(files, sidecar, volume);
+}
+
 bool is_committed(FileSystem& files, const std::string& output) {
   const std::string partial = partial_path(output);
+  const std::string sidecar = sidecar_path(output);
   if (!files.exists(output)) return false;
   try {
-    const std::string record = commit_record(text_at(files, sidecar_path(output)));
+    const std::string record = commit_record(text_at(files, sidecar));
     // Read before it is locked, which would make it where it is missing.
     if (text_at(files, partial) != record) return false;
-    return text_of(*files.open(partial)) == record;
+    return text_of(*files.open(partial)) == record && describes(files, sidecar, output);
   } catch (const Error&) {
     return false;
   }

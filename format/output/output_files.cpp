@@ -10,6 +10,7 @@
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "format/io/mapped_writes.h"
 #include "format/io/output_names.h"
 #include "format/output/commit_leftovers.h"
 #include "format/output/output_place.h"
@@ -55,18 +56,22 @@ void OutputFiles::settle(bool left_over) {
     files_.create(partial);  // refuses what is somebody's, now and not when the work is done
     files_.remove(partial);
   }
-  if (overwrite_) return restore_previous();
+  if (overwrite_) return restore_previous(left_over);
   if (!files_.exists(sidecar_)) return;
   refuse_existing(path_);
   if (!left_over || !placed_by_commit(files_, sidecar_, *partial_)) refuse_existing(sidecar_);
   files_.remove(sidecar_);
 }
 
-// The old volume's own sidecar: the one that lies beside it would be taken for it by the next commit.
-void OutputFiles::restore_previous() {
-  const std::string previous = previous_path(sidecar_);
-  if (!files_.exists(previous) || !files_.exists(path_)) return;
-  if (belongs_back(files_, previous, sidecar_, path_)) files_.rename(previous, sidecar_);
+// The old volume's own sidecar, or none where it had none: the one that lies beside it would be taken for it by the
+// next commit.
+void OutputFiles::restore_previous(bool left_over) {
+  if (!files_.exists(path_)) return;
+  if (const std::string previous = previous_path(sidecar_); files_.exists(previous)) {
+    if (belongs_back(files_, previous, sidecar_, path_)) files_.rename(previous, sidecar_);
+  } else if (left_over && files_.exists(sidecar_) && came_too_early(files_, sidecar_, path_, *partial_)) {
+    files_.remove(sidecar_);
+  }
 }
 
 // By a second name, which takes nothing; where there are none, by a copy.
@@ -86,6 +91,11 @@ void OutputFiles::keep_previous(const std::string& previous) {
   }
 }
 
+void OutputFiles::require_names() const {
+  require_named(*partial_);
+  if (volume_) require_named(*volume_);
+}
+
 void OutputFiles::refuse_existing(const std::string& path) {
   if (!files_.exists(path)) return;
   throw Error(ErrorKind::usage, compose(path, ": exists; choose another output or pass ", option("overwrite")));
@@ -93,11 +103,14 @@ void OutputFiles::refuse_existing(const std::string& path) {
 
 void OutputFiles::write_to(std::shared_ptr<File> file) { volume_ = std::move(file); }
 
-void OutputFiles::reserve_ahead(std::uint64_t bytes) {
+void OutputFiles::reserve_ahead(std::uint64_t bytes, Pages pages) {
   ahead_bytes_ = bytes;
-  const auto preallocate = [&file = volume(), bytes] {
+  const bool clears = pages == Pages::cleared && in_memory();
+  const auto preallocate = [this, &file = volume(), bytes, clears] {
     try {
-      return file.preallocate(bytes);
+      if (!file.preallocate(bytes)) return false;
+      if (clears) clear_reserved_pages(file, bytes, enough_ahead_);
+      return true;
     } catch (const Error&) {
       return false;
     }
@@ -111,6 +124,7 @@ void OutputFiles::reserve_ahead(std::uint64_t bytes) {
 
 void OutputFiles::clear_for(std::uint64_t bytes) {
   reserved_.reset();
+  enough_ahead_ = true;
   if (ahead_.valid() && ahead_.get() && ahead_bytes_ == bytes) {
     reserved_ = bytes;
     return;
@@ -124,14 +138,21 @@ OutputFiles::~OutputFiles() {
     static_cast<void>(std::make_unique<std::future<bool>>(std::move(ahead_)).release());
     return;
   }
+  enough_ahead_ = true;
   if (ahead_.valid()) ahead_.wait();
-  if (committed_) {
-    // The lock of a volume in another place: gone only now that what the volume was made from is.
-    if (volume_) remove_quietly(partial_path(path_));
-    return;
-  }
+  if (committed_ && !volume_) return;
+  if (!holds_lock()) return;  // what has these names is another process's
+  // Of a volume in another place: gone only now that what the volume was made from is.
   remove_quietly(partial_path(path_));
-  remove_quietly(partial_path(sidecar_));
+  if (!committed_) remove_quietly(partial_path(sidecar_));
+}
+
+bool OutputFiles::holds_lock() const noexcept {
+  try {
+    return partial_->has_its_name();
+  } catch (const Error&) {
+    return false;
+  }
 }
 
 void OutputFiles::remove_quietly(const std::string& path) noexcept {
@@ -147,15 +168,17 @@ void OutputFiles::remove_quietly(const std::string& path) noexcept {
 //                                       holds the digest of the sidecar to be
 //   2. sidecar.partial written, flushed the same
 //   3. old sidecar linked to .previous  the same, and a second name of the old sidecar, or a copy of it
-//   4. sidecar renamed into place       new sidecar beside no volume or the old one: its size and head
-//                                       checksum do not agree, so `verify` and the daemon see "not done"; no
-//                                       volume beside OUT.nvdb.partial, which agrees with the sidecar: the next
-//                                       conversion replaces it. The next --overwrite of the old volume puts
-//                                       its own sidecar back first
+//   4. sidecar renamed into place       new sidecar beside no volume or the old one, whose size and head checksum may
+//                                       be the same: beside .previous or OUT.nvdb.partial all readers compare the
+//                                       digest of the volume's bytes, and see "not done"; no volume beside
+//                                       OUT.nvdb.partial, which agrees with the sidecar: the next conversion
+//                                       replaces it. The next --overwrite of the old volume puts its own sidecar
+//                                       back first
 //   5. volume renamed into place        the new pair
 //   6. .previous removed                the new pair alone
 //   7. directory flushed                the new pair, durable
-// A failure before step 5 has done its work puts the old sidecar back, or removes the new one.
+// A failure before step 5 has done its work puts the old sidecar back, or removes the new one. Steps 2 and 4 begin with
+// a look at whether the lock and the volume have their names still.
 void OutputFiles::commit(const std::string& sidecar_text) {
   const std::string volume_partial = volume().path();
   const std::string sidecar_partial = partial_path(sidecar_);
@@ -166,6 +189,7 @@ void OutputFiles::commit(const std::string& sidecar_text) {
     partial_->write_at(0, std::as_bytes(std::span(record)));
     partial_->sync();
   }
+  require_names();
   {
     const std::unique_ptr<File> file = files_.create(sidecar_partial);  // 2
     file->write_at(0, std::as_bytes(std::span(sidecar_text)));
@@ -175,6 +199,7 @@ void OutputFiles::commit(const std::string& sidecar_text) {
   if (replaces) keep_previous(previous);  // 3
   bool sidecar_placed = false;
   try {
+    require_names();
     if (overwrite_) {
       files_.rename(sidecar_partial, sidecar_);  // 4
       sidecar_placed = true;

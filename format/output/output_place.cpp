@@ -63,6 +63,14 @@ void require_alone(const File& partial) {
                                  "remove it if there is none"));
 }
 
+void require_named(const File& written) {
+  if (written.has_its_name()) return;
+  throw Error(
+      ErrorKind::io,
+      cat(written.path(), ": was removed or replaced while it was written; let nobody remove it, and try again"),
+      SystemFailure{ENOENT, written.path()});
+}
+
 void place_new(FileSystem& files, const std::string& written, const std::string& path) {
   try {
     files.rename_new(written, path);

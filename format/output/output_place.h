@@ -20,6 +20,10 @@ void require_volume_name(const std::string& path);
 /// Throws Error(io) where `partial`, PATH.partial, was there before and may have a writer that no lock tells of.
 void require_alone(const File& partial);
 
+/// Throws Error(io) where `written` has lost its name while it was written: a rename of that name would give the output
+/// whatever another process has there.
+void require_named(const File& written);
+
 /// FileSystem::rename_new of what was written to the name `path`; Error(io) of EEXIST with a remedy where something has
 /// got that name meanwhile.
 void place_new(FileSystem& files, const std::string& written, const std::string& path);

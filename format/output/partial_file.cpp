@@ -24,7 +24,7 @@ PartialFile::PartialFile(FileSystem& files, const std::string& path, bool overwr
 PartialFile::~PartialFile() {
   if (committed_ || owner_ != ::getpid()) return;
   try {
-    files_.remove(partial_path(path_));
+    if (file_->has_its_name()) files_.remove(partial_path(path_));
   } catch (const Error&) {
     // The failure that led here is the one to report.
   }
@@ -39,6 +39,7 @@ void PartialFile::reserve(std::uint64_t bytes) {
 void PartialFile::commit() {
   const std::string partial = partial_path(path_);
   file_->sync();  // 1
+  require_named(*file_);
   if (overwrite_) {
     files_.rename(partial, path_);  // 2
   } else {

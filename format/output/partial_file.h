@@ -17,7 +17,7 @@ class PartialFile {
   /// file or has too long a name, Error(io) where its directory is missing or not writable or another process writes
   /// it. `files` must outlive the object.
   PartialFile(FileSystem& files, const std::string& path, bool overwrite);
-  /// Removes what was not committed; in a process that was forked since, nothing.
+  /// Removes what was not committed, if that has its name still; in a process that was forked since, nothing.
   ~PartialFile();
   PartialFile(const PartialFile&) = delete;
   PartialFile& operator=(const PartialFile&) = delete;
@@ -28,7 +28,7 @@ class PartialFile {
   void reserve(std::uint64_t bytes);
   File& file() { return *file_; }
   /// Flushes the file, renames it into place (1, 2) and flushes the directory (3). A crash before 2 is
-  /// done leaves what was there before.
+  /// done leaves what was there before. Throws Error(io), besides, where PATH.partial was removed or replaced.
   void commit();
 
  private:

@@ -7,9 +7,9 @@
 
 namespace weir {
 
-/// By the file's length and the checksum of its head.
-inline bool is_of(const Sidecar& sidecar, const NvdbGrid& grid) {
-  return sidecar.file.bytes == grid.bytes().size() && sidecar.file.head_checksum == grid.head_checksum();
-}
+/// By the file's length and the checksum of its head. Volumes of equal range and topology may have equal ones: where
+/// OUT.nvdb.json.previous or OUT.nvdb.partial lies beside the file, as a commit that was killed leaves them, also by
+/// the digest of all its bytes, which are read for it.
+bool is_of(const Sidecar& sidecar, const NvdbGrid& grid);
 
 }  // namespace weir

@@ -37,6 +37,7 @@ class FaultyFile final : public File {
   int descriptor() const override { return real_->descriptor(); }
   std::span<const std::byte> memory() const override { return real_->memory(); }
   bool exclusive() const override { return real_->exclusive(); }
+  bool has_its_name() const override { return real_->has_its_name(); }
 
  private:
   FaultyFileSystem& files_;

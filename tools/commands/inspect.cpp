@@ -74,7 +74,7 @@ struct InspectArguments {
 struct Inspection {
   const NvdbGrid& grid;
   std::optional<Sidecar> sidecar;
-  bool sidecar_matches = false;          ///< size and head checksum are those of the volume
+  bool sidecar_matches = false;          ///< size, head checksum and digest (is_of.h) are the volume's
   std::optional<Error> sidecar_error{};  ///< why that which is there cannot be read; none: it can, or there is none
   Sidecar::Histogram histogram;
   std::optional<PackedCensus> packed;  ///< where the grid is packed
@@ -227,7 +227,7 @@ void print_text(const NvdbFile& file, const Inspection& found) {
   } else if (!found.sidecar) {
     std::cout << "sidecar     none\n";
   } else if (!found.sidecar_matches) {
-    std::cout << "sidecar     belongs to another volume (size or head checksum differ)\n";
+    std::cout << "sidecar     belongs to another volume (size, head checksum or digest differ)\n";
   } else {
     print_sidecar(*found.sidecar);
   }

@@ -52,7 +52,10 @@ std::string options_page() {
       "names are told apart by `{stem}`. In a directory's name the words are\nrefused.\n"
       "\n`--overwrite` is of results: without it an existing one is refused, but `weir play` replaces its frames. What "
       "a command writes\nbesides is replaced: the chart or table of `weir compare --spectrum`, the chart of `weir "
-      "inspect --plot`, and a trace; `--trace`\nrefuses any other file.\n");
+      "inspect --plot`, and a trace; `--trace`\nrefuses any other file.\n"
+      "\nIf the output is a symbolic link, `--overwrite` replaces the link itself. The file that it leads to stays as "
+      "it "
+      "was; to replace\nthat, give its own path.\n");
 }
 
 }  // namespace weir

@@ -1,5 +1,5 @@
 // What a conversion finds at the path of its output, for `weir convert --skip-done`. Two small reads and one of the
-// volume's nodes; values are read by `weir verify` only.
+// volume's nodes; values are read only beside what a killed commit left.
 #pragma once
 
 #include <optional>
@@ -27,8 +27,8 @@ struct FinishedOutput {
 /// At options.output; options.provenance has those of the command line, as given_options says them, and the ones that
 /// do not change the volume's bytes (memory, threads, places) need not agree. Done means: the sidecar names the same
 /// source, by its real path where it has that, dataset, size, modification time and states of its files, the same
-/// options, however they were written, and a scene that said the same, and the volume has the size and the head
-/// checksum that the sidecar says. Throws nothing for what stands there.
+/// options, however they were written, and a scene that said the same, and the volume is the sidecar's
+/// (is_of.h). Throws nothing for what stands there.
 FinishedOutput find_output(const SourceInfo& source, const ConversionOptions& options);
 
 /// Throws Error(usage) where `output` is the input itself, or a directory.

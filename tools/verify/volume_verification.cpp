@@ -1,6 +1,7 @@
 #include "tools/verify/volume_verification.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -9,6 +10,8 @@
 #include "compressor/file_digest.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "format/io/output_names.h"
+#include "format/io/real_path.h"
 #include "format/nanovdb/nvdb_file.h"
 #include "format/sidecar/find_sidecar.h"
 #include "format/sidecar/read_sidecar.h"
@@ -24,28 +27,70 @@ void stop_if_cancelled(const VerificationWatch& watch) {
   if (watch.cancel != nullptr && *watch.cancel) throw Error(ErrorKind::interrupted, "interrupted");
 }
 
-std::string watched_digest(std::span<const std::byte> file, const VerificationWatch& watch) {
-  if (watch.pass_started) watch.pass_started("digest", file.size());
-  const TraceSpan pass(watch.trace, "digest", file.size());
-  const Digest digest = digest_of_mapping(file, watch.trace, [&](std::uint64_t done) {
+// Has pages of a file released as a pass over it goes on: mapped ones count as the process's memory.
+class PageRelease {
+ public:
+  explicit PageRelease(const FileMapping& mapping) : mapping_(mapping) {}
+  ~PageRelease() { mapping_.release_pages(); }
+  PageRelease(const PageRelease&) = delete;
+  PageRelease& operator=(const PageRelease&) = delete;
+
+  // So many bytes of the pass are done.
+  void advanced(std::uint64_t done) {
+    constexpr std::uint64_t kMostPages = std::uint64_t{32} << 20U;
+    if (done < released_ + kMostPages) return;
+    released_ = done;
+    mapping_.release_pages();
+  }
+
+ private:
+  const FileMapping& mapping_;
+  std::uint64_t released_ = 0;
+};
+
+std::string watched_digest(const FileMapping& file, const VerificationWatch& watch) {
+  const std::uint64_t bytes = file.bytes().size();
+  if (watch.pass_started) watch.pass_started("digest", bytes);
+  const TraceSpan pass(watch.trace, "digest", bytes);
+  PageRelease pages(file);
+  const Digest digest = digest_of_mapping(file.bytes(), watch.trace, [&](std::uint64_t done) {
+    pages.advanced(done);
     if (watch.pass_advanced) watch.pass_advanced(done);
     stop_if_cancelled(watch);
   });
   return digest.hex();
 }
 
-TreeCensus watched_census(const NvdbGrid& grid, const VerificationWatch& watch) {
+TreeCensus watched_census(const NvdbGrid& grid, const FileMapping& file, const VerificationWatch& watch) {
+  PageRelease pages(file);
   const auto leaves = static_cast<double>(std::max<std::uint64_t>(census_blocks(grid), 1));
   const auto bytes = static_cast<double>(grid.data_bytes());
   if (watch.pass_started) watch.pass_started("leaves", grid.data_bytes());
   const TraceSpan pass(watch.trace, "leaves", grid.data_bytes());
   const auto progress = [&](std::uint64_t done) {
-    if (watch.pass_advanced) {
-      watch.pass_advanced(static_cast<std::uint64_t>(bytes * static_cast<double>(done) / leaves));
-    }
+    const auto done_bytes = static_cast<std::uint64_t>(bytes * static_cast<double>(done) / leaves);
+    pages.advanced(done_bytes);
+    if (watch.pass_advanced) watch.pass_advanced(done_bytes);
     stop_if_cancelled(watch);
   };
   return take_census(grid, progress, watch.trace);
+}
+
+// A commit of --overwrite that was killed leaves the new sidecar beside the old volume, and the volume's own one too.
+std::optional<VolumeCheck> find_killed_overwrite(const std::string& path, const std::string& digest,
+                                                 const Sidecar& sidecar) {
+  const std::string in_place = find_sidecar(path);
+  const std::string previous = previous_path(in_place);
+  if (sidecar.file.digest == digest || !is_there(previous)) return std::nullopt;
+  try {
+    if (read_sidecar(previous).file.digest != digest) return std::nullopt;
+  } catch (const Error&) {
+    return std::nullopt;  // the other checks say what is wrong
+  }
+  return VolumeCheck{"sidecar",
+                     cat(previous, ": is the sidecar of ", path,
+                         ": an --overwrite was killed before it replaced the volume; rename it to ", in_place),
+                     "", false};
 }
 
 // Failures that end the verification early become a check like any other.
@@ -73,12 +118,13 @@ std::vector<VolumeCheck> verify_volume(const std::string& path, const Verificati
   if (!file) return checks;  // of what is no volume a sidecar says nothing
   const auto sidecar = checked("sidecar", checks, [&] { return read_sidecar(find_sidecar(path)); });
   const NvdbGrid& grid = (*file)->grid();
-  const auto census = checked("structure", checks, [&] { return watched_census(grid, watch); });
+  const auto census = checked("structure", checks, [&] { return watched_census(grid, (*file)->mapping(), watch); });
   if (!census) return checks;
   checks.push_back({"structure", "valid", "a valid NanoVDB file", true});
   for (VolumeCheck& check : check_structure(grid, *census)) checks.push_back(std::move(check));
   if (!sidecar) return checks;
-  const std::string digest = watched_digest(grid.bytes(), watch);
+  const std::string digest = watched_digest((*file)->mapping(), watch);
+  if (auto killed = find_killed_overwrite(path, digest, *sidecar)) checks.push_back(*std::move(killed));
   for (VolumeCheck& check : check_sidecar(grid, *census, digest, *sidecar)) checks.push_back(std::move(check));
   for (VolumeCheck& check : check_certificate(*sidecar)) checks.push_back(std::move(check));
   for (VolumeCheck& check : check_lossless(*census, grid.background(), *sidecar)) checks.push_back(std::move(check));

@@ -203,6 +203,60 @@ TEST(Journal, MovedOutput_KeepsTheSpillFilesOfANewOneAtItsOldPath) {
   EXPECT_TRUE(read_journal(*files, directory / "a/o.nvdb"));
 }
 
+// Two hosts with disks of their own and one work directory for both.
+TEST(Journal, WorkDirectoryWhereAnotherHostConvertsToTheSamePath_IsRefusedAndItsFilesStay) {
+  const TemporaryDirectory directory;
+  const auto files = make_posix_file_system();
+  namespace fs = std::filesystem;
+  fs::create_directory(directory / "a");
+  fs::create_directory(directory / "scratch");
+  const std::string output = directory / "a/o.nvdb";
+  const JournalOptions scratch{directory / "scratch", 0, nullptr, nullptr, {}};
+  for (const bool begun : {false, true}) {
+    Journal one(*files, output, kIdentity, scratch);
+    if (begun) {
+      begin_survey(one);
+      one.save();
+    }
+    const std::string rows = one.path_of("rows");
+    fs::rename(directory / "a", directory / "disk of the first host");
+    fs::create_directory(directory / "a");
+    try {
+      const Journal two(*files, output, kIdentity, scratch);
+      ADD_FAILURE() << begun;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::io);
+      EXPECT_EQ(error.what(),
+                rows + ": is being written by another process or conversion; wait for it or choose another output");
+    }
+    EXPECT_EQ(fs::file_size(rows), begun ? 10U : 0U);
+    EXPECT_TRUE(fs::is_empty(directory / "a"));
+    fs::remove(directory / "a");
+    fs::rename(directory / "disk of the first host", directory / "a");
+    one.discard();
+  }
+  EXPECT_TRUE(fs::is_empty(directory / "scratch"));
+  EXPECT_FALSE(Journal(*files, output, kIdentity, scratch).resumable()) << "free again";
+}
+
+TEST(Journal, ContinuedConversion_HoldsItsSpillFilesFromTheStart) {
+  const TemporaryDirectory directory;
+  const auto files = make_posix_file_system();
+  std::filesystem::create_directory(directory / "scratch");
+  const JournalOptions scratch{directory / "scratch", 0, nullptr, nullptr, {}};
+  {
+    Journal journal(*files, directory / "o.nvdb", kIdentity, scratch);
+    begin_survey(journal);
+    journal.open("faces")->preallocate(20);
+    journal.save();
+  }
+  const Journal journal(*files, directory / "o.nvdb", kIdentity, scratch);
+  EXPECT_TRUE(journal.resumable());
+  for (const char* name : {"rows", "faces"}) EXPECT_THROW(files->open(journal.path_of(name)), Error) << name;
+  EXPECT_THROW(remove_leftovers(*files, directory / "o.nvdb"), Error);
+  EXPECT_TRUE(std::filesystem::exists(directory / ".o.nvdb.work/journal"));
+}
+
 TEST(Journal, RemovesLeftoversOnceAndSaysWhetherThereWereAny) {
   CrashFileSystem files;
   {

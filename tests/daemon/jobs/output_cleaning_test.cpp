@@ -23,6 +23,7 @@
 #include "format/io/descriptor.h"
 #include "format/io/file_system.h"
 #include "tests/support/child_answer.h"
+#include "tests/support/killed_overwrite.h"
 #include "tests/support/run_command.h"
 
 namespace weir::output_cleaning_test {
@@ -123,6 +124,28 @@ TEST(OutputCleaning, KillBetweenTheRenames_TheOldVolumeGetsItsSidecarBack) {
                                    directory / "out.nvdb", ", which cannot be told; compare it by weir verify")});
   EXPECT_EQ(read_file(directory / "out.nvdb.json"), old);
   EXPECT_EQ(read_file(directory / "out.nvdb.json.previous"), old);
+}
+
+// Also where size and head checksum of both volumes are the same.
+TEST(OutputCleaning, KillBetweenTheRenames_OfVolumesWithEqualHeads_ThePairsAreRestored) {
+  const TemporaryDirectory directory;
+  const KilledOverwrite killed(directory);
+  EXPECT_EQ(clean(directory).left, Names{});
+  EXPECT_EQ(read_file(killed.output), killed.old_volume);
+  EXPECT_EQ(read_file(killed.sidecar), killed.old_sidecar);
+  const Names pair{"noise_64x64x64_uint8.raw", "out.nvdb", "out.nvdb.json"};
+  EXPECT_EQ(list_directory(directory.path()), pair);
+  // Killed a moment later.
+  write_file(killed.output, killed.new_volume);
+  write_file(killed.sidecar, killed.new_sidecar);
+  write_file(killed.previous, killed.old_sidecar);
+  EXPECT_EQ(clean(directory).removed, Names{killed.previous});
+  EXPECT_EQ(read_file(killed.sidecar), killed.new_sidecar);
+  // The old volume had no sidecar.
+  write_file(killed.output, killed.old_volume);
+  write_file(killed.partial, killed.new_volume);
+  EXPECT_EQ(clean(directory).removed, (Names{killed.sidecar, killed.partial}));
+  EXPECT_EQ(read_file(killed.output), killed.old_volume);
 }
 
 // A reader that has the sidecar open and locked must not make it look like another volume's.

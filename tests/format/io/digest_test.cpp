@@ -5,6 +5,7 @@
 #include <array>
 #include <vector>
 
+#include "format/io/memory_file_system.h"
 #include "tests/support/temporary_directory.h"
 
 namespace weir::digest_test {
@@ -59,6 +60,18 @@ TEST(Digest, FilesHavePiecesOf16MiB) {
   EXPECT_EQ(piece_count(1), 1U);
   EXPECT_EQ(piece_count(kDigestPieceBytes), 1U);
   EXPECT_EQ(piece_count(kDigestPieceBytes + 1), 2U);
+}
+
+TEST(Digest, OfAWholeFile_CombinesThoseOfItsPieces) {
+  const std::vector<std::byte> bytes(kDigestPieceBytes + 5, std::byte{3});
+  const std::span<const std::byte> all(bytes);
+  const std::array<Digest, 2> pieces{piece_digest(all.first(kDigestPieceBytes)), piece_digest(all.last(5))};
+  MemoryFileSystem files;
+  const auto file = files.create("a");
+  EXPECT_EQ(whole_digest(*file), piece_digest({})) << "an empty one";
+  file->write_at(0, all);
+  EXPECT_EQ(whole_digest(*file), combine(pieces));
+  EXPECT_EQ(whole_digest(all), combine(pieces));
 }
 
 }  // namespace

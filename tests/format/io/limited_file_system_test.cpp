@@ -29,6 +29,9 @@ TEST(LimitedFileSystem, ReadsAndWritesAreThrottledAndBytesUnchanged) {
   named->read_at(0, back);
   EXPECT_EQ(now, start + 1100ms);
   EXPECT_EQ(back, bytes);
+  EXPECT_TRUE(named->has_its_name());
+  files->remove(directory / "a");
+  EXPECT_FALSE(named->has_its_name());
   const auto unnamed = files->create_unnamed(directory.path().string());
   unnamed->write_at(0, bytes);
   EXPECT_EQ(now, start + 1700ms);

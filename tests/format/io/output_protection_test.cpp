@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "format/base/error.h"
+#include "format/io/digest.h"
 #include "format/output/commit_leftovers.h"
 #include "format/output/output_files.h"
 #include "format/output/partial_file.h"
@@ -48,6 +49,7 @@ class OutputProtection : public ::testing::Test {
     sidecar.source.path = source;
     sidecar.file.bytes = volume.size();
     std::memcpy(&sidecar.file.head_checksum, volume.data() + 8, 4);
+    sidecar.file.digest = whole_digest(std::as_bytes(std::span(volume))).hex();
     return to_json_text(sidecar);
   }
 
@@ -141,6 +143,7 @@ TEST_F(OutputProtection, WhatIsNoRegularFile_IsNotReplaced) {
   refused(output() + ".json");
 }
 
+// As docs/options.md says.
 TEST_F(OutputProtection, LinkToARegularFile_IsReplacedAndItsTargetStays) {
   put("target", "old");
   fs::create_symlink("target", output());

@@ -29,6 +29,20 @@ Error error_of(const std::function<void()>& call) {
   return {ErrorKind::internal, "no error"};
 }
 
+TEST(PosixFileSystem, FileThatIsRemovedOrReplaced_HasNotItsNameAnyMore) {
+  const TemporaryDirectory directory;
+  const auto files = make_posix_file_system();
+  const auto file = files->create(directory / "a");
+  EXPECT_TRUE(file->has_its_name());
+  files->rename(directory / "a", directory / "b");
+  EXPECT_FALSE(file->has_its_name()) << "missing";
+  const auto other = files->create(directory / "a");
+  EXPECT_FALSE(file->has_its_name()) << "another file";
+  EXPECT_TRUE(other->has_its_name());
+  files->rename(directory / "b", directory / "a");
+  EXPECT_TRUE(file->has_its_name()) << "it is back";
+}
+
 // Whoever asks for the room there needs a directory that exists, and people need to know which file it was.
 TEST(PosixFileSystem, FileWithoutAName_FailsWithItsDirectoryAsThePath) {
   const TemporaryDirectory directory;

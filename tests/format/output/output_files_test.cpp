@@ -230,6 +230,45 @@ TEST_F(OutputFilesTest, SidecarThatAppearedBeforeTheCommit_IsKeptAndNamed) {
   EXPECT_EQ(listing().count("out.nvdb"), 0U);
 }
 
+// Removed by somebody who took it for a leftover, and made anew by the next conversion, which has its own lock.
+TEST_F(OutputFilesTest, PartialThatAnotherProcessMadeAnew_IsNeitherRenamedNorRemoved) {
+  const Listing anothers{{"out.nvdb.partial", "another's half"}};
+  for (const bool overwrite : {false, true}) {
+    for (const bool in_another_place : {false, true}) {
+      {
+        OutputFiles output_files(*real_, output(), overwrite);
+        if (in_another_place) output_files.write_to(real_->create(directory_ / "volume"));
+        output_files.volume().write_at(0, std::as_bytes(std::span("volume", 6)));
+        std::filesystem::remove(output() + ".partial");
+        put("out.nvdb.partial", "another's half");
+        EXPECT_EQ(message_of_error(ErrorKind::io, [&] { output_files.commit("sidecar"); }),
+                  output() +
+                      ".partial: was removed or replaced while it was written; let nobody remove it, and try "
+                      "again");
+        EXPECT_FALSE(output_files.committed());
+      }
+      std::filesystem::remove(directory_ / "volume");  // its owner's to remove
+      EXPECT_EQ(listing(), anothers);
+      std::filesystem::remove(output() + ".partial");
+    }
+  }
+}
+
+TEST_F(OutputFilesTest, VolumeThatWasRemovedMeanwhile_IsReportedAndLeavesTheOldPair) {
+  const Listing old{{"out.nvdb", "old"}, {"out.nvdb.json", "old sidecar"}};
+  for (const auto& [name, text] : old) put(name, text);
+  {
+    OutputFiles output_files(*real_, output(), true);
+    output_files.write_to(real_->create(directory_ / "volume"));
+    std::filesystem::remove(directory_ / "volume");
+    EXPECT_EQ(message_of_error(ErrorKind::io, [&] { output_files.commit("sidecar"); }),
+              directory_ / "volume" +
+                  ": was removed or replaced while it was written; let nobody remove it, and try "
+                  "again");
+  }
+  EXPECT_EQ(listing(), old);
+}
+
 // As where a program in Python forks a pool while it pushes.
 TEST_F(OutputFilesTest, ForkedChildThatDestroysIt_RemovesNothing) {
   auto output_files = std::make_unique<OutputFiles>(*real_, output(), false);

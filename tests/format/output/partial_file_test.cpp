@@ -15,6 +15,7 @@
 
 #include "format/base/error.h"
 #include "tests/support/faulty_file_system.h"
+#include "tests/support/message_of_error.h"
 #include "tests/support/temporary_directory.h"
 
 namespace weir::partial_file_test {
@@ -94,6 +95,22 @@ TEST_F(PartialFileTest, KeepsAFileThatAppearedBeforeTheCommit) {
     EXPECT_THROW(partial.commit(), Error);
   }
   EXPECT_EQ(listing(), (Listing{{"out.raw", "mine"}}));
+}
+
+TEST_F(PartialFileTest, PartialThatAnotherProcessMadeAnew_IsNeitherRenamedNorRemoved) {
+  for (const bool overwrite : {false, true}) {
+    {
+      PartialFile partial(*real_, output(), overwrite);
+      std::filesystem::remove(output() + ".partial");
+      put("out.raw.partial", "another's half");
+      EXPECT_EQ(message_of_error(ErrorKind::io, [&] { partial.commit(); }),
+                output() +
+                    ".partial: was removed or replaced while it was written; let nobody remove it, and try "
+                    "again");
+    }
+    EXPECT_EQ(listing(), (Listing{{"out.raw.partial", "another's half"}}));
+    std::filesystem::remove(output() + ".partial");
+  }
 }
 
 TEST_F(PartialFileTest, OneWriterAtATime) {

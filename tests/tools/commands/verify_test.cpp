@@ -57,6 +57,22 @@ TEST_F(Verify, NameThatSteersATerminal_IsOneLine) {
       << result.err;
 }
 
+// A file that it reads is mapped, and mapped pages count as the process's memory.
+TEST(VerifyMemory, OfALargeFile_IsFarBelowItsSize) {
+  const TemporaryDirectory directory;
+  const std::string source = directory / "v.raw";
+  const std::string volume = directory / "v.nvdb";
+  ASSERT_EQ(run_weir({"sample", "noise", "--dims", "448,384,256", "-o", source}).exit_code, 0);
+  ASSERT_EQ(run_weir({"convert", source, "--dims", "448,384,256", "--type", "float32", "--encoding", "float",
+                      "--lossless", "-o", volume})
+                .exit_code,
+            0);
+  ASSERT_GT(fs::file_size(volume), std::uint64_t{160} << 20U);
+  const CommandResult result = run_weir({"verify", volume, "--progress", "never"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_LT(result.peak_rss_bytes, std::uint64_t{120} << 20U);
+}
+
 TEST_F(Verify, FileThatIsNotThere_IsOneLine) {
   const std::string none = directory_ / "none.nvdb";
   const CommandResult result = run_weir({"verify", none, "--progress", "never"});
@@ -212,7 +228,7 @@ TEST_F(Verify, SidecarOfAnotherVolume) {
   fs::rename(directory_ / "w.nvdb.json", sidecar_path(volume_));
   const std::string err = verify().err;
   EXPECT_NE(err.find(volume_ + ": sidecar file.bytes: found 450001, expected 500000\n"), std::string::npos) << err;
-  EXPECT_NE(run_weir({"inspect", volume_}).out.find("belongs to another volume (size or head checksum differ)"),
+  EXPECT_NE(run_weir({"inspect", volume_}).out.find("belongs to another volume (size, head checksum or digest differ)"),
             std::string::npos);
 }
 
