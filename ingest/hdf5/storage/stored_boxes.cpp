@@ -16,6 +16,13 @@ namespace {
 
 constexpr std::uint64_t kBufferShare = 16;  // of --memory, for the buffer
 
+bool is_chunked(const StoredBoxes& boxes) { return boxes.chunk() != Index3{}; }
+
+// What the library keeps for the chunks of a read.
+std::uint64_t bytes_of_chunks(const StoredBoxes& boxes) {
+  return is_chunked(boxes) ? static_cast<std::uint64_t>(kMostChunks) * kBytesOfChunk : 0;
+}
+
 class StoredBoxSource final : public VolumeSource {
  public:
   StoredBoxSource(std::unique_ptr<StoredBoxes> boxes, SourceInfo info, bool big_endian,
@@ -28,7 +35,9 @@ class StoredBoxSource final : public VolumeSource {
 
   const SourceInfo& info() const override { return info_; }
   AccessShape access() const override { return {voxel_bytes(), boxes_->chunk(), boxes_->chunk_origin()}; }
-  std::uint64_t working_bytes() const override { return boxes_->working_bytes() + buffer_.bytes().size(); }
+  std::uint64_t working_bytes() const override {
+    return boxes_->working_bytes() + buffer_.bytes().size() + bytes_of_chunks(*boxes_);
+  }
   std::uint64_t bytes_read() const override { return bytes_read_; }
 
   ConversionLoss read(const Box& box, std::span<float> values) override {
@@ -38,8 +47,9 @@ class StoredBoxSource final : public VolumeSource {
     }
     const std::lock_guard lock(mutex_);
     const Index3 unit = max(boxes_->chunk(), {1, 1, 1});
-    const BoxCuts cuts(box, unit, boxes_->chunk_origin(),
-                       static_cast<std::int64_t>(buffer_.bytes().size() / voxel_bytes()));
+    const auto voxels = static_cast<std::int64_t>(buffer_.bytes().size() / voxel_bytes());
+    const std::int64_t most = is_chunked(*boxes_) ? kMostChunks : voxels;
+    const BoxCuts cuts(box, unit, boxes_->chunk_origin(), voxels, most);
     ConversionLoss loss;
     for (std::int64_t i = 0; i < cuts.size(); ++i) loss.add(read_part(cuts.part(i), box, values));
     return loss;
@@ -97,7 +107,7 @@ std::unique_ptr<VolumeSource> make_stored_box_source(std::unique_ptr<StoredBoxes
       static_cast<std::uint64_t>(volume(min(max(boxes->chunk(), {1, 1, 1}), info.extent))) * voxel_bytes;
   const std::uint64_t ample = std::min(kAmpleBuffer, memory / kBufferShare) / voxel_bytes * voxel_bytes;
   const std::uint64_t buffer_bytes = std::max(chunk_bytes, ample);
-  const std::uint64_t needed = buffer_bytes + boxes->working_bytes();
+  const std::uint64_t needed = buffer_bytes + boxes->working_bytes() + bytes_of_chunks(*boxes);
   if (needed > memory / 2) {
     throw Error(ErrorKind::usage,
                 compose(where, ": reading one of its chunks takes ", format_bytes(needed), ", more than half of ",
@@ -107,7 +117,7 @@ std::unique_ptr<VolumeSource> make_stored_box_source(std::unique_ptr<StoredBoxes
                                            static_cast<std::size_t>(buffer_bytes));
 }
 
-BoxCuts::BoxCuts(const Box& box, const Index3& unit, const Index3& corner, std::int64_t voxels)
+BoxCuts::BoxCuts(const Box& box, const Index3& unit, const Index3& corner, std::int64_t voxels, std::int64_t most_units)
     : box_(box), part_(unit) {
   const auto floored = [](std::int64_t lo, std::int64_t step, std::int64_t from) {
     return from + floor_div(lo - from, step) * step;
@@ -117,7 +127,9 @@ BoxCuts::BoxCuts(const Box& box, const Index3& unit, const Index3& corner, std::
   const Index3 span = box.hi - first_;
   const auto grow = [&](std::int64_t& edge, std::int64_t all) {
     const std::int64_t one = volume(min(part_, box.extent()));
-    edge *= std::clamp<std::int64_t>(voxels / one, 1, ceil_div(all, edge));
+    const std::int64_t times = std::clamp<std::int64_t>(std::min(voxels / one, most_units), 1, ceil_div(all, edge));
+    edge *= times;
+    most_units /= times;
     return edge >= all;
   };
   if (grow(part_.x, span.x) && grow(part_.y, span.y)) grow(part_.z, span.z);

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -17,6 +18,12 @@ namespace weir {
 
 /// Bytes that are read at a time: more saves no time.
 inline constexpr std::uint64_t kAmpleBuffer = std::uint64_t{4} << 20U;
+
+/// Chunks that are read at a time: for each the library keeps its parts of the selections, and for so many no read
+/// takes longer than one of all.
+inline constexpr std::int64_t kMostChunks = 512;
+/// What it keeps for a chunk.
+inline constexpr std::uint64_t kBytesOfChunk = 8192;
 
 /// Where stored values come from. One thread at a time.
 class StoredBoxes {
@@ -40,18 +47,19 @@ class StoredBoxes {
 void repeat_value(std::span<const std::byte> value, std::span<std::byte> stored);
 
 /// A source of `info`, whose domain begins at index 0, with `components` of info.type each voxel. Reads in pieces of
-/// whole chunks, through one buffer that takes at most a sixteenth of `memory` bytes or one chunk. Throws Error(usage),
-/// naming `where` and a sufficient --memory, where chunks need more than half of it.
+/// whole chunks, at most kMostChunks, through one buffer that takes at most a sixteenth of `memory` bytes or one chunk.
+/// Throws Error(usage), naming `where` and a sufficient --memory, where chunks need more than half of it.
 std::unique_ptr<VolumeSource> make_stored_box_source(std::unique_ptr<StoredBoxes> boxes, SourceInfo info,
                                                      bool big_endian, std::uint64_t memory, const std::string& where,
                                                      const VoxelComponents& components = {});
 
 /// The parts of `box` between planes of the grid of `unit` voxels with a corner at `corner`: as many whole
-/// units together as `voxels` hold, along x first, then y, then z; one where even that is more.
+/// units together as `voxels` hold, at most `most_units`, along x first, then y, then z; one where even that is more.
 class BoxCuts {
  public:
   /// unit >= 1 along each axis; `box` is not empty.
-  BoxCuts(const Box& box, const Index3& unit, const Index3& corner, std::int64_t voxels);
+  BoxCuts(const Box& box, const Index3& unit, const Index3& corner, std::int64_t voxels,
+          std::int64_t most_units = std::numeric_limits<std::int64_t>::max());
 
   std::int64_t size() const { return volume(count_); }
   /// Voxels of the largest part.

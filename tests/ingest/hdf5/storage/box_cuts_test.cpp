@@ -43,6 +43,16 @@ TEST(BoxCuts, CutsLieOnUnitEdges) {
   }
 }
 
+TEST(BoxCuts, HasNoMoreUnitsThanAreAllowed) {
+  const Box box{{0, 0, 0}, {64, 64, 64}};
+  EXPECT_EQ(BoxCuts(box, {4, 4, 4}, {0, 0, 0}, 1 << 18, 3).part(0), (Box{{0, 0, 0}, {12, 4, 4}}));
+  EXPECT_EQ(BoxCuts(box, {4, 4, 4}, {0, 0, 0}, 1 << 18, 40).part(0), (Box{{0, 0, 0}, {64, 8, 4}}));
+  EXPECT_EQ(BoxCuts(box, {4, 4, 4}, {0, 0, 0}, 1 << 18, 512).part(0), (Box{{0, 0, 0}, {64, 64, 8}}));
+  // A plane of voxels crosses as many units as one that is four times as thick.
+  EXPECT_EQ(BoxCuts({{0, 0, 0}, {64, 64, 1}}, {4, 4, 4}, {0, 0, 0}, 1 << 18, 40).part(0), (Box{{0, 0, 0}, {64, 8, 1}}));
+  EXPECT_EQ(BoxCuts(box, {4, 4, 4}, {0, 0, 0}, 1 << 18, 0).part(0), (Box{{0, 0, 0}, {4, 4, 4}}));
+}
+
 TEST(BoxCuts, GrowsAlongXThenYThenZ) {
   EXPECT_EQ(BoxCuts({{0, 0, 0}, {8, 8, 8}}, {2, 2, 2}, {0, 0, 0}, 16).part(0), (Box{{0, 0, 0}, {4, 2, 2}}));
   EXPECT_EQ(BoxCuts({{0, 0, 0}, {8, 8, 8}}, {2, 2, 2}, {0, 0, 0}, 64).part(0), (Box{{0, 0, 0}, {8, 4, 2}}));
