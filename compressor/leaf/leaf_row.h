@@ -12,11 +12,12 @@ namespace weir {
 struct LeafRow : BlockSummary {
   /// Squared error at 1, 2 and 4 bits a voxel, estimated, in parts of `sse`; 1 where it was not looked at.
   std::array<float, 3> quantised{1, 1, 1};
-  /// Bits a voxel, 1, 2, 4, 8 or 16, that hold the values without loss; 0: more, or not looked at.
+  /// Bits a voxel, 1, 2, 4, 8 or 16, that hold the finite values without loss; 0: more, or not looked at.
   std::uint8_t exact_bits = 0;
   /// 1 where a voxel is NaN or infinite as it is stored, and not missing.
   std::uint8_t non_finite = 0;
-  /// Finite values equal to `min` or `max`, 0 where exact_bits is 8 or less, or not looked at.
+  /// Finite values equal to `min` or `max`, 0 where exact_bits is 8 or less, or not looked at. Where voxels have no
+  /// value and exact_bits is not 0, the code of `max` on the lattice of the others (LeafLattice).
   std::uint16_t at_ends = 0;
 
   /// Whether any voxel has a value, finite or not.

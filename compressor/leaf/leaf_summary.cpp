@@ -261,13 +261,13 @@ namespace {
 // `values` that are all finite where `all`, each of `distinct` so many of them.
 void find_widths(std::span<const float> values, bool all, std::span<const float> distinct, const LeafRepeats& repeats,
                  LeafRow& row) {
-  // What takes the place of a value that is not finite need not lie on the others' lattice.
-  if (row.uniform()) row.exact_bits = all ? 1 : 0;
+  if (row.uniform()) row.exact_bits = 1;
   if (!(row.min < row.max)) return;
-  if (const auto lattice = all ? find_lattice(distinct, row.min, row.max) : std::nullopt) {
-    row.exact_bits = static_cast<std::uint8_t>(bits_for(lattice->largest));
-  }
-  if (row.exact_bits == 0 || row.exact_bits > 8) {
+  const auto lattice = find_lattice(distinct, row.min, row.max);
+  if (lattice) row.exact_bits = static_cast<std::uint8_t>(bits_for(lattice->largest));
+  if (lattice && !all) {
+    row.at_ends = static_cast<std::uint16_t>(lattice->largest);
+  } else if (row.exact_bits == 0 || row.exact_bits > 8) {
     const std::size_t times = values.size() / distinct.size();
     row.at_ends = static_cast<std::uint16_t>(times * count_at_ends(distinct.data(), distinct.size(), row.min, row.max));
   }

@@ -6,6 +6,7 @@
 #include <limits>
 #include <span>
 
+#include "compressor/leaf/leaf_lattice.h"
 #include "compressor/leaf/leaf_quantiser.h"
 #include "format/leaf/bounds.h"
 #include "format/packed/block_decode.h"
@@ -77,10 +78,26 @@ LeafStep step_to(LeafWidth width, LeafWidth from, double gain) {
   return {gain, gain / static_cast<double>(bytes), bytes, static_cast<KeptLevel>(width)};
 }
 
+// Bits a voxel that hold a leaf of `voxels` in-domain voxels without loss, `background` in the place of those without a
+// value; 0: more than 16, or not known.
+unsigned exact_bits(const LeafRow& row, std::int64_t voxels, float background) {
+  if (row.finite == voxels || row.exact_bits == 0) return row.exact_bits;
+  const float low = std::min(row.min, background);
+  const float high = std::max(row.max, background);
+  if (low == high) return Fill::same_bits(row.min, background) ? 1 : 0;
+  // All others lie where the least two do.
+  const unsigned largest = row.uniform() ? 0U : row.at_ends;
+  const double step = largest == 0 ? 0 : (static_cast<double>(row.max) - static_cast<double>(row.min)) / largest;
+  const std::array values{row.min, static_cast<float>(static_cast<double>(row.min) + step), row.max, background};
+  const auto lattice = find_lattice(values, low, high);
+  return lattice ? bits_for(lattice->largest) : 0;
+}
+
 // The widest width of FpN that can be of use to a leaf: what is exact needs no more bits.
-LeafWidth widest(const LeafRow& row) {
+LeafWidth widest(const LeafRow& row, std::int64_t voxels, float background) {
+  const unsigned exact = exact_bits(row, voxels, background);
   LeafWidth width = LeafWidth::bits1;
-  while (width != LeafWidth::bits16 && (row.exact_bits == 0 || 1U << bits_log2_of(width) < row.exact_bits)) {
+  while (width != LeafWidth::bits16 && (exact == 0 || 1U << bits_log2_of(width) < exact)) {
     width = width_of(bits_log2_of(width) + 1);
   }
   return width;
@@ -124,11 +141,9 @@ double quantised_error(const LeafRow& row, std::int64_t voxels, float background
   if (width == LeafWidth::float32) return 0;
   const unsigned log2 = bits_log2_of(width);
   const unsigned bits = 1U << log2;
+  if (keeps_every_bit(row, voxels, background, width)) return 0;
   const bool all_finite = row.finite == voxels;
-  if (all_finite) {
-    if (row.exact_bits != 0 && bits >= row.exact_bits) return 0;
-    if (log2 < row.quantised.size()) return least_estimate(row, log2 + 1);
-  }
+  if (all_finite && log2 < row.quantised.size()) return least_estimate(row, log2 + 1);
   // The survey did not know what would take the place of NaN: it may lie far from the other values.
   const float low = all_finite ? row.min : std::min(row.min, background);
   const float high = all_finite ? row.max : std::max(row.max, background);
@@ -141,13 +156,14 @@ double quantised_error(const LeafRow& row, std::int64_t voxels, float background
   return std::min(least, between * quantum * quantum / 12);
 }
 
-bool keeps_every_bit(const LeafRow& row, std::int64_t voxels, LeafWidth width) {
+bool keeps_every_bit(const LeafRow& row, std::int64_t voxels, float background, LeafWidth width) {
   if (width == LeafWidth::float32) return true;
-  return row.finite == voxels && row.exact_bits != 0 && (1U << bits_log2_of(width)) >= row.exact_bits;
+  const unsigned exact = exact_bits(row, voxels, background);
+  return exact != 0 && (1U << bits_log2_of(width)) >= exact;
 }
 
 double bounded_error(const LeafRow& row, std::int64_t voxels, float background, LeafWidth width) {
-  if (keeps_every_bit(row, voxels, width)) return 0;
+  if (keeps_every_bit(row, voxels, background, width)) return 0;
   ValueRange range{row.min, row.max, row.mean};
   if (row.finite < voxels) {
     range.min = row.finite == 0 ? background : std::min(range.min, background);
@@ -230,13 +246,13 @@ void GainRule::add_steps(const LeafRow& row, std::int64_t voxels, float tile, co
                               : encoding == Encoding::fp8 ? LeafWidth::bits8
                                                           : LeafWidth::bits16;
       const double gain = std::max(0.0, error - error_at(width));
-      if (gain > 0 || leaf.required || keeps_every_bit(row, voxels, width)) {
+      if (gain > 0 || leaf.required || keeps_every_bit(row, voxels, fill.background, width)) {
         out.add(leaf, step_to(width, LeafWidth::tile, gain));
       }
       break;
     }
     case Encoding::fpn: {
-      const LeafWidth last = widest(row);
+      const LeafWidth last = widest(row, voxels, fill.background);
       LeafWidth from = LeafWidth::tile;
       double left = error;
       if (leaf.required) {
@@ -247,12 +263,14 @@ void GainRule::add_steps(const LeafRow& row, std::int64_t voxels, float tile, co
       add_hull(error_at, from, left, last, leaf, out);
       // Saves nothing that can be measured, but without it not every bit is kept.
       const LeafWidth reached = last_width(leaf);
-      if (!tile_does && reached != last && keeps_every_bit(row, voxels, last)) out.add(leaf, step_to(last, reached, 0));
+      if (!tile_does && reached != last && keeps_every_bit(row, voxels, fill.background, last)) {
+        out.add(leaf, step_to(last, reached, 0));
+      }
       break;
     }
   }
   if (leaf.step_count > 0) {
-    leaf.lossless = leaf.lossless || keeps_every_bit(row, voxels, last_width(leaf));
+    leaf.lossless = leaf.lossless || keeps_every_bit(row, voxels, fill.background, last_width(leaf));
   }
 }
 

@@ -138,12 +138,13 @@ struct GainRule {
 };
 
 /// Squared error over the finite values of a leaf of `voxels` in-domain voxels kept at `width`, the others replaced
-/// by `background`: exact for float32 and where `exact_bits` says so, else an estimate.
+/// by `background`: 0 where keeps_every_bit(), else an estimate.
 double quantised_error(const LeafRow& row, std::int64_t voxels, float background, LeafWidth width);
 /// Bound of |decoded - value| over a leaf's in-domain voxels at `width`, quantised over its whole range: half a
 /// quantum, and what the decoder rounds, fused or not. `background` takes the place of non-finite values.
 double bounded_error(const LeafRow& row, std::int64_t voxels, float background, LeafWidth width);
-/// Whether a leaf of `voxels` in-domain voxels, kept at `width`, reads every bit.
-bool keeps_every_bit(const LeafRow& row, std::int64_t voxels, LeafWidth width);
+/// Whether a leaf of `voxels` in-domain voxels, kept at `width`, reads every bit, and `background` in the place of
+/// non-finite values.
+bool keeps_every_bit(const LeafRow& row, std::int64_t voxels, float background, LeafWidth width);
 
 }  // namespace weir

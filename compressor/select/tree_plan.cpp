@@ -81,7 +81,8 @@ class RegionPlanner {
         }
         ++tally.leaves_by_width[bits_log2_of(width)];
         expected.add(weight * quantised_error(row, voxels, rule_.fill.background, width));
-        tally.leaves_exact = tally.leaves_exact && (!choices.seen(position) || keeps_every_bit(row, voxels, width));
+        tally.leaves_exact = tally.leaves_exact &&
+                             (!choices.seen(position) || keeps_every_bit(row, voxels, rule_.fill.background, width));
         return;
       }
       const float value = rule_.packed ? region.packed_value : rule_.fill.leaf_value(row);

@@ -238,18 +238,50 @@ TEST(LeafGain, QuantisedErrorOfWideCodesIsNearTheFit) {
   }
 }
 
-TEST(LeafGain, WhatReplacesNaNWidensTheRangeOfALeaf) {
-  std::vector<float> values(500);
-  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(i % 16);
+// Of 500 finite values and 12 that are NaN.
+LeafRow with_gaps(const std::vector<float>& values) {
   std::vector<float> with_nan = values;
   with_nan.resize(512, kNaN);
   LeafRow row = summarize_leaf(with_nan, 0);
   summarize_widths(values, false, row);
-  // Sixteen values are exact at 4 bits, but not with 1000 beside them.
-  EXPECT_EQ(quantised_error(row, 500, 1000, LeafWidth::bits4), 0);
-  const double quantum = static_cast<double>(1000.0F / 65535.0F);
-  EXPECT_EQ(quantised_error(row, 512, 1000, LeafWidth::bits16), 500 * quantum * quantum / 12);
-  EXPECT_EQ(quantised_error(row, 512, 1000, LeafWidth::bits1), row.sse);
+  return row;
+}
+
+TEST(LeafGain, WhatReplacesNaNWidensTheRangeOfALeaf) {
+  std::vector<float> values(500);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(i % 16);
+  const LeafRow row = with_gaps(values);
+  // Sixteen values are exact at 4 bits, but not with 1000.1 beside them, which is on no lattice of theirs.
+  EXPECT_EQ(quantised_error(row, 500, 1000.1F, LeafWidth::bits4), 0);
+  const double quantum = static_cast<double>(1000.1F / 65535.0F);
+  EXPECT_EQ(quantised_error(row, 512, 1000.1F, LeafWidth::bits16), 500 * quantum * quantum / 12);
+  EXPECT_EQ(quantised_error(row, 512, 1000.1F, LeafWidth::bits1), row.sse);
+}
+
+TEST(LeafGain, WhatReplacesNaNMayLieOnTheLatticeOfTheOthers) {
+  std::vector<float> values(500);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = 3 * static_cast<float>(i % 16);
+  const LeafRow row = with_gaps(values);
+  struct Expected {
+    float background;
+    unsigned bits;
+  };
+  // Sixteen multiples of 3, up to 45; then 17, 256 and 257 of them; whole numbers; half numbers.
+  for (const Expected& of : {Expected{0, 4}, {45, 4}, {48, 8}, {765, 8}, {768, 16}, {-3, 8}, {46, 8}, {0.5F, 8}}) {
+    for (unsigned log2 = 0; log2 < 5; ++log2) {
+      const LeafWidth width = width_of(log2);
+      const bool exact = 1U << log2 >= of.bits;
+      EXPECT_EQ(keeps_every_bit(row, 512, of.background, width), exact) << of.background << ", " << (1U << log2);
+      EXPECT_EQ(quantised_error(row, 512, of.background, width) == 0, exact) << of.background << ", " << (1U << log2);
+    }
+  }
+  EXPECT_FALSE(keeps_every_bit(row, 512, -0.0F, LeafWidth::bits16));
+  EXPECT_FALSE(keeps_every_bit(row, 512, 0.1F, LeafWidth::bits16));
+  EXPECT_FALSE(keeps_every_bit(row, 512, 3.0F * 65536.0F, LeafWidth::bits16));
+  const LeafRow one = with_gaps(std::vector<float>(500, 7));
+  EXPECT_TRUE(keeps_every_bit(one, 512, 7, LeafWidth::bits1));
+  EXPECT_TRUE(keeps_every_bit(one, 512, 0, LeafWidth::bits1));
+  EXPECT_FALSE(keeps_every_bit(one, 512, 0.1F, LeafWidth::bits16));
 }
 
 // -most, and every third value one part in 512 of it or more above.

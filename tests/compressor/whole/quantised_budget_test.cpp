@@ -115,6 +115,32 @@ TEST(QuantisedBudget, MixedVolumesFallBackToFloatAndSayWhy) {
   }
 }
 
+TEST(QuantisedBudget, BlocksWithVoxelsWithoutAValueAreLosslessWhereTheBackgroundIsOnTheirLattice) {
+  MemoryVolume volume(kDomain, [](const Index3& i) { return i == Index3{9, 9, 9} ? kNaN : pseudo_random(i, 200); });
+  ConversionOptions options;
+  options.budget.kind = Budget::Kind::lossless;
+  options.non_finite = NonFinitePolicy::background;
+  for (const auto& [background, type] : {std::pair{0.0F, GridType::fpn}, std::pair{0.1F, GridType::float32}}) {
+    options.background = background;
+    options.encoding = Encoding::automatic;
+    const Converted best = test::convert(volume, options);
+    SCOPED_TRACE(background);
+    EXPECT_EQ(best.grid().type(), type);
+    EXPECT_TRUE(best.sidecar.error.lossless);
+    EXPECT_TRUE(test::measure(volume, best, NonFinitePolicy::background).lossless);
+    options.encoding = Encoding::float32;
+    const Converted floats = test::convert(volume, options);
+    if (type == GridType::fpn) {
+      EXPECT_EQ(best.sidecar.selection.bits[bits_log2_of(LeafWidth::bits8)], 8U);
+      EXPECT_EQ(floats.file.size() - best.file.size(), 8 * (2144 - leaf_bytes(LeafWidth::bits8)));
+      EXPECT_TRUE(best.notices.empty());
+    } else {
+      EXPECT_EQ(best.file, floats.file);
+      EXPECT_EQ(best.notices, (std::vector<std::string>{"out.nvdb: 1 block needs full float32 to be lossless"}));
+    }
+  }
+}
+
 TEST(QuantisedBudget, OneZeroOfAnotherSignTakesFloat) {
   MemoryVolume volume(kDomain, [](const Index3& i) { return i == Index3{9, 9, 9} ? -0.0F : 0.0F; });
   const Converted best = lossless(volume, Encoding::automatic);
