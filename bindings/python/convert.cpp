@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "bindings/python/device_source.h"
+#include "bindings/python/interpreter_end.h"
 #include "bindings/python/watch.h"
 #include "compressor/build_commit.h"
 #include "compressor/conversion.h"
@@ -208,10 +209,7 @@ std::string convert_device_array(std::uint64_t address, const std::array<std::in
                                  const std::optional<std::uint64_t>& stream, const std::string& output,
                                  const GivenOptions& options, const py::dict& meaning, const py::object& progress) {
   const auto* const data = reinterpret_cast<const void*>(address);
-  if (stream) {
-    const py::gil_scoped_release released;
-    wait_for_stream(data, *stream);
-  }
+  if (stream) without_lock([&] { wait_for_stream(data, *stream); });
   return convert_dense(data, shape, strides, type, output, options, meaning, progress, open_device_source);
 }
 

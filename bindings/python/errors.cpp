@@ -2,6 +2,7 @@
 
 #include <exception>
 
+#include "bindings/python/interpreter_end.h"
 #include "format/base/error.h"
 #include "format/base/printable.h"
 
@@ -35,13 +36,14 @@ py::str decoded_text(const std::string& text) {
 }
 
 void raise(const Error& error) {
-  const py::module_ errors = py::module_::import("weir.errors");
+  const py::object errors = import_python("weir.errors");
   py::object raised;
   if (const auto& failure = error.system_failure()) {
-    raised = errors.attr("system_error")(class_of(error.kind()), failure->errno_value, python_text(error.message()),
-                                         decoded_text(failure->path));
+    raised = call_python(errors.attr("system_error"),
+                         py::make_tuple(class_of(error.kind()), failure->errno_value, python_text(error.message()),
+                                        decoded_text(failure->path)));
   } else {
-    raised = errors.attr(class_of(error.kind()))(python_text(error.message()));
+    raised = call_python(errors.attr(class_of(error.kind())), py::make_tuple(python_text(error.message())));
   }
   PyErr_SetObject(py::type::of(raised).ptr(), raised.ptr());
 }

@@ -6,6 +6,7 @@
 #include <system_error>
 #include <utility>
 
+#include "bindings/python/interpreter_end.h"
 #include "bindings/python/levels.h"
 #include "bindings/python/range_reader.h"
 #include "bindings/python/remote_source.h"
@@ -56,9 +57,10 @@ std::string absolute_path(const std::string& path) {
 }  // namespace
 
 Grid::Grid(const std::string& path) : path_(path), absolute_(absolute_path(path)), file_(std::make_shared<Opened>()) {
-  const py::gil_scoped_release unlocked;
-  file_->file = std::make_shared<const NvdbFile>(path);
-  file_->source = open_source(path, first_grid(*file_->file));
+  without_lock([&] {
+    file_->file = std::make_shared<const NvdbFile>(path);
+    file_->source = open_source(path, first_grid(*file_->file));
+  });
 }
 
 Grid::Grid(const std::string& url, const py::function& fetch, const py::function& interrupt, const std::string& cache)

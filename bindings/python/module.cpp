@@ -6,6 +6,7 @@
 #include "bindings/python/convert.h"
 #include "bindings/python/errors.h"
 #include "bindings/python/grid.h"
+#include "bindings/python/interpreter_end.h"
 
 namespace py = pybind11;
 
@@ -14,6 +15,7 @@ PYBIND11_MODULE(_core, m) {
   m.doc() = "The compiled part of weir; use the package weir.";
   m.attr("__version__") = WEIR_VERSION;
   weir::python::translate_errors();
+  weir::python::stop_calls_at_exit();
   m.def("convert_files", &weir::python::convert_files, py::arg("source"), py::arg("output"), py::arg("options"),
         py::arg("several"), py::arg("progress"));
   m.def("convert_array", &weir::python::convert_array, py::arg("source").noconvert(), py::arg("type"),

@@ -4,6 +4,7 @@
 #include <memory>
 #include <string_view>
 
+#include "bindings/python/interpreter_end.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
 
@@ -16,7 +17,7 @@ namespace {
 /// A reference that any thread may drop, without the interpreter's lock.
 std::shared_ptr<py::function> shared_function(const py::function& function) {
   return {new py::function(function), [](py::function* kept) {
-            const py::gil_scoped_acquire locked;
+            const Locked locked;
             delete kept;
           }};
 }
@@ -24,16 +25,16 @@ std::shared_ptr<py::function> shared_function(const py::function& function) {
 }  // namespace
 
 std::function<void()> python_call(const py::function& function) {
-  return [kept = shared_function(function)] { (*kept)(); };
+  return [kept = shared_function(function)] { call_python(*kept, py::tuple()); };
 }
 
 RangeReader python_range_reader(const py::function& fetch) {
   return
       [kept = shared_function(fetch)](std::span<const ByteRange> ranges, std::span<const std::span<std::byte>> into) {
-        const py::gil_scoped_acquire locked;
+        const Locked locked;
         py::list asked;
         for (const ByteRange& range : ranges) asked.append(py::make_tuple(range.offset, range.bytes));
-        const py::list found = (*kept)(asked);
+        const py::list found = call_python(*kept, py::make_tuple(asked));
         if (found.size() != ranges.size()) {
           throw Error(ErrorKind::io, cat(found.size(), " answers to ", ranges.size(), " requests for bytes"));
         }

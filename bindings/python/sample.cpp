@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include "bindings/python/grid.h"
+#include "bindings/python/interpreter_end.h"
 #include "bindings/python/sampled_blocks.h"
 #include "bindings/python/watch.h"
 #include "format/process/float_mode.h"
@@ -53,12 +54,13 @@ py::array_t<float> Grid::sample(const py::array_t<float, py::array::c_style>& po
     run_watched(py::none(), look_up, file->interrupt);
     return array;
   }
-  const py::gil_scoped_release unlocked;
-  file->require_unchanged();
-  const FloatMode mode;
-  std::call_once(file->samples_made, [&] { file->samples.emplace(file->grid()); });
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, positions.size() / 3, kGrain), [&](const auto& part) {
-    file->samples->with_volume(filter, [&](const auto& volume) { sample_part(volume, positions, part, values); });
+  without_lock([&] {
+    file->require_unchanged();
+    const FloatMode mode;
+    std::call_once(file->samples_made, [&] { file->samples.emplace(file->grid()); });
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, positions.size() / 3, kGrain), [&](const auto& part) {
+      file->samples->with_volume(filter, [&](const auto& volume) { sample_part(volume, positions, part, values); });
+    });
   });
   return array;
 }

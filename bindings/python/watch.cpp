@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "bindings/python/errors.h"
+#include "bindings/python/interpreter_end.h"
 #include "format/base/error.h"
 #include "format/process/float_mode.h"
 
@@ -21,9 +22,10 @@ void deliver(Watch& watch, const py::object& progress) {
   for (const Watch::Event& event : watch.take()) {
     if (event.pass.empty()) {
       const char* const level = event.notice.is_remark() ? "info" : "warning";
-      py::module_::import("logging").attr("getLogger")("weir").attr(level)("%s", python_text(event.notice));
+      const py::object logger = call_python(import_python("logging").attr("getLogger"), py::make_tuple("weir"));
+      call_python(logger.attr(level), py::make_tuple("%s", python_text(event.notice)));
     } else if (!progress.is_none()) {
-      progress(event.pass, event.done, event.total);
+      call_python(progress, py::make_tuple(event.pass, event.done, event.total));
     }
   }
 }
@@ -105,6 +107,11 @@ void run_watched(const py::object& progress, const std::function<void(Watch&)>& 
   Watch watch;
   std::exception_ptr failure;
   std::exception_ptr raised;
+  CallUnderWay call([&watch, interrupt] {
+    watch.cancel();
+    watch.delivered();
+    interrupt_quietly(interrupt);
+  });
   std::thread worker([&] {
     const FloatMode mode;
     try {
@@ -113,13 +120,11 @@ void run_watched(const py::object& progress, const std::function<void(Watch&)>& 
       failure = std::current_exception();
     }
     watch.finish();
+    call.work_ended();
   });
   bool ended = false;
   while (!ended) {
-    {
-      const py::gil_scoped_release unlocked;
-      ended = watch.wait(kPause);
-    }
+    call.without_lock([&] { ended = watch.wait(kPause); });
     if (raised) {
       watch.delivered();
       if (!ended) interrupt_quietly(interrupt);

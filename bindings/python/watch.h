@@ -64,7 +64,8 @@ class Watch {
 /// interpreter's signal handlers run meanwhile; where one raises, the work is cancelled, and what was raised goes on
 /// after it has ended. `interrupt` is called by the calling thread, again and again from then on until the work has
 /// ended, and makes what the work waits for fail. Notices go to the logger "weir". The caller holds the interpreter's
-/// lock; `work` must not touch a Python object.
+/// lock; `work` must not touch a Python object. Where the interpreter ends meanwhile, the work is cancelled, and this
+/// does not return.
 void run_watched(const pybind11::object& progress, const std::function<void(Watch&)>& work,
                  const std::function<void()>& interrupt = {});
 

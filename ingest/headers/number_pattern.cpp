@@ -7,7 +7,6 @@
 #include "format/base/ascii.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
-#include "ingest/files/input_directory.h"
 
 namespace weir {
 std::optional<NumberPattern> NumberPattern::parse(std::string_view text) {
@@ -64,9 +63,7 @@ std::vector<NumberedFile> numbered_files(const std::string& pattern) {
   for (std::filesystem::directory_iterator entry(directory, error), end; !error && entry != end;
        entry.increment(error)) {
     const auto number = last->match(entry->path().filename().string());
-    std::error_code ignored;
-    if (!number || !(entry->is_regular_file(ignored) || is_input_directory(entry->path().string()))) continue;
-    files.push_back({*number, (path.parent_path() / entry->path().filename()).string()});
+    if (number) files.push_back({*number, (path.parent_path() / entry->path().filename()).string()});
   }
   if (error) {
     throw Error(ErrorKind::input, cat(directory.string(), ": cannot list: ", error.message(), "; check the pattern"),

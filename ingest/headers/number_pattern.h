@@ -35,9 +35,9 @@ struct NumberedFile {
   std::string path;
 };
 
-/// The regular files that `pattern`, a path with a number in its last part, names, by rising number. Throws
-/// Error(input) where the directory cannot be read or no file of it matches, Error(usage) where the text is
-/// no such pattern.
+/// Whatever `pattern`, a path with a number in its last part, names, by rising number: what cannot be read as a volume,
+/// a link to nothing for instance, too, since a series must not leave out a step without a word. Throws Error(input)
+/// where the directory cannot be read or no name in it matches, Error(usage) where the text is no such pattern.
 std::vector<NumberedFile> numbered_files(const std::string& pattern);
 
 /// With as many zeros before it as `largest` has digits more: names sort by number.

@@ -23,17 +23,11 @@ namespace {
 constexpr std::size_t kMostArraysShown = 8;  // in a message
 constexpr std::size_t kAxesOfSpace = 3;
 
-std::string without_slashes(std::string_view name) {
-  while (name.starts_with('/')) name.remove_prefix(1);
-  while (name.ends_with('/')) name.remove_suffix(1);
-  return std::string(name);
-}
-
 /// The key of the finest level of the image that `node`, a group, is.
 std::optional<std::string> finest_level(const ZarrNode& node) {
   const std::vector<Multiscale> images = multiscales_in(node.attributes);
   if (images.empty()) return std::nullopt;
-  return joined_key(node.key, without_slashes(images.front().levels.front().path));
+  return joined_key(node.key, images.front().levels.front().path);
 }
 
 /// What groups say of the arrays in them: those of the store, or, where that is one array, those around it. One thread

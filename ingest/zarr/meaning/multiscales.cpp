@@ -75,7 +75,7 @@ std::vector<Multiscale> multiscales_in(const nlohmann::json& attributes) {
     const nlohmann::json& datasets = json_member(entry, "datasets");
     for (std::size_t i = 0; datasets.is_array() && i < std::min(datasets.size(), kMostLevels); ++i) {
       ScaleLevel level;
-      level.path = json_string(datasets[i], "path");
+      level.path = without_slashes(json_string(datasets[i], "path"));
       if (level.path.empty()) continue;
       level.placed = transform(json_member(datasets[i], "coordinateTransformations"), level) &&
                      transform(json_member(entry, "coordinateTransformations"), level);

@@ -21,7 +21,7 @@ struct ScaleAxis {
 
 /// One level of an image.
 struct ScaleLevel {
-  std::string path;                 ///< of its array, from the image's group
+  std::string path;                 ///< of its array, from the image's group, without slashes at its ends
   std::vector<double> scale;        ///< from an index to a position, along each axis; empty: 1
   std::vector<double> translation;  ///< of the centre of element 0; empty: 0
   bool placed = true;  ///< false where a transformation is none of scale and translation by numbers, as many in each;

@@ -26,6 +26,7 @@ struct ZarrWalk {
   ZarrStore& store;
   std::size_t nodes = 0;
   std::uint64_t bytes = 0;  ///< of metadata
+  std::size_t values = 0;   ///< of JSON, in the arrays
   std::vector<ZarrNode> arrays;
 };
 
@@ -42,6 +43,12 @@ void add_arrays(ZarrWalk& walk, const std::string& key, std::size_t depth) {
                                                 " bytes of metadata; name a group or an array in it"));
   }
   if (node && node->array) {
+    walk.values += json_values(node->metadata) + json_values(node->attributes);
+    if (walk.values > kMostWalkedValues) {
+      throw input_error(walk.store.shown({}), cat("has more than ", kMostWalkedValues,
+                                                  " JSON values in the metadata of its arrays; name a "
+                                                  "group or an array in it"));
+    }
     walk.arrays.push_back(std::move(*node));
     return;
   }
@@ -59,7 +66,7 @@ std::optional<ZarrNode> zarr_node(ZarrStore& store, const std::string& key) {
   if (const auto text = store.text(node.document)) {
     node.metadata = parse_zarr_json(*text, store.shown(node.document));
     node.array = json_member(node.metadata, "node_type") != "group";
-    node.attributes = json_member(node.metadata, "attributes");
+    if (node.metadata.contains("attributes")) node.attributes = std::move(node.metadata["attributes"]);
     return node;
   }
   node.version = 2;
@@ -86,6 +93,7 @@ ZarrArray zarr_array(const ZarrStore& store, const ZarrNode& node) {
   const std::string where = store.shown(node.document);
   ZarrArray array =
       node.version == 3 ? parse_zarr_v3(node.metadata, where) : parse_zarr_v2(node.metadata, node.attributes, where);
+  if (node.version == 3) array.attributes = node.attributes;
   const ScalarType stored = array.type;
   array.type = meant_type(unsigned_text(array.attributes), stored);
   if (array.type == stored) return array;
@@ -95,7 +103,7 @@ ZarrArray zarr_array(const ZarrStore& store, const ZarrNode& node) {
 }
 
 std::vector<ZarrNode> zarr_arrays(ZarrStore& store) {
-  ZarrWalk walk{store, 0, 0, {}};
+  ZarrWalk walk{store, 0, 0, 0, {}};
   add_arrays(walk, {}, 0);
   return std::move(walk.arrays);
 }

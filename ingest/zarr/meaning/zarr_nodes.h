@@ -19,7 +19,7 @@ struct ZarrNode {
   std::string document;       ///< key of the document that describes it
   bool array = false;         ///< else a group
   int version = 3;            ///< 2 or 3
-  nlohmann::json metadata;    ///< of zarr.json or .zarray; of a group of version 2 empty
+  nlohmann::json metadata;    ///< of zarr.json, without attributes, or .zarray; of a group of version 2 empty
   nlohmann::json attributes;  ///< of the user
 };
 
@@ -36,11 +36,13 @@ ZarrArray zarr_array(const ZarrStore& store, const ZarrNode& node);
 
 /// All arrays in the order of their keys; the root alone where that is one. Groups are looked into, arrays are not.
 /// Throws Error(input) where there are more than kMostZarrNodes nodes or kMostZarrDepth groups in each other, or their
-/// metadata have more than kMostWalkedBytes.
+/// metadata have more than kMostWalkedBytes or kMostWalkedValues.
 std::vector<ZarrNode> zarr_arrays(ZarrStore& store);
 
 inline constexpr std::size_t kMostZarrNodes = 10000;
 inline constexpr std::size_t kMostZarrDepth = 32;
 inline constexpr std::uint64_t kMostWalkedBytes = std::uint64_t{32} << 20U;
+/// An array has 20 to 50.
+inline constexpr std::size_t kMostWalkedValues = 500000;
 
 }  // namespace weir

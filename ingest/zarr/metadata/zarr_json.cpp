@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <utility>
 
 #include "format/base/error.h"
 #include "format/base/text.h"
@@ -46,18 +47,90 @@ std::string with_quoted_numbers(std::string_view text, const std::string& where)
   return out;
 }
 
+/// Builds a document value by value, so that it ends at the limit, and leaves out the consolidated metadata.
+class ZarrDocument final : public nlohmann::json_sax<nlohmann::json> {
+ public:
+  explicit ZarrDocument(const std::string& where) : where_(where) {}
+
+  nlohmann::json take() { return std::move(root_); }
+
+  bool null() override { return add(nullptr); }
+  bool boolean(bool value) override { return add(value); }
+  bool number_integer(number_integer_t value) override { return add(value); }
+  bool number_unsigned(number_unsigned_t value) override { return add(value); }
+  bool number_float(number_float_t value, const string_t& /*text*/) override { return add(value); }
+  bool string(string_t& value) override { return add(std::move(value)); }
+  bool binary(binary_t& value) override { return add(nlohmann::json::binary(std::move(value))); }
+  bool start_object(std::size_t /*members*/) override { return open(nlohmann::json::object()); }
+  bool start_array(std::size_t /*elements*/) override { return open(nlohmann::json::array()); }
+  bool end_object() override { return close(); }
+  bool end_array() override { return close(); }
+
+  bool key(string_t& name) override {
+    key_ = std::move(name);
+    left_out_ = open_.size() == 1 && key_ == "consolidated_metadata";
+    return true;
+  }
+
+  bool parse_error(std::size_t byte, const std::string& /*token*/, const nlohmann::detail::exception& error) override {
+    if (dynamic_cast<const nlohmann::json::parse_error*>(&error) == nullptr) {
+      throw input_error(where_, "has a number that no 64-bit one holds; the file is damaged");
+    }
+    throw input_error(where_, cat("is no JSON at byte ", byte, "; the file is damaged or still being written"));
+  }
+
+ private:
+  /// Where `value` lies from now on; nullptr in what is left out.
+  nlohmann::json* place(nlohmann::json value) {
+    if (std::exchange(left_out_, false) || (!open_.empty() && open_.back() == nullptr)) return nullptr;
+    if (++values_ > kMostMetadataValues) {
+      throw input_error(where_, cat("has more than ", kMostMetadataValues,
+                                    " JSON values, the most that metadata may have; write long lists in its attributes "
+                                    "as arrays"));
+    }
+    if (open_.empty()) return &(root_ = std::move(value));
+    nlohmann::json& around = *open_.back();
+    if (around.is_object()) return &(around[key_] = std::move(value));
+    around.push_back(std::move(value));
+    return &around.back();
+  }
+  bool add(nlohmann::json value) {
+    place(std::move(value));
+    return true;
+  }
+  bool open(nlohmann::json value) {
+    open_.push_back(place(std::move(value)));
+    return true;
+  }
+  bool close() {
+    open_.pop_back();
+    return true;
+  }
+
+  const std::string& where_;
+  nlohmann::json root_;
+  std::vector<nlohmann::json*>
+      open_;  ///< lists and objects that have not ended, the outermost first; nullptr: left out
+  std::string key_;
+  bool left_out_ = false;  ///< the value of key_
+  std::size_t values_ = 0;
+};
+
 }  // namespace
 
 nlohmann::json parse_zarr_json(std::string_view text, const std::string& where) {
-  try {
-    nlohmann::json document = nlohmann::json::parse(with_quoted_numbers(text, where));
-    if (document.is_object()) return document;
-  } catch (const nlohmann::json::parse_error& error) {
-    throw input_error(where, cat("is no JSON at byte ", error.byte, "; the file is damaged or still being written"));
-  } catch (const nlohmann::json::exception&) {
-    throw input_error(where, "has a number that no 64-bit one holds; the file is damaged");
-  }
-  throw input_error(where, "is no JSON object; the file is damaged");
+  ZarrDocument document(where);
+  nlohmann::json::sax_parse(with_quoted_numbers(text, where), &document);
+  nlohmann::json root = document.take();
+  if (!root.is_object()) throw input_error(where, "is no JSON object; the file is damaged");
+  return root;
+}
+
+std::size_t json_values(const nlohmann::json& value) {
+  std::size_t count = 1;
+  if (!value.is_structured()) return count;
+  for (const nlohmann::json& inner : value) count += json_values(inner);
+  return count;
 }
 
 std::string json_text(const nlohmann::json& value) {

@@ -16,10 +16,18 @@ namespace weir {
 /// Larger documents are refused before they are read.
 inline constexpr std::uint64_t kMostMetadataBytes = std::uint64_t{16} << 20U;
 
-/// The JSON object that `text` holds. NaN, Infinity and -Infinity, which Python writes though JSON has none, are read
-/// as the texts "NaN", "Infinity" and "-Infinity". Throws Error(input), beginning with `where`, where it is no JSON,
-/// with the byte, nested deeper than metadata are, and where it is no object.
+/// Of numbers, texts, lists and objects in a document: each takes some 100 bytes, up to 50 times what it has in the
+/// file.
+inline constexpr std::size_t kMostMetadataValues = 100000;
+
+/// The JSON object that `text` holds, without its member consolidated_metadata: copies of what is in a group. NaN,
+/// Infinity and -Infinity, which Python writes though JSON has none, are read as the texts "NaN", "Infinity" and
+/// "-Infinity". Throws Error(input), beginning with `where`, where it is no JSON, with the byte, nested deeper than
+/// metadata are, of more than kMostMetadataValues values, and where it is no object.
 nlohmann::json parse_zarr_json(std::string_view text, const std::string& where);
+
+/// How many values `value` is, itself among them.
+std::size_t json_values(const nlohmann::json& value);
 
 /// A value of a document as a message shows it: at most 60 characters.
 std::string json_text(const nlohmann::json& value);

@@ -67,6 +67,9 @@ class ZarrStore {
   std::optional<std::string> text(const std::string& key);
 };
 
+/// `name` as a key: without slashes at its ends.
+std::string without_slashes(std::string_view name);
+
 /// "a/b": where either is empty, the other.
 std::string joined_key(std::string_view group, std::string_view name);
 

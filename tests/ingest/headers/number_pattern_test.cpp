@@ -1,5 +1,9 @@
 #include "ingest/headers/number_pattern.h"
 
+#include <sys/stat.h>
+
+#include <filesystem>
+
 #include "tests/ingest/support/scratch.h"
 
 namespace weir::number_pattern_test {
@@ -39,7 +43,6 @@ TEST(NumberPattern, Stem) {
 TEST(NumberedFiles, ByRisingNumber) {
   const Scratch scratch;
   for (const char* name : {"p_10.raw", "p_9.raw", "p_x.raw", "q_1.raw"}) scratch.write(name, {});
-  std::filesystem::create_directory(scratch.path("p_3.raw"));
   const auto files = numbered_files(scratch.path("p_%d.raw"));
   ASSERT_EQ(files.size(), 2U);
   EXPECT_EQ(files[0].number, 9);
@@ -52,6 +55,20 @@ TEST(NumberedFiles, ByRisingNumber) {
             scratch.path("none") + ": cannot list: No such file or directory; check the pattern");
   EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { numbered_files("a.raw"); }),
             "a.raw: no pattern: the file's name needs one %d or %05d where its number is");
+}
+
+TEST(NumberedFiles, WhatCannotBeRead_IsListedToo) {
+  const Scratch scratch;
+  scratch.write("p_1.raw", {});
+  std::filesystem::create_symlink(scratch.path("none"), scratch.path("p_2.raw"));
+  std::filesystem::create_directory(scratch.path("p_3.raw"));
+  ASSERT_EQ(::mkfifo(scratch.path("p_4.raw").c_str(), 0600), 0);
+  const auto files = numbered_files(scratch.path("p_%d.raw"));
+  ASSERT_EQ(files.size(), 4U);
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    EXPECT_EQ(files[i].number, static_cast<std::int64_t>(i) + 1);
+    EXPECT_EQ(files[i].path, scratch.path("p_" + std::to_string(i + 1) + ".raw"));
+  }
 }
 
 }  // namespace

@@ -1,6 +1,9 @@
 #include "ingest/raw/stack_source.h"
 
+#include <sys/stat.h>
+
 #include <cstdint>
+#include <filesystem>
 #include <numeric>
 
 #include "ingest/source_registry.h"
@@ -118,6 +121,15 @@ TEST(StackSource, RefusesHoles) {
   std::filesystem::remove(scratch.path("s_9.raw"));
   EXPECT_EQ(refusal(pattern, slab_options(4)),
             pattern + ": number 9 is missing between 7 and 16; a stack has no holes");
+}
+
+TEST(StackSource, FileThatCannotBeRead_IsNoHole) {
+  const Scratch scratch;
+  const std::string pattern = write_slabs(scratch, 4);
+  std::filesystem::remove(scratch.path("s_9.raw"));
+  ASSERT_EQ(::mkfifo(scratch.path("s_9.raw").c_str(), 0600), 0);
+  EXPECT_EQ(message_of_error(ErrorKind::input, [&] { open_source(pattern, slab_options(4)); }),
+            scratch.path("s_9.raw") + ": is not a regular file; copy its content to one");
 }
 
 }  // namespace

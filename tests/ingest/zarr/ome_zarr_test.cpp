@@ -122,6 +122,29 @@ TEST(OmeZarr, OtherLevelsAndLabels_AreReadByName) {
   }
 }
 
+TEST(OmeZarr, SlashesAtTheEndsOfAPath_AreNoPartOfIt) {
+  for (const char* const path : {"0/", "/0", "//0//"}) {
+    const ZarrFiles files;
+    files.write(".zgroup", R"({"zarr_format":2})");
+    files.write(".zattrs",
+                cat(R"({"multiscales":[{"axes":[{"name":"z","type":"space","unit":"micrometer"},"y","x"],)",
+                    R"("datasets":[{"path":")", path, R"(","coordinateTransformations":[)",
+                    R"({"type":"scale","scale":[4,3,2]},{"type":"translation","translation":[7,6,5]}]}]}]})"));
+    files.write("0/.zarray", zarray("[1,1,1]", "[1,1,1]"));
+    for (const char* const dataset : {"", "0"}) {
+      SourceOptions options;
+      options.dataset = dataset;
+      const auto source = open_source(files.path(), options);
+      const SourceInfo& info = source->info();
+      EXPECT_EQ(info.dataset, "0") << path;
+      EXPECT_EQ(info.spacing, (std::array{2.0, 3.0, 4.0})) << path;
+      EXPECT_EQ(info.origin, (std::array{5.0, 6.0, 7.0})) << path;
+      EXPECT_EQ(info.axis_labels, (std::array<std::string, 3>{"x", "y", "z"})) << path;
+      EXPECT_EQ(info.details.axes[2].units, "micrometer") << path;
+    }
+  }
+}
+
 TEST(OmeZarr, Inspect_ListsLevelsWithAxesAndPlace) {
   const ZarrFiles files;
   write_image(files, true);

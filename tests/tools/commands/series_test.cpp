@@ -46,6 +46,24 @@ TEST_F(SeriesCommand, EveryStepHasTheSameSizeAndItsOwnValues) {
   EXPECT_EQ(list_directory(directory_.path() / "out").size(), 6U);
 }
 
+// As with a pattern of the shell: two steps of three would pass for the whole.
+TEST_F(SeriesCommand, StepThatCannotBeRead_IsNotLeftOut) {
+  write_steps(3);
+  const std::string step = directory_ / "t_1_64x48x40_uint8.raw";
+  const auto refused = [&](const std::string& what) {
+    const auto made = run_weir({"convert", pattern_, "--lossless", "-o", directory_ / "out/", "--overwrite"});
+    EXPECT_EQ(made.exit_code, 3);
+    EXPECT_NE(made.err.find(cat("weir: ", step, ": ", what, "\n")), std::string::npos) << made.err;
+    EXPECT_NE(made.err.find("1 of 3 volumes"), std::string::npos) << made.err;
+  };
+  std::filesystem::remove(step);
+  std::filesystem::create_symlink(directory_ / "none", step);
+  refused("cannot open for reading: No such file or directory");
+  std::filesystem::remove(step);
+  std::filesystem::create_directory(step);
+  refused("is a directory; name a file in it");
+}
+
 TEST_F(SeriesCommand, RefusesOneOutputNameForAllSteps) {
   write_steps(2);
   const auto made = run_weir({"convert", pattern_, "-o", directory_ / "one.nvdb"});

@@ -131,6 +131,30 @@ TEST(ZarrMetadata, NestedTooDeep_IsRefusedBeforeItIsParsed) {
             "a: has more than 64 lists and objects in each other at byte 68; the file is damaged");
 }
 
+TEST(ZarrMetadata, MoreValuesThanTheLimit_AreRefused) {
+  const auto text = [](std::size_t values) {
+    std::string zeros = "0";
+    for (std::size_t i = 3; i < values; ++i) zeros += ",0";  // the document and the list are values, too
+    return cat(R"({"a":[)", zeros, "]}");
+  };
+  EXPECT_EQ(json_values(parse_zarr_json(text(kMostMetadataValues), "a")), kMostMetadataValues);
+  EXPECT_EQ(
+      message_of_error(ErrorKind::input, [&] { parse_zarr_json(text(kMostMetadataValues + 1), "a"); }),
+      "a: has more than 100000 JSON values, the most that metadata may have; write long lists in its attributes as "
+      "arrays");
+}
+
+TEST(ZarrMetadata, ConsolidatedMetadata_AreLeftOutAndNotCounted) {
+  std::string copies = R"("a/b":{"consolidated_metadata":null,"shape":[1,2]})";
+  for (int i = 0; i < 20000; ++i) copies += cat(R"(,"a/)", i, R"(":{"shape":[1,{"x":[]},3]})");
+  const nlohmann::json document =
+      parse_zarr_json(cat(R"({"zarr_format":3,"consolidated_metadata":{"kind":"inline","metadata":{)", copies,
+                          R"(}},"attributes":{"consolidated_metadata":[4]}})"),
+                      "a");
+  EXPECT_EQ(document.dump(), R"({"attributes":{"consolidated_metadata":[4]},"zarr_format":3})");
+  EXPECT_EQ(parse_zarr_json(R"({"consolidated_metadata":null,"a":[1]})", "a").dump(), R"({"a":[1]})");
+}
+
 TEST(ZarrMetadata, Version3_IsReadAsItIsWritten) {
   const ZarrArray array = v3(zarr_json(
       "[10,20,30]", "[4,5,6]",
