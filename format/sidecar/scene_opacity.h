@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "format/sidecar/scene.h"
@@ -27,5 +28,17 @@ auto interpolate(const std::vector<Point>& points, double at, const Value& value
 
 /// Opacity at kTransferEntries equal distances over [0, 1]. `points` is not empty.
 std::vector<float> opacity_table(const std::vector<OpacityPoint>& points);
+
+/// Opacity between two entries of that table which no look-up gives.
+struct MissedBand {
+  double from;  ///< positions of the first and the last of its points
+  double to;
+  double opacity;  ///< the highest of its points
+  double shown;    ///< the most that look-ups give there: the higher of the entries around it
+};
+
+/// Of the bands and peaks that lose more than a tenth of their opacity in opacity_table, the one that loses most; none
+/// where all are met. `points` is not empty.
+std::optional<MissedBand> missed_band(const std::vector<OpacityPoint>& points);
 
 }  // namespace weir

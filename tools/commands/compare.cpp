@@ -362,7 +362,10 @@ void add_compare(CLI::App& app) {
                    "are: sources and files of the second and of the third one; reads all once more")
       ->type_name("V V.nvdb W W.nvdb")
       ->expected(4);
-  command->add_flag("--json", arguments->json, "one JSON object on stdout");
+  command->add_flag(
+      "--json", arguments->json,
+      "one JSON object on stdout; its lossless is of the finite voxels, and nonfinite_different counts the others "
+      "that read differently");
   add_log_level(*command);
   command->footer(
       "Where the sidecar lies beside the volume, the dataset, index, component, region, spacing and treatment of "

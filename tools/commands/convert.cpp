@@ -40,6 +40,7 @@
 #include "tools/report/conversion_report.h"
 #include "tools/report/finished_output.h"
 #include "tools/report/forecast_report.h"
+#include "tools/report/opacity_warning.h"
 #include "tools/report/progress.h"
 
 namespace weir {
@@ -122,8 +123,9 @@ std::optional<Sidecar> skip_or_replace(const SourceInfo& info, const ConvertArgu
       return std::nullopt;
     case FinishedOutput::State::foreign:
       if (options.overwrite) return std::nullopt;
-      throw usage_error(cat(options.output, ": exists and is not of ", info.path, " (", found.reason,
-                            "); choose another output or pass --overwrite"));
+      throw usage_error(compose(options.output, ": exists and is not of ", info.path, " (", found.reason, "); ",
+                                CommandLineText{"choose another output or pass --overwrite",
+                                                "move that file away, or choose another output or name"}));
     case FinishedOutput::State::unreadable:
       if (options.overwrite) return std::nullopt;
       throw Error(ErrorKind::io, found.reason);
@@ -142,6 +144,14 @@ void say_sizes(std::span<const SeriesStep> steps, std::span<const std::string> o
     spdlog::warn("{}: {} bytes, and {} has {}; give --size for files of one size", outputs[i], made[i].file.bytes,
                  outputs[one], made[one].file.bytes);
     return;
+  }
+}
+
+// Of the scene: what a table misses counts as hidden, and its bytes are saved.
+void say_opacity(const ConversionOptions& options) {
+  if (!options.scene) return;
+  if (const std::string line = opacity_warning(options.scene->scene); !line.empty()) {
+    spdlog::warn("{}: {}", options.scene->path, line);
   }
 }
 
@@ -255,6 +265,7 @@ void print_json(std::span<const Sidecar> sidecars) {
 void convert(const CLI::App& command, const ConvertArguments& a) {
   auto [source_options, options] = command_request(a.options);
   options.provenance = {WEIR_VERSION, build_commit(), given_options(command, a.options)};
+  say_opacity(options);
   const std::vector<SeriesStep> steps = expand_series(a.inputs, source_options, log_notice);
   const std::vector<std::string> outputs =
       series_outputs(steps, a.output, source_options, a.brief_names ? DefaultNames::of_call : DefaultNames::of_file);

@@ -30,6 +30,7 @@
 #include "tools/options/result_directory.h"
 #include "tools/options/volume_series.h"
 #include "tools/plot/color_bar.h"
+#include "tools/report/opacity_warning.h"
 #include "tools/report/progress.h"
 #include "tools/report/quantity_title.h"
 #include "tools/report/standard_output.h"
@@ -166,6 +167,9 @@ void play_series(const PlayArguments& arguments) {
   }
   const FrameWriter write = open_output(arguments, *files, volumes.size());
   fix_look(request, volumes);
+  if (const std::string line = opacity_warning(request.scene); !line.empty()) {
+    spdlog::warn("{}: {}", arguments.picture.at("scene"), line);
+  }
   const std::optional<Image> bar = bar_of_series(request, volumes.front());
   const std::int32_t bar_width = bar ? bar->width : 0;
 

@@ -34,6 +34,7 @@
 #include "tools/plot/color_bar.h"
 #include "tools/report/foreign_file.h"
 #include "tools/report/map_warning.h"
+#include "tools/report/opacity_warning.h"
 #include "tools/report/progress.h"
 #include "tools/report/quantity_title.h"
 #include "tools/report/surface_warning.h"
@@ -124,6 +125,9 @@ void render(const RenderArguments& arguments) {
   if (range) {
     if (const std::string line = surface_warning(request.scene, *range); !line.empty()) spdlog::warn("{}", line);
     if (!request.scene.volume.range) request.scene.volume.range = {range->min, range->max};
+  }
+  if (const std::string line = opacity_warning(request.scene); !line.empty()) {
+    spdlog::warn("{}: {}", arguments.picture.at("scene"), line);
   }
 
   std::optional<Image> bar;

@@ -245,6 +245,11 @@ TEST(Compare, NonFiniteVoxelsAreCounted) {
   EXPECT_EQ(run_weir({"compare", volume.raw, volume.nvdb}).out,
             "lossless over valid voxels: all 9400 finite voxels read bit for bit\n"
             "not finite 300 voxels of the source, left out of the error; 300 of them read differently\n");
+  const std::string help = run_weir({"compare", "--help"}).out;
+  EXPECT_NE(help.find("its lossless is of the finite voxels, and nonfinite_different counts the others that read "
+                      "differently\n"),
+            std::string::npos)
+      << help;
 }
 
 TEST(Compare, BoundedMemory) {
