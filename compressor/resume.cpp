@@ -25,14 +25,17 @@ bool is_resumable(const SourceInfo& info, const ConversionOptions& options, bool
   return !in_memory && (options.resume == Resume::on || (options.resume == Resume::automatic && large));
 }
 
+void require_lasting_output(const ConversionOptions& options, bool in_memory) {
+  if (options.resume != Resume::on || !in_memory) return;
+  throw Error(ErrorKind::usage,
+              compose(option("resume", "on"), ": ", options.output,
+                      " lies on a memory file system; choose an output on a disk or ", option("resume", "off")));
+}
+
 std::unique_ptr<Journal> open_journal(const SourceInfo& info, const ConversionOptions& options,
                                       const ConversionControl& control, const OutputFiles& output, FileSystem& files) {
   const bool in_memory = files.is_memory(output.directory());
-  if (options.resume == Resume::on && in_memory) {
-    throw Error(ErrorKind::usage,
-                compose(option("resume", "on"), ": ", options.output,
-                        " lies on a memory file system; choose an output on a disk or ", option("resume", "off")));
-  }
+  require_lasting_output(options, in_memory);
   if (!is_resumable(info, options, in_memory)) {
     if (remove_leftovers(files, options.output) && control.notice) control.notice(leftovers_notice(options.output));
     // Unless it is this conversion's WorkDirectory.

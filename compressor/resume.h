@@ -17,9 +17,11 @@ namespace weir {
 /// Whether an interrupted conversion can be continued, with an output on a file system that is memory or not.
 bool is_resumable(const SourceInfo& info, const ConversionOptions& options, bool in_memory);
 
+/// Throws Error(usage) for Resume::on where the output's file system is memory, which keeps nothing.
+void require_lasting_output(const ConversionOptions& options, bool in_memory);
+
 /// The journal of a conversion, with what an interrupted one left in it. Null where `options` or the volume's size rule
-/// out continuing; then what was left is removed, with a notice. Throws Error(usage) for Resume::on where the output's
-/// file system keeps nothing.
+/// out continuing; then what was left is removed, with a notice. Throws what require_lasting_output throws.
 std::unique_ptr<Journal> open_journal(const SourceInfo& info, const ConversionOptions& options,
                                       const ConversionControl& control, const OutputFiles& output, FileSystem& files);
 

@@ -3,6 +3,7 @@
 #include <cerrno>
 
 #include "compressor/forecast/scratch_file_system.h"
+#include "compressor/resume.h"
 #include "compressor/resume/work_directory.h"
 #include "format/base/error.h"
 #include "format/io/output_names.h"
@@ -17,6 +18,7 @@ OutputPlaces::OutputPlaces(FileSystem& files, const ConversionOptions& options)
   ScratchFileSystem scratch(files, options.output);
   const OutputFiles output(scratch, options.output, options.overwrite);
   const WorkDirectory work(scratch, options.output, options.work_dir);
+  require_lasting_output(options, files.is_memory(directory_));
   spill_directory_ = work.path() == hidden_directory_of(options.output) ? directory_ : work.path();
 }
 

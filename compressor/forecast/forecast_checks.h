@@ -14,7 +14,8 @@ namespace weir {
 /// Where a conversion writes.
 class OutputPlaces {
  public:
-  /// Throws what OutputFiles and WorkDirectory throw of options.output and options.work_dir. All outlive the object.
+  /// Throws what OutputFiles, WorkDirectory and require_lasting_output throw of options.output, options.work_dir and
+  /// options.resume. All outlive the object.
   OutputPlaces(FileSystem& files, const ConversionOptions& options);
 
   /// Throws Error(io) where there is no room for a file of so many bytes and what lies beside it until it is done.

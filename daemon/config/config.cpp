@@ -35,6 +35,8 @@ std::string no_viewer_reason(const ServiceConfig& service) {
              " jobs would get too little of it; give more memory, or fewer jobs");
 }
 
+bool WatchConfig::takes_any_raw() const { return convert_option("dims") || convert_option("type"); }
+
 std::string WatchConfig::unused_key() const {
   if (!gives_delete_after || source == AfterDone::delete_after_verify) return "";
   return "delete_after has no effect, since nothing is deleted; set source = \"delete-after-verify\", or leave it out";

@@ -84,7 +84,7 @@ struct WatchConfig {
   bool recursive = false;
   std::string output;                ///< sub-directories of a recursive watch are repeated below it
   std::string name;                  ///< template of output names, "{stem}.nvdb"; empty: convert's default
-  std::vector<std::string> include;  ///< globs; empty: everything a source can open
+  std::vector<std::string> include;  ///< globs; empty: names of known formats, see PathFilter
   std::vector<std::string> exclude;  ///< globs
   /// Absolute; these and all below them are never sources: outputs of every watch, work directory, the
   /// service's own files. Only what lies in `directory`.
@@ -105,6 +105,9 @@ struct WatchConfig {
 
   /// The value of --NAME in convert_options ("true" of a flag); nullopt where it is not given.
   std::optional<std::string> convert_option(std::string_view option) const;
+  /// Whether any file NAME.raw is a source where `include` is empty: dims or type is given, so that a file whose name
+  /// does not say the other one is a job that says what is missing.
+  bool takes_any_raw() const;
   /// Of a key that has no effect beside the others, and what to do; empty: there is none.
   std::string unused_key() const;
   bool operator==(const WatchConfig&) const = default;

@@ -17,6 +17,7 @@
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "format/base/toml_reader.h"
+#include "format/io/refused_open.h"
 #include "ingest/series_names.h"
 
 namespace weir {
@@ -107,15 +108,20 @@ std::string read_whole(const std::string& path) {
   std::array<char, 4096> piece{};
   while (in.read(piece.data(), piece.size()), in.gcount() > 0)
     text.append(piece.data(), static_cast<std::size_t>(in.gcount()));
-  if (!in.is_open() || in.bad()) throw Error(ErrorKind::input, io_error(path, "read", errno).message());
+  if (!in.is_open() || in.bad()) throw refused_open(path, "read", errno);
   return text;
 }
 
+// At the key, and of the kind that the file's error has: one that may not be read makes no configuration wrong.
 std::string token_of_file(ConfigReader& reader, const std::string& path) {
   try {
     return read_token_file(path);
   } catch (const Error& error) {
-    reader.refuse("token_file", error.what());
+    try {
+      reader.refuse("token_file", error.what());
+    } catch (const Error& placed) {
+      throw Error(error.kind(), placed.message(), error.system_failure());
+    }
   }
 }
 

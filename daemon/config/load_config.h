@@ -10,8 +10,8 @@
 namespace weir {
 
 /// Reads and checks `path`. Relative paths in it are relative to its directory. Throws Error(input) with
-/// "PATH:LINE:COLUMN: ..." for an unknown key, a wrong value or a contradiction, Error(input) or Error(io)
-/// where a file cannot be read.
+/// "PATH:LINE:COLUMN: ..." for an unknown key, a wrong value or a contradiction; Error(input) where a file is missing,
+/// Error(io) where this user may not read it.
 DaemonConfig load_config(const std::string& path);
 
 }  // namespace weir

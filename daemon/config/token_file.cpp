@@ -11,19 +11,18 @@
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "format/io/refused_open.h"
 
 namespace weir {
 
 std::string read_token_file(const std::string& path) {
   struct stat status {};
-  if (stat(path.c_str(), &status) != 0) {
-    throw Error(ErrorKind::input, io_error(path, "read the token", errno).message());
-  }
+  if (stat(path.c_str(), &status) != 0) throw refused_open(path, "read the token", errno);
   if (S_ISDIR(status.st_mode)) throw input_error(path, "is a directory; name a file with the token");
   if ((status.st_mode & S_IROTH) != 0) throw input_error(path, "can be read by everybody; chmod o-r it");
   std::ifstream in(path, std::ios::binary);
   const std::string text(std::istreambuf_iterator<char>(in), {});
-  if (!in.is_open() || in.bad()) throw Error(ErrorKind::input, io_error(path, "read", errno).message());
+  if (!in.is_open() || in.bad()) throw refused_open(path, "read", errno);
   return text.substr(0, text.find_last_not_of(" \t\r\n") + 1);
 }
 

@@ -6,8 +6,8 @@
 
 namespace weir {
 
-/// The text of the file without white space at its end. Throws Error(input) "PATH: ..." where it cannot be read, or can
-/// be by everybody: that is no secret.
+/// The text of the file without white space at its end. Throws Error(input) "PATH: ..." where it is missing, or can be
+/// read by everybody: that is no secret; Error(io) where the system does not let this user read it.
 std::string read_token_file(const std::string& path);
 
 /// Why `token` cannot be one, with the remedy; empty where it can.

@@ -141,7 +141,7 @@ bool JobStore::enqueue(std::int64_t id) {
 bool JobStore::start(std::int64_t id) {
   const std::int64_t now = this->now();
   database_
-      .prepare(cat("UPDATE jobs SET state = 'running', changed_ms = ?, started_ms = ? WHERE id = ? AND ",
+      .prepare(cat("UPDATE jobs SET state = 'running', changed_ms = ?, started_ms = ?, reason = '' WHERE id = ? AND ",
                    in_state({JobState::waiting})))
       .bind(now)
       .bind(now)

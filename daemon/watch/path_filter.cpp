@@ -69,7 +69,7 @@ PathFilter::PathFilter(const WatchConfig& watch)
     : directory_(watch.directory),
       real_directory_(real_path(watch.directory).string()),
       recursive_(watch.recursive),
-      any_raw_(watch.convert_option("dims") && watch.convert_option("type")),
+      any_raw_(watch.takes_any_raw()),
       include_(watch.include),
       exclude_(watch.exclude),
       marker_(watch.complete == Completion::marker ? watch.marker : std::string()) {

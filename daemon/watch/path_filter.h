@@ -15,7 +15,7 @@ namespace weir {
 /// A pattern of include or exclude without a slash is for the last component ("*.raw"), one with a slash for the
 /// whole path ("run*/out/*.h5"): see glob.h. Hidden directories are never entered; hidden files are for
 /// patterns whose last component begins with a dot. Without include, sources are the names of formats weir
-/// reads: NAME_XxYxZ_TYPE.raw (any .raw where the watch's options say dims and type), what ends with one of
+/// reads: NAME_XxYxZ_TYPE.raw (any .raw where WatchConfig::takes_any_raw), what ends with one of
 /// SourceFormat::watched_endings, the Header of a plotfile of AMReX, and the zarr.json, .zgroup or .zarray of a
 /// directory NAME.zarr.
 ///

@@ -43,7 +43,9 @@ constexpr ConfigKey kConfigKeys[] = {
     {"watch", "output", "", "where results go"},
     {"watch", "label", "the directory", "name in state, log and metrics"},
     {"watch", "recursive", "false", "watch what is below, too"},
-    {"watch", "include", "all formats' names", "globs of the sources"},
+    {"watch", "include", "names of known formats",
+     "globs of the sources; without any, a .raw file is one only if it is named NAME_XxYxZ_TYPE.raw or dims or type is "
+     "set, and a .nvdb file is none"},
     {"watch", "exclude", "none", "globs of what is no source"},
     {"watch", "name", "\"{stem}.nvdb\"", "of the outputs, with {stem}, {dataset} and {step}"},
     {"watch", "complete", "\"auto\"", "when a file is whole: close, rename, marker, size, stable or auto"},

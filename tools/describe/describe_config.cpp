@@ -58,13 +58,19 @@ std::string watch_method(const WatchConfig& watch) {
   }
 }
 
+// What a watch without patterns takes.
+std::string default_include(const WatchConfig& watch) {
+  return cat("names of known formats; ", watch.takes_any_raw() ? "any .raw" : ".raw only as NAME_XxYxZ_TYPE.raw",
+             "; .nvdb only if named");
+}
+
 void describe(std::ostream& out, const WatchConfig& watch) {
   std::error_code ignored;
   out << "watch \"" << watch.label << "\"\n";
   say(out, "directory",
       cat(watch.directory, watch.recursive ? ", and below" : "",
           std::filesystem::is_directory(watch.directory, ignored) ? "" : ", which is not there yet"));
-  say(out, "include", joined(watch.include, " ", "everything that can be converted"));
+  say(out, "include", watch.include.empty() ? default_include(watch) : joined(watch.include, " ", ""));
   if (!watch.exclude.empty()) say(out, "exclude", joined(watch.exclude, " ", ""));
   for (const std::string& path : watch.excluded_paths) say(out, "never", path);
   for (const NumberedFiles& files : watch.excluded_numbers) {

@@ -17,6 +17,7 @@
 #include "daemon/config/load_config.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "format/io/refused_open.h"
 #include "tools/command.h"
 
 namespace weir {
@@ -34,7 +35,7 @@ constexpr std::uint64_t kMaxAnswer = std::uint64_t{64} << 20;  // bytes; a full 
 
 std::string first_word_of(const std::string& path) {
   std::ifstream file(path);
-  if (!file) throw Error(ErrorKind::input, io_error(path, "open", errno).message());
+  if (!file) throw refused_open(path, "open", errno);
   std::string word;
   file >> word;
   return word;

@@ -58,8 +58,10 @@ std::string problems_text(const Json& counts) {
 std::string watch_text(const Json& watch) {
   const std::string how = watch.at("up").get<bool>() ? text_at(watch, "method") : "DOWN: " + text_at(watch, "reason");
   const auto overflows = watch.at("overflows").get<std::uint64_t>();
-  return cat("watch       ", text_at(watch, "directory"), " -> ", text_at(watch, "output"), ": ", how, ", ",
-             watch.at("jobs").at("done").get<std::uint64_t>(), " done", problems_text(watch.at("jobs")),
+  const std::string directory = text_at(watch, "directory");
+  const std::string label = text_at(watch, "label");
+  return cat("watch       ", label == directory ? "" : label + ": ", directory, " -> ", text_at(watch, "output"), ": ",
+             how, ", ", watch.at("jobs").at("done").get<std::uint64_t>(), " done", problems_text(watch.at("jobs")),
              overflows > 0 ? cat(", ", overflows, " queue overflows") : std::string(), '\n');
 }
 

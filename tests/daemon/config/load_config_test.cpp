@@ -6,8 +6,10 @@
 #include <filesystem>
 
 #include "format/base/error.h"
+#include "tests/support/message_of_error.h"
 #include "tests/support/run_command.h"
 #include "tests/support/temporary_directory.h"
+#include "tests/support/unreadable_file.h"
 
 namespace weir::config_test {
 namespace {
@@ -335,6 +337,14 @@ TEST_F(Config, OutputNameThatFitsAllSources_IsRefused) {
             "4:8: name is \"../{stem}.nvdb\", it must not have a slash; directories are named by output");
   EXPECT_EQ(watch_refusal("name = '{time}.nvdb'"),
             "4:8: {time} in an output's name is not known; there are {stem}, {dataset} and {step}");
+}
+
+TEST_F(Config, TokenFileThatMayNotBeRead_IsAnIoErrorAtItsKey) {
+  const std::string file = unreadable_file();
+  if (file.empty()) GTEST_SKIP() << "this system has no file that root may not read";
+  EXPECT_EQ(message_of_error(ErrorKind::io, [&] { load("[service]\ntoken_file = '" + file + "'\n" + kWatch); }),
+            path_ + ":2:14: " + file +
+                ": cannot read: Permission denied; give this user the right to read it and to enter its directories");
 }
 
 TEST_F(Config, ConversionOptionsAreCheckedAsTheCommandDoes) {

@@ -94,7 +94,7 @@ TEST(WatchFaults, SecondSourceOfTheSameOutput_FailsWithTheReason) {
   ASSERT_TRUE(ServiceHarness::eventually([&] { return service.count("failed") == 1; })) << service.log();
   EXPECT_EQ(service.job(name + ".nrrd")["reason"],
             cat(service.out(name), ".nvdb: exists and is not of ", service.in(name), ".nrrd (was made of ",
-                service.in(name), ".raw); choose another output or pass --overwrite"));
+                service.in(name), ".raw); move that file away, or choose another output or name"));
   EXPECT_EQ(service.job(name + ".nrrd")["attempts"], 1);
   EXPECT_EQ(service.difference(name + ".raw", name + ".nvdb"), "");
 }
@@ -273,10 +273,23 @@ TEST(WatchFaults, ForeignOutput_IsNotReplaced) {
   service.add("one");
   ASSERT_TRUE(ServiceHarness::eventually([&] { return service.count("failed") == 1; })) << service.log();
   EXPECT_EQ(read_file(service.out(name + ".nvdb")), "precious");
-  EXPECT_NE(service.job(name + ".raw")["reason"].get<std::string>().find("exists and is not of "), std::string::npos);
+  EXPECT_EQ(service.job(name + ".raw")["reason"],
+            cat(service.out(name), ".nvdb: exists and is not of ", service.in(name),
+                ".raw (has no sidecar, so that weir cannot say what it is); move that file away, or choose another "
+                "output or name"));
   fs::remove(service.out(name + ".nvdb"));
   EXPECT_EQ(service.post("/api/retry-failed")["retried"], 1);
   ASSERT_TRUE(service.eventually_done(1)) << service.log();
+}
+
+// Without the job nobody would be told.
+TEST(WatchFaults, RawFileWithoutATypeInAWatchWithDims_FailsWithWhatIsMissing) {
+  ServiceHarness service("", "dims = [24, 20, 16]\n");
+  service.start();
+  write_file(service.in("plain.raw"), ServiceHarness::volume(3));
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.count("failed") == 1; })) << service.log();
+  const std::string reason = service.job("plain.raw")["reason"];
+  EXPECT_TRUE(reason.starts_with(service.in("plain.raw") + ": type unknown; give type with one of ")) << reason;
 }
 
 TEST(WatchFaults, StartedWithSigchldIgnored_DamagedOutputFailsItsVerification) {

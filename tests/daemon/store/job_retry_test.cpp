@@ -64,6 +64,19 @@ TEST_F(StoredJobs, Hasten_FailedJob_GetsOneMoreAttempt) {
   EXPECT_FALSE(store_->hasten(bad));
 }
 
+TEST_F(StoredJobs, StartOfAnotherAttempt_ClearsTheReasonOfTheLast) {
+  const std::int64_t id = running("/in/a.raw");
+  store_->fail(id, failure(5, "no such server"));
+  EXPECT_EQ(job(id).result.reason, "no such server") << "why it waits";
+  now_ += 3'600'000;
+  EXPECT_TRUE(store_->start(id));
+  EXPECT_EQ(job(id).state, JobState::running);
+  EXPECT_EQ(job(id).result.reason, "");
+  store_->fail(id, failure(5, "no such server"));
+  EXPECT_EQ(job(id).result.reason, "no such server");
+  EXPECT_EQ(job(id).attempts, 2);
+}
+
 TEST_F(StoredJobs, ForcedRetry_StaysForcedUntilDoneOrCancelled) {
   const std::int64_t id = running("/in/a.raw");
   store_->finish(id, success());

@@ -36,8 +36,20 @@ TEST_F(PathFilterTest, NoIncludePattern_TakesNamesOfKnownFormats) {
                            "a.h5.partial", ".a.h5", "h5", "a.h5.gz", ""}) {
     EXPECT_FALSE(accepts(name)) << name;
   }
-  watch.convert_options = {"--dims=4,4,4", "--type=uint8"};
-  EXPECT_TRUE(accepts("a.raw"));
+}
+
+// Its job says what is missing; without a job nothing would.
+TEST_F(PathFilterTest, DimsOrTypeInTheWatch_TakesAnyRawName) {
+  for (const std::vector<std::string>& options :
+       {std::vector<std::string>{"--dims=4,4,4"}, {"--type=uint8"}, {"--dims=4,4,4", "--type=uint8"}}) {
+    watch.convert_options = options;
+    EXPECT_TRUE(accepts("a.raw")) << options[0];
+    EXPECT_TRUE(accepts("sub/a.RAW")) << options[0];
+    EXPECT_FALSE(accepts("a.bin")) << options[0];
+    EXPECT_FALSE(accepts("a.nvdb")) << options[0];
+  }
+  watch.convert_options = {"--rate=8"};
+  EXPECT_FALSE(accepts("a.raw"));
 }
 
 TEST_F(PathFilterTest, PatternsWithASlashMatchPathsOthersMatchNames) {

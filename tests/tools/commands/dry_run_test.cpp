@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tests/support/run_command.h"
+#include "tests/support/scoped_mount.h"
 
 namespace weir::dry_run_test {
 namespace {
@@ -155,6 +156,24 @@ TEST_F(DryRunTest, Errors_AreTheConversions) {
     EXPECT_EQ(dry.err, real.err);
   }
   EXPECT_EQ(list_directory(directory_.path()), (std::vector<std::string>{"t_96x80x72_float32.raw", "taken.nvdb"}));
+}
+
+TEST_F(DryRunTest, ResumeOnInAMemoryFileSystem_IsRefusedAsByTheConversion) {
+  const std::string memory = directory_ / "memory";
+  std::filesystem::create_directory(memory);
+  const ScopedMount mount(memory, 8 << 20);
+  if (!mount.refused().empty()) GTEST_SKIP() << mount.refused();
+  const std::string output = memory + "/t.nvdb";
+  const auto dry = dry_run({"-o", output, "--resume", "on"});
+  EXPECT_EQ(dry.exit_code, 2);
+  EXPECT_EQ(dry.out, "");
+  EXPECT_EQ(dry.err, "weir: --resume on: " + output +
+                         " lies on a memory file system; choose an output on a disk or --resume off\n");
+  EXPECT_EQ(list_directory(memory), std::vector<std::string>{});
+  const auto real = convert({"-o", output, "--resume", "on"});
+  EXPECT_EQ(real.exit_code, 2);
+  EXPECT_EQ(real.err, dry.err);
+  EXPECT_EQ(dry_run({"-o", output, "--resume", "off"}).exit_code, 0);
 }
 
 TEST_F(DryRunTest, MissingDirectory_IsNotLeft) {

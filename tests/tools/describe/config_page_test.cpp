@@ -9,6 +9,7 @@
 #include "daemon/config/load_config.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "ingest/source_registry.h"
 #include "tests/support/run_command.h"
 #include "tests/support/temporary_directory.h"
 
@@ -73,6 +74,18 @@ TEST(ConfigPage, KeysOfAChoiceListAllValues) {
         "\\fBfollow\\fR\ninside or anywhere: where files may lie that a source names; inside: in the directory and "
         "below; default: \"inside\"\n"}) {
     EXPECT_NE(page.find(entry), std::string::npos) << entry << page;
+  }
+}
+
+TEST(ConfigPage, TheDocumentListsTheEndingsThatAWatchTakes) {
+  const std::string document = read_file(WEIR_SOURCE_DIR "/docs/operations.md");
+  const std::size_t begin = document.find("\n* Without `include`, sources are ");
+  ASSERT_NE(begin, std::string::npos);
+  const std::string paragraph = document.substr(begin, document.find("\n* ", begin + 1) - begin);
+  for (const SourceFormat& format : source_formats()) {
+    for (const std::string_view ending : format.watched_endings) {
+      EXPECT_NE(paragraph.find(cat('`', ending, '`')), std::string::npos) << ending;
+    }
   }
 }
 

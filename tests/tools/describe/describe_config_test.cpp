@@ -8,6 +8,7 @@
 #include "format/base/text.h"
 #include "tests/support/run_command.h"
 #include "tests/support/temporary_directory.h"
+#include "tests/support/unreadable_file.h"
 
 namespace weir::describe_config_test {
 namespace {
@@ -82,7 +83,7 @@ watch "@/in"
   convert     --dims=64,64,64 --type=uint8 --rate=4
 watch "all"
   directory   @/later, and below, which is not there yet
-  include     everything that can be converted
+  include     names of known formats; .raw only as NAME_XxYxZ_TYPE.raw; .nvdb only if named
   exclude     restart*
   output      /nvdb/{stem}_all.nvdb
   thumbnails  no
@@ -95,6 +96,15 @@ watch "all"
 )"));
   EXPECT_EQ(list_directory(directory_.path()), (std::vector<std::string>{"in/", "watch.toml"}))
       << "checking made something";
+}
+
+TEST_F(WatchCheck, DimsOrTypeWithoutInclude_SaysThatAnyRawIsTaken) {
+  const std::string keys = "[[watch]]\ndirectory = 'in'\noutput = 'out'\n";
+  for (const char* key : {"dims = [4, 4, 4]\n", "type = 'uint8'\n"}) {
+    const std::string out = check(keys + key).out;
+    EXPECT_NE(out.find("\n  include     names of known formats; any .raw; .nvdb only if named\n"), std::string::npos)
+        << out;
+  }
 }
 
 TEST_F(WatchCheck, ControlSocketAndPortFile_ArePrintedWhereTheyAreSet) {
@@ -148,6 +158,20 @@ TEST_F(WatchCheck, AMistakeIsOneLineAndExitCode3) {
                              "bytes / file bytes\n"));
   EXPECT_EQ(run_weir({"watch", "--check", directory_ / "missing.toml"}).err,
             here("weir: @/missing.toml: cannot read: No such file or directory\n"));
+}
+
+TEST_F(WatchCheck, ConfigurationThatMayNotBeRead_ExitsWith5) {
+  const std::string unreadable = unreadable_file();
+  if (unreadable.empty()) GTEST_SKIP() << "this system has no file that root cannot read";
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"watch", "--check", unreadable}, {"watch", unreadable}}) {
+    const CommandResult result = run_weir(command);
+    EXPECT_EQ(result.exit_code, 5);
+    EXPECT_EQ(result.out, "");
+    EXPECT_EQ(result.err, "weir: " + unreadable +
+                              ": cannot read: Permission denied; give this user the right to read it and to enter its "
+                              "directories\n");
+  }
 }
 
 TEST_F(WatchCheck, WithoutAFileIsAUsageError) {

@@ -20,6 +20,7 @@
 #include "tests/daemon/support/served.h"
 #include "tests/support/run_command.h"
 #include "tests/support/temporary_directory.h"
+#include "tests/support/unreadable_file.h"
 
 namespace weir::service_client_test {
 namespace {
@@ -209,6 +210,20 @@ TEST_F(ServiceCommands, RefuseAMalformedAddress) {
   const CommandResult result = run_weir({"jobs", "--address", "8470"});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_EQ(result.err, "weir: --address: \"8470\" is no address; write HOST:PORT, as 127.0.0.1:8470 or [::1]:8470\n");
+}
+
+TEST_F(ServiceCommands, FileThatMayNotBeRead_ExitsWith5) {
+  const std::string unreadable = unreadable_file();
+  if (unreadable.empty()) GTEST_SKIP() << "this system has no file that root cannot read";
+  const auto refused = [&](const char* option, const std::string& action) {
+    const CommandResult result = run_weir({"status", option, unreadable});
+    EXPECT_EQ(result.exit_code, 5) << option;
+    EXPECT_EQ(result.err,
+              cat("weir: ", unreadable, ": cannot ", action,
+                  ": Permission denied; give this user the right to read it and to enter its directories\n"));
+  };
+  refused("--config", "read");
+  refused("--token-file", "open");
 }
 
 TEST_F(ServiceCommands, SendTheTokenFromFileOrEnvironment) {

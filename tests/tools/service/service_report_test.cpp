@@ -78,14 +78,14 @@ TEST(ServiceReport, ShowsTheStatus) {
   status.running.push_back({27, "run", "/in/d.raw", "verify", std::nullopt, 6, 100, 0});
   status.watches.push_back({"run", "/in", "/out", "inotify", true, "", {0, 15, 2, 24, 1, 0, 0}, 3, std::nullopt});
   status.watches.push_back(
-      {"ct", "/ct", "/ct/nvdb", "poll", false, "it is not there", {0, 0, 0, 0, 0, 2, 0}, 0, std::nullopt});
+      {"/ct", "/ct", "/ct/nvdb", "poll", false, "it is not there", {0, 0, 0, 0, 0, 2, 0}, 0, std::nullopt});
   EXPECT_EQ(status_text(to_json(status), 1000 + 3 * 86400),
             "service     paused (/out is full), weir 0.1.0, up 3 days, /etc/weir.toml\n"
             "jobs        15 waiting (the oldest for 62 s), 2 running, 24 done, 1 failed, 2 quarantined\n"
             "throughput  141.1 MiB/s in the last minute; since start 24 conversions, 12.0 GiB in, 1.5 GiB out\n"
             "running     26 /in/c.raw: convert, 62 % after 4.1 s\n"
             "running     27 /in/d.raw: verify, 6.0 s\n"
-            "watch       /in -> /out: inotify, 24 done, 1 failed, 3 queue overflows\n"
+            "watch       run: /in -> /out: inotify, 24 done, 1 failed, 3 queue overflows\n"
             "watch       /ct -> /ct/nvdb: DOWN: it is not there, 0 done, 2 quarantined\n");
 }
 

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "format/base/text.h"
+#include "tests/support/unreadable_file.h"
 #include "tests/tools/support/converted_volume.h"
 #include "tests/tools/view/view_client.h"
 
@@ -292,6 +293,15 @@ TEST_F(ViewCommandTest, TokenThatEverybodyCanRead_IsRefused) {
   write_file(token, "secret\n");
   std::filesystem::permissions(token, std::filesystem::perms(0644));
   expect_refused({"view", volume_, "--token-file", token}, 3, cat(token, ": can be read by everybody; chmod o-r it"));
+}
+
+TEST_F(ViewCommandTest, TokenThatMayNotBeRead_ExitsWith5) {
+  const std::string token = unreadable_file();
+  if (token.empty()) GTEST_SKIP() << "this system has no file that root cannot read";
+  expect_refused({"view", volume_, "--token-file", token}, 5,
+                 cat(token,
+                     ": cannot read: Permission denied; give this user the right to read it and to enter its "
+                     "directories"));
 }
 
 }  // namespace
