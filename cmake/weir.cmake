@@ -174,6 +174,20 @@ function(weir_leave_out variable)
   set(${variable} ${kept} PARENT_SCOPE)
 endfunction()
 
+# weir_leave_out_slow_tests(): adds those of tests/slow_tests.txt to WEIR_TESTS_LEFT_OUT, unless WEIR_SLOW_TESTS is on.
+function(weir_leave_out_slow_tests)
+  set(slow_tests ${PROJECT_SOURCE_DIR}/tests/slow_tests.txt)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${slow_tests})
+  set(slow)
+  if(NOT WEIR_SLOW_TESTS)
+    file(STRINGS ${slow_tests} slow REGEX "^[^#]")
+  endif()
+  set(WEIR_SLOW_TEST_NAMES ${slow} PARENT_SCOPE)
+  list(PREPEND slow ${WEIR_TESTS_LEFT_OUT})
+  list(JOIN slow ":" patterns)
+  set(WEIR_TESTS_LEFT_OUT ${patterns} PARENT_SCOPE)
+endfunction()
+
 # weir_tests(NAME): every .cpp in tests/NAME/ as the program weir_tests_NAME.
 function(weir_tests name)
   set(patterns ${PROJECT_SOURCE_DIR}/tests/${name}/*.cpp)

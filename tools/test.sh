@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
 # The checks, in three sizes:
-#   tools/test.sh          the tests of the release build, but some that take long.
-#   tools/test.sh --ci     what CI runs: besides, the kernels and the benchmarks compiled; the format of C++, the shell
-#                          scripts and the structure of the sources checked; the tests of the formats, the readers and the
-#                          daemon (but heavy ones) again with AddressSanitizer and UndefinedBehaviorSanitizer and, where
-#                          threads run, with ThreadSanitizer; a short run of each fuzzer. The tests of the command once more
-#                          of a build without HDF5, OpenVDB and all else that is optional. On a machine so slow that CI
-#                          would not end in time the last of these are skipped, and that is said.
-#   tools/test.sh --full   besides, those that take long, and all tests with the sanitizers, the property tests over a
-#                          thousand volumes, Zarr against npm's zarrita, AMReX against yt, and clang-tidy.
+#   tools/test.sh          the tests of the release build, but those that take long (tests/slow_tests.txt).
+#   tools/test.sh --ci     what CI runs: besides, most of those that take long; the kernels and the benchmarks compiled;
+#                          the format of C++, the shell scripts and the structure of the sources checked; the tests of the
+#                          formats, the readers and the daemon (but heavy ones) again with AddressSanitizer and
+#                          UndefinedBehaviorSanitizer and, where threads run, with ThreadSanitizer; a short run of each
+#                          fuzzer. The tests of the command once more of a build without HDF5, OpenVDB and all else that is
+#                          optional. On a machine so slow that CI would not end in time the last of these are skipped, and
+#                          that is said.
+#   tools/test.sh --full   besides, all tests, all of them with the sanitizers too, the property tests over a thousand
+#                          volumes, Zarr against npm's zarrita, AMReX against yt, and clang-tidy.
 # Says what it does and how long that took last time. Logs are in build/checks/. The last line is `N passed, N failed,
 # N skipped`; failed and skipped checks are named above it. Exits with 1 where anything failed.
 #   WEIR_FUZZ_SECONDS   for each fuzzer, default 15
@@ -266,6 +267,10 @@ fi
 targets=(weir weir_tests)
 [[ $size == test ]] || targets=() # all, with the benchmarks
 [[ $size != full ]] || export WEIR_MANY_FILES=2000 WEIR_KILLS=200 WEIR_TESTS_LEFT_OUT=''
+if [[ $size == test ]]; then
+  export WEIR_SLOW_TESTS=OFF
+  echo "left out: $(grep -vc '^#' tests/slow_tests.txt) tests that take 3 s or more each (tests/slow_tests.txt); tools/test.sh --ci runs them"
+fi
 if build release "${targets[@]}"; then run_tests release; fi
 unset WEIR_MANY_FILES WEIR_KILLS WEIR_TESTS_LEFT_OUT
 if [[ $size != test ]]; then
