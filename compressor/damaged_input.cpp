@@ -23,7 +23,7 @@ std::optional<Sidecar> certificate_of(const std::string& path, const std::string
   };
   try {
     Sidecar read = read_sidecar(sidecar);
-    if (is_of(read, NvdbFile(path).grid())) return read;
+    if (is_of(read, NvdbFile(path))) return read;
     say(cat(sidecar, ": is of another volume than ", path));
   } catch (const Error& error) {
     say(error.what());

@@ -269,7 +269,7 @@ targets=(weir weir_tests)
 [[ $size != full ]] || export WEIR_MANY_FILES=2000 WEIR_KILLS=200 WEIR_TESTS_LEFT_OUT=''
 if [[ $size == test ]]; then
   export WEIR_SLOW_TESTS=OFF
-  echo "left out: $(grep -vc '^#' tests/slow_tests.txt) tests that take 3 s or more each (tests/slow_tests.txt); tools/test.sh --ci runs them"
+  echo "left out: $(grep -vc '^#' tests/slow_tests.txt) tests that take 3 s or more each (tests/slow_tests.txt); tools/test.sh --ci runs most of them"
 fi
 if build release "${targets[@]}"; then run_tests release; fi
 unset WEIR_MANY_FILES WEIR_KILLS WEIR_TESTS_LEFT_OUT

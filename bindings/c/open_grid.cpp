@@ -28,7 +28,7 @@ void weir_grid::take_sidecar(std::string text) {
   try {
     Sidecar sidecar = parse_sidecar(text, "sidecar");
     // That of another volume, after a crash between two renames say, certifies nothing either.
-    if (!is_of(sidecar, grid())) return;
+    if (!(file_ ? is_of(sidecar, *file_) : is_of(sidecar, grid()))) return;
     sidecar_ = std::move(sidecar);
     text_ = std::move(text);
   } catch (const Error&) {

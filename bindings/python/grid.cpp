@@ -166,7 +166,8 @@ std::string Grid::checked_sidecar(const std::string& text, const std::string& pa
 }
 
 std::string Grid::text_of(const Sidecar& sidecar, const std::string& path) const {
-  if (!is_of(sidecar, opened().grid())) {
+  const Opened& volume = opened();
+  if (!(volume.file != nullptr ? is_of(sidecar, *volume.file) : is_of(sidecar, volume.grid()))) {
     throw Error(ErrorKind::input, cat(path, ": is of a file of ", sidecar.file.bytes, " bytes with another checksum, ",
                                       path_, " has ", bytes(), " bytes; convert it again"));
   }

@@ -16,10 +16,13 @@ struct LeafRow : BlockSummary {
   std::uint8_t exact_bits = 0;
   /// 1 where a voxel is NaN or infinite as it is stored, and not missing.
   std::uint8_t non_finite = 0;
-  /// Finite values equal to `min` or `max`, 0 where exact_bits is 8 or less, or not looked at. Where voxels have no
-  /// value and exact_bits is not 0, the code of `max` on the lattice of the others (LeafLattice).
+  /// Of a row whose voxels all have values: those equal to `min` or `max`, 0 where exact_bits is 8 or less, or not
+  /// looked at. Of another row: largest_code() where exact_bits is not 0, else as of the former.
   std::uint16_t at_ends = 0;
 
+  /// The code of `max` on the lattice of the finite values (LeafLattice), where exact_bits is not 0 and some voxels
+  /// have no value; 0 where all others have the same one.
+  unsigned largest_code() const { return uniform() ? 0U : at_ends; }
   /// Whether any voxel has a value, finite or not.
   bool valued() const { return finite > 0 || non_finite != 0; }
   /// Sum over the finite values of (value - fill)^2; exact up to double rounding.

@@ -1,5 +1,8 @@
 #include "compressor/plan/startable_threads.h"
 
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <chrono>
 #include <latch>
 #include <mutex>
@@ -13,6 +16,12 @@
 
 namespace weir {
 namespace {
+
+// Each has a directory there.
+std::size_t threads_of_process() {
+  struct stat tasks {};
+  return ::stat("/proc/self/task", &tasks) == 0 ? static_cast<std::size_t>(tasks.st_nlink) : 0;
+}
 
 std::size_t start_threads(std::size_t wanted) {
   std::latch counted(1);  // before the threads, which are joined first
@@ -37,10 +46,16 @@ std::size_t startable_threads(std::size_t wanted) {
   using Clock = std::chrono::steady_clock;
   static std::mutex mutex;
   static std::size_t started = 0;
+  static std::size_t beside = 0;  // threads that there were then
+  static pid_t process = 0;       // a child has no share in what its parent found
   static Clock::time_point at{};
   const std::lock_guard lock(mutex);  // two that start threads at once would find too few
-  if (wanted <= started && Clock::now() - at < kStartableFor) return wanted;
+  const std::size_t running = threads_of_process();
+  const bool known = process == ::getpid() && running <= beside && Clock::now() - at < kStartableFor;
+  if (known && wanted <= started) return wanted;
   started = start_threads(wanted);
+  beside = running;
+  process = ::getpid();
   at = Clock::now();
   return started;
 }

@@ -17,8 +17,9 @@ inline constexpr const char* kNoMoreThreads =
 inline constexpr std::chrono::seconds kStartableFor{1};
 
 /// At most `wanted` more threads can run at the same time: fewer where a limit (ulimit -u, pids.max of a container) is
-/// near. Starts them to find out, unless as many were started within kStartableFor: 30 to 46 us each for 7 to 133 of
-/// them on two cores. What starts threads later, as oneTBB does, may end the process where it cannot.
+/// near. Starts them to find out, unless this process has done so within kStartableFor and has no more threads now: 30
+/// to 46 us each for 7 to 133 of them on two cores. What starts threads later, as oneTBB does, may end the process
+/// where it cannot.
 std::size_t startable_threads(std::size_t wanted);
 
 /// Workers, of which the calling thread is one, that can run beside what reads, writes back and saves: at most

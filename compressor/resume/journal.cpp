@@ -146,7 +146,11 @@ Journal::Journal(FileSystem& files, const std::string& output, ConversionIdentit
 // Whoever else comes there finds its files locked from here on.
 void Journal::hold_spill_directory() {
   try {
-    open("rows");
+    if (!open("rows")->has_its_name()) {  // removed by somebody who began at the same moment
+      throw Error(ErrorKind::io,
+                  cat(path_of("rows"),
+                      ": is being written by another process or conversion; wait for it or choose another output"));
+    }
   } catch (const Error&) {
     remove_if_empty(files_, directory_);
     throw;

@@ -85,8 +85,8 @@ unsigned exact_bits(const LeafRow& row, std::int64_t voxels, float background) {
   const float low = std::min(row.min, background);
   const float high = std::max(row.max, background);
   if (low == high) return Fill::same_bits(row.min, background) ? 1 : 0;
-  // All others lie where the least two do.
-  const unsigned largest = row.uniform() ? 0U : row.at_ends;
+  // Every value is min + k * step, and no lattice that is coarser holds them all: min and min + step stand for all.
+  const unsigned largest = row.largest_code();
   const double step = largest == 0 ? 0 : (static_cast<double>(row.max) - static_cast<double>(row.min)) / largest;
   const std::array values{row.min, static_cast<float>(static_cast<double>(row.min) + step), row.max, background};
   const auto lattice = find_lattice(values, low, high);

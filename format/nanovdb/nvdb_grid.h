@@ -34,10 +34,10 @@ struct RootEntry {
 
 class NvdbGrid {
  public:
-  /// `file` must stay valid and unchanged while the view is used. `path` is for messages, and for
-  /// what is looked for beside the file (is_of.h). Throws Error(input) naming the offset and the value where the file
-  /// is not a valid, uncompressed NanoVDB file of a supported type. `release`, where given, is called each time that
-  /// some 8 MiB of nodes have been looked at: a mapped file lets them go.
+  /// `file` must stay valid and unchanged while the view is used. `path` is for messages only.
+  /// Throws Error(input) naming the offset and the value where the file is not a valid, uncompressed
+  /// NanoVDB file of a supported type. `release`, where given, is called each time that some 8 MiB of nodes have been
+  /// looked at: a mapped file lets them go.
   static NvdbGrid open(std::span<const std::byte> file, const std::string& path,
                        const std::function<void()>& release = {});
   /// The same for a grid that all_nvdb_segments found, where the above opens the first.
@@ -101,7 +101,6 @@ class NvdbGrid {
   void for_each_tree_block(const std::function<void(const GridBlock&)>& visit) const;
 
   std::span<const std::byte> bytes() const { return file_; }  ///< the whole file
-  const std::string& path() const { return path_; }           ///< as it was given
   /// The grid less its padding: what a copy of the grid needs.
   std::span<const std::byte> data() const { return file_.subspan(grid_offset_, data_bytes_); }
 

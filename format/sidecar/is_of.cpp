@@ -1,27 +1,80 @@
 #include "format/sidecar/is_of.h"
 
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <span>
 #include <string>
 
+#include "format/base/error.h"
 #include "format/io/digest.h"
+#include "format/io/file_system.h"
 #include "format/io/output_names.h"
 #include "format/io/real_path.h"
+#include "format/layout/nanovdb_layout.h"
 #include "format/sidecar/find_sidecar.h"
 
 namespace weir {
 namespace {
 
-// Of a commit that was killed, or is under way, beside the file that `path` leads to.
-bool has_trace_of_commit(const std::string& path) {
+bool have_one_head(const Sidecar::File& a, const Sidecar::File& b) {
+  return a.bytes == b.bytes && a.head_checksum == b.head_checksum;
+}
+
+std::string text_at(FileSystem& files, const std::string& path) {
+  const std::unique_ptr<File> file = files.open_to_read(path);
+  std::string text(std::min(file->size(), kMostSidecarBytes), '\0');
+  file->read_at(0, std::as_writable_bytes(std::span(text)));
+  return text;
+}
+
+// Whether OUT.nvdb.partial is a volume with the head that `record` tells, or, as the lock of a volume in another place,
+// holds the digest of the sidecar at `sidecar`. While a conversion runs it is neither.
+bool is_to_follow(FileSystem& files, const std::string& partial, const Sidecar::File& record,
+                  const std::string& sidecar) {
+  const std::unique_ptr<File> file = files.open_to_read(partial);
+  const std::uint64_t bytes = file->size();
+  if (bytes == 2 * sizeof(Digest)) {
+    const std::string text = text_at(files, sidecar);
+    return text_at(files, partial) == piece_digest(std::as_bytes(std::span(text))).hex();
+  }
+  const std::uint64_t at = record.grid_offset + nvdb::grid::kChecksum;
+  std::uint32_t checksum = 0;
+  if (bytes != record.bytes || at > bytes || bytes - at < sizeof checksum) return false;
+  file->read_at(at, std::as_writable_bytes(std::span(&checksum, 1)));
+  return checksum == record.head_checksum;
+}
+
+// Whether a commit that was killed may have put the sidecar beside another volume of the same head. What cannot be read
+// tells nothing.
+bool may_be_of_another(FileSystem& files, const std::string& path, const Sidecar::File& record) {
   const std::string sidecar = find_sidecar(path);
-  const std::string volume = sidecar.substr(0, sidecar.size() - kSidecarEnding.size());
-  return is_there(previous_path(sidecar)) || is_there(partial_path(volume));
+  const std::string previous = previous_path(sidecar);
+  const std::string partial = partial_path(sidecar.substr(0, sidecar.size() - kSidecarEnding.size()));
+  const auto holds = [](const auto& check) {
+    try {
+      return check();
+    } catch (const Error&) {
+      return false;
+    }
+  };
+  return (is_there(previous) &&
+          holds([&] { return have_one_head(parse_sidecar(text_at(files, previous), previous).file, record); })) ||
+         (is_there(partial) && holds([&] { return is_to_follow(files, partial, record, sidecar); }));
 }
 
 }  // namespace
 
 bool is_of(const Sidecar& sidecar, const NvdbGrid& grid) {
-  if (sidecar.file.bytes != grid.bytes().size() || sidecar.file.head_checksum != grid.head_checksum()) return false;
-  return !has_trace_of_commit(grid.path()) || whole_digest(grid.bytes()).hex() == sidecar.file.digest;
+  return sidecar.file.bytes == grid.bytes().size() && sidecar.file.head_checksum == grid.head_checksum();
+}
+
+bool is_of(const Sidecar& sidecar, const NvdbFile& file) {
+  if (!is_of(sidecar, file.grid())) return false;
+  const std::unique_ptr<FileSystem> files = make_posix_file_system();
+  if (!may_be_of_another(*files, file.path(), sidecar.file)) return true;
+  // Read, not mapped: mapped pages count as the process's memory.
+  return whole_digest(*files->open_to_read(file.path())).hex() == sidecar.file.digest;
 }
 
 }  // namespace weir

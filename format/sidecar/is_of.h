@@ -2,14 +2,18 @@
 // another's.
 #pragma once
 
+#include "format/nanovdb/nvdb_file.h"
 #include "format/nanovdb/nvdb_grid.h"
 #include "format/sidecar/sidecar.h"
 
 namespace weir {
 
-/// By the file's length and the checksum of its head. Volumes of equal range and topology may have equal ones: where
-/// OUT.nvdb.json.previous or OUT.nvdb.partial lies beside the file, as a commit that was killed leaves them, also by
-/// the digest of all its bytes, which are read for it.
+/// By the file's length and the checksum of its head.
 bool is_of(const Sidecar& sidecar, const NvdbGrid& grid);
+
+/// The same of a file, `sidecar` being the one beside it. Volumes of equal range and topology may have equal heads:
+/// where a commit that was killed has left another volume or sidecar of that head there, OUT.nvdb.partial or
+/// OUT.nvdb.json.previous, also by the digest of all its bytes, which are read for it.
+bool is_of(const Sidecar& sidecar, const NvdbFile& file);
 
 }  // namespace weir

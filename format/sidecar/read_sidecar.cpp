@@ -40,7 +40,7 @@ std::optional<Sidecar> own_sidecar(const NvdbFile& file) {
   const std::string path = find_sidecar(file.path());
   if (!is_there(path)) return std::nullopt;
   Sidecar sidecar = read_sidecar(path);
-  return is_of(sidecar, file.grid()) ? std::optional(std::move(sidecar)) : std::nullopt;
+  return is_of(sidecar, file) ? std::optional(std::move(sidecar)) : std::nullopt;
 }
 
 }  // namespace weir

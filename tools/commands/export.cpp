@@ -71,7 +71,7 @@ std::optional<Sidecar> sidecar_of(const NvdbFile& file) {
   if (!is_there(path)) return std::nullopt;
   try {
     Sidecar sidecar = read_sidecar(path);
-    if (is_of(sidecar, file.grid())) return sidecar;
+    if (is_of(sidecar, file)) return sidecar;
     spdlog::warn("{}: is of another volume than {}; its certificate is left out", path, file.path());
   } catch (const Error& error) {
     spdlog::warn("{}; the certificate is left out", error.what());

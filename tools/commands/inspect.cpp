@@ -126,7 +126,7 @@ Inspection look_at(const NvdbFile& file, const ProgressOptions& progress) {
   if (is_there(path)) {
     try {
       result.sidecar = read_sidecar(path);
-      result.sidecar_matches = is_of(*result.sidecar, file.grid());
+      result.sidecar_matches = is_of(*result.sidecar, file);
     } catch (const Error& error) {  // the volume may be sound all the same
       result.sidecar_error = error;
     }

@@ -116,7 +116,7 @@ std::string broken(const std::string& output, const Sidecar& sidecar) {
   try {
     const NvdbFile file(output);
     const NvdbGrid& grid = file.grid();
-    const bool whole = computed_head_checksum(grid) == sidecar.file.head_checksum && is_of(sidecar, grid);
+    const bool whole = computed_head_checksum(grid) == sidecar.file.head_checksum && is_of(sidecar, file);
     return whole ? "" : cat(output, ": does not agree with its sidecar");
   } catch (const Error& error) {
     return error.what();

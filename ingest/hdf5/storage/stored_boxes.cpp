@@ -18,25 +18,27 @@ constexpr std::uint64_t kBufferShare = 16;  // of --memory, for the buffer
 
 bool is_chunked(const StoredBoxes& boxes) { return boxes.chunk() != Index3{}; }
 
-// What the library keeps for the chunks of a read.
-std::uint64_t bytes_of_chunks(const StoredBoxes& boxes) {
-  return is_chunked(boxes) ? static_cast<std::uint64_t>(kMostChunks) * kBytesOfChunk : 0;
+// What the library keeps for the chunks of a read of so many bytes, each chunk of which has `chunk_bytes`.
+std::uint64_t bytes_of_chunks(const StoredBoxes& boxes, std::uint64_t bytes, std::uint64_t chunk_bytes) {
+  if (!is_chunked(boxes)) return 0;
+  return std::clamp<std::uint64_t>(bytes / chunk_bytes, 1, kMostChunks) * kBytesOfChunk;
 }
 
 class StoredBoxSource final : public VolumeSource {
  public:
   StoredBoxSource(std::unique_ptr<StoredBoxes> boxes, SourceInfo info, bool big_endian,
-                  const VoxelComponents& components, std::size_t buffer_bytes)
+                  const VoxelComponents& components, std::size_t buffer_bytes, std::uint64_t bytes_of_chunks)
       : boxes_(std::move(boxes)),
         info_(std::move(info)),
         big_endian_(big_endian),
         components_(components),
-        buffer_(buffer_bytes) {}
+        buffer_(buffer_bytes),
+        bytes_of_chunks_(bytes_of_chunks) {}
 
   const SourceInfo& info() const override { return info_; }
   AccessShape access() const override { return {voxel_bytes(), boxes_->chunk(), boxes_->chunk_origin()}; }
   std::uint64_t working_bytes() const override {
-    return boxes_->working_bytes() + buffer_.bytes().size() + bytes_of_chunks(*boxes_);
+    return boxes_->working_bytes() + buffer_.bytes().size() + bytes_of_chunks_;
   }
   std::uint64_t bytes_read() const override { return bytes_read_; }
 
@@ -84,6 +86,7 @@ class StoredBoxSource final : public VolumeSource {
   VoxelComponents components_;
   std::mutex mutex_;  ///< of boxes_ and buffer_
   PageBuffer buffer_;
+  std::uint64_t bytes_of_chunks_;  ///< that the library keeps
   std::atomic<std::uint64_t> bytes_read_{0};
 };
 
@@ -107,14 +110,15 @@ std::unique_ptr<VolumeSource> make_stored_box_source(std::unique_ptr<StoredBoxes
       static_cast<std::uint64_t>(volume(min(max(boxes->chunk(), {1, 1, 1}), info.extent))) * voxel_bytes;
   const std::uint64_t ample = std::min(kAmpleBuffer, memory / kBufferShare) / voxel_bytes * voxel_bytes;
   const std::uint64_t buffer_bytes = std::max(chunk_bytes, ample);
-  const std::uint64_t needed = buffer_bytes + boxes->working_bytes() + bytes_of_chunks(*boxes);
+  const std::uint64_t of_chunks = bytes_of_chunks(*boxes, buffer_bytes, chunk_bytes);
+  const std::uint64_t needed = buffer_bytes + boxes->working_bytes() + of_chunks;
   if (needed > memory / 2) {
     throw Error(ErrorKind::usage,
                 compose(where, ": reading one of its chunks takes ", format_bytes(needed), ", more than half of ",
                         option("memory", format_bytes(memory)), "; give at least ", (2 * needed >> 20U) + 1, "MiB"));
   }
   return std::make_unique<StoredBoxSource>(std::move(boxes), std::move(info), big_endian, components,
-                                           static_cast<std::size_t>(buffer_bytes));
+                                           static_cast<std::size_t>(buffer_bytes), of_chunks);
 }
 
 BoxCuts::BoxCuts(const Box& box, const Index3& unit, const Index3& corner, std::int64_t voxels, std::int64_t most_units)

@@ -66,6 +66,28 @@ TEST_F(KilledOverwriteTest, Inspect_TakesNoSidecarOfAnotherVolume) {
   EXPECT_TRUE(inspect_takes_the_sidecar(killed_.output)) << "its own";
 }
 
+// What a running --overwrite keeps there, or one that was killed before its commit: no reason to read all of a large
+// file.
+TEST_F(KilledOverwriteTest, BesideALockOrAnUnfinishedVolume_TheHeadTells) {
+  fs::remove(killed_.previous);
+  std::string sidecar = killed_.old_sidecar;
+  const std::string digest = parse_sidecar(sidecar, "sidecar").file.digest;
+  write_file(killed_.sidecar, sidecar.replace(sidecar.find(digest), digest.size(), std::string(digest.size(), '0')));
+  std::string unfinished = killed_.new_volume;
+  unfinished.replace(0, 8192, 8192, '\0');
+  for (const std::string& lock : {std::string(), std::string(32, '0'), unfinished}) {
+    write_file(killed_.partial, lock);
+    EXPECT_TRUE(inspect_takes_the_sidecar(killed_.output)) << lock.size();
+  }
+  // Another volume, of another head.
+  std::string previous = killed_.old_sidecar;
+  const std::string head = "\"head_checksum\": \"";
+  const std::size_t at = previous.find(head) + head.size();
+  previous[at] = previous[at] == '0' ? '1' : '0';
+  write_file(killed_.previous, previous);
+  EXPECT_TRUE(inspect_takes_the_sidecar(killed_.output));
+}
+
 TEST_F(KilledOverwriteTest, Verify_SaysWhichSidecarIsTheVolumesOwn) {
   const std::vector<std::string> command{"verify", killed_.output, "--progress", "never"};
   const CommandResult mixed = run_weir(command);
