@@ -10,7 +10,7 @@
 #include "format/base/error.h"
 #include "format/io/digest.h"
 #include "format/io/output_names.h"
-#include "format/layout/nanovdb_layout.h"
+#include "format/sidecar/is_of.h"
 #include "format/sidecar/sidecar.h"
 
 namespace weir {
@@ -45,12 +45,7 @@ std::optional<Sidecar::File> head_described(FileSystem& files, const std::string
   Sidecar::File record;
   const bool agrees = unless_foreign([&] {
     record = parse_sidecar(text_at(files, sidecar), sidecar).file;
-    constexpr std::uint64_t kHeadBytes = nvdb::grid::kChecksum + sizeof(std::uint32_t);
-    if (volume.size() != record.bytes || record.grid_offset > record.bytes) return false;
-    if (record.bytes - record.grid_offset < kHeadBytes) return false;
-    std::uint32_t checksum = 0;
-    volume.read_at(record.grid_offset + nvdb::grid::kChecksum, std::as_writable_bytes(std::span(&checksum, 1)));
-    return checksum == record.head_checksum;
+    return has_head(record, volume);
   });
   return agrees ? std::optional(std::move(record)) : std::nullopt;
 }

@@ -8,7 +8,6 @@
 
 #include "format/base/error.h"
 #include "format/io/digest.h"
-#include "format/io/file_system.h"
 #include "format/io/output_names.h"
 #include "format/io/real_path.h"
 #include "format/layout/nanovdb_layout.h"
@@ -33,16 +32,9 @@ std::string text_at(FileSystem& files, const std::string& path) {
 bool is_to_follow(FileSystem& files, const std::string& partial, const Sidecar::File& record,
                   const std::string& sidecar) {
   const std::unique_ptr<File> file = files.open_to_read(partial);
-  const std::uint64_t bytes = file->size();
-  if (bytes == 2 * sizeof(Digest)) {
-    const std::string text = text_at(files, sidecar);
-    return text_at(files, partial) == piece_digest(std::as_bytes(std::span(text))).hex();
-  }
-  const std::uint64_t at = record.grid_offset + nvdb::grid::kChecksum;
-  std::uint32_t checksum = 0;
-  if (bytes != record.bytes || at > bytes || bytes - at < sizeof checksum) return false;
-  file->read_at(at, std::as_writable_bytes(std::span(&checksum, 1)));
-  return checksum == record.head_checksum;
+  if (file->size() != 2 * sizeof(Digest)) return has_head(record, *file);
+  const std::string text = text_at(files, sidecar);
+  return text_at(files, partial) == piece_digest(std::as_bytes(std::span(text))).hex();
 }
 
 // Whether a commit that was killed may have put the sidecar beside another volume of the same head. What cannot be read
@@ -64,6 +56,15 @@ bool may_be_of_another(FileSystem& files, const std::string& path, const Sidecar
 }
 
 }  // namespace
+
+bool has_head(const Sidecar::File& record, File& volume) {
+  constexpr std::uint64_t kHeadBytes = nvdb::grid::kChecksum + sizeof(std::uint32_t);
+  if (volume.size() != record.bytes || record.grid_offset > record.bytes) return false;
+  if (record.bytes - record.grid_offset < kHeadBytes) return false;
+  std::uint32_t checksum = 0;
+  volume.read_at(record.grid_offset + nvdb::grid::kChecksum, std::as_writable_bytes(std::span(&checksum, 1)));
+  return checksum == record.head_checksum;
+}
 
 bool is_of(const Sidecar& sidecar, const NvdbGrid& grid) {
   return sidecar.file.bytes == grid.bytes().size() && sidecar.file.head_checksum == grid.head_checksum();

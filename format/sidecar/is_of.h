@@ -2,11 +2,15 @@
 // another's.
 #pragma once
 
+#include "format/io/file_system.h"
 #include "format/nanovdb/nvdb_file.h"
 #include "format/nanovdb/nvdb_grid.h"
 #include "format/sidecar/sidecar.h"
 
 namespace weir {
+
+/// Whether a file has the length and the head checksum that a sidecar records: so may another volume's.
+bool has_head(const Sidecar::File& record, File& volume);
 
 /// By the file's length and the checksum of its head.
 bool is_of(const Sidecar& sidecar, const NvdbGrid& grid);

@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -15,12 +14,11 @@
 #include "format/io/digest.h"
 #include "format/output/output_files.h"
 #include "format/sidecar/sidecar.h"
+#include "tests/support/directory_contents.h"
 #include "tests/support/temporary_directory.h"
 
 namespace weir::commit_leftovers_test {
 namespace {
-
-using Listing = std::map<std::string, std::string>;
 
 // `head` is in the part that the head checksum covers, `values` is not.
 std::string volume(char head, char values) {
@@ -45,14 +43,7 @@ class CommitLeftovers : public ::testing::Test {
  protected:
   void put(const std::string& name, const std::string& text) const { std::ofstream(directory_ / name) << text; }
 
-  Listing listing() const {
-    Listing all;
-    for (const auto& entry : std::filesystem::directory_iterator(directory_.path())) {
-      std::ifstream file(entry.path(), std::ios::binary);
-      all[entry.path().filename().string()] = std::string(std::istreambuf_iterator<char>(file), {});
-    }
-    return all;
-  }
+  Listing listing() const { return listing_of(directory_.path()); }
 
   OwnSidecar own_sidecar(const std::string& volume) const {
     put("out.nvdb", volume);

@@ -8,12 +8,12 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <map>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "format/base/error.h"
+#include "tests/support/directory_contents.h"
 #include "tests/support/faulty_file_system.h"
 #include "tests/support/message_of_error.h"
 #include "tests/support/temporary_directory.h"
@@ -21,21 +21,12 @@
 namespace weir::partial_file_test {
 namespace {
 
-using Listing = std::map<std::string, std::string>;
-
 class PartialFileTest : public ::testing::Test {
  protected:
   std::string output() const { return directory_ / "out.raw"; }
   void put(const std::string& name, const std::string& text) const { std::ofstream(directory_ / name) << text; }
 
-  Listing listing() const {
-    Listing all;
-    for (const auto& entry : std::filesystem::directory_iterator(directory_.path())) {
-      std::ifstream file(entry.path(), std::ios::binary);
-      all[entry.path().filename().string()] = std::string(std::istreambuf_iterator<char>(file), {});
-    }
-    return all;
-  }
+  Listing listing() const { return listing_of(directory_.path()); }
 
   std::string write_output(FileSystem& files, bool overwrite) const {
     try {
