@@ -13,11 +13,12 @@ extern "C" {
 typedef struct weir_cuda_grid weir_cuda_grid;
 
 /* Copies `grid`, which weir_open has opened (one of weir_open_memory: WEIR_ERROR_USAGE), to the calling thread's
- * current device, by the fastest way that the system allows, after the work queued in `stream` (a cudaStream_t, NULL:
- * the default one); the copy is complete when the call returns. *loaded is NULL for a new load, which the caller frees
- * by weir_cuda_free; or it is an earlier load on the same device, whose memory is reused: two of them play a series of
- * files, one loading while the other is rendered. After a failure an earlier load holds no grid. WEIR_ERROR_IO where
- * there is no device, or no room on it; WEIR_ERROR_INPUT where the file was changed meanwhile. */
+ * current device, by the fastest way that the system allows, after the work queued in `stream` (a cudaStream_t; NULL:
+ * the legacy default stream, for callers compiled with default streams per thread, too; it waits for every stream made
+ * without cudaStreamNonBlocking); the copy is complete when the call returns. *loaded is NULL for a new load, which the
+ * caller frees by weir_cuda_free; or it is an earlier load on the same device, whose memory is reused: two of them play
+ * a series of files, one loading while the other is rendered. After a failure an earlier load holds no grid.
+ * WEIR_ERROR_IO where there is no device, or no room on it; WEIR_ERROR_INPUT where the file was changed meanwhile. */
 WEIR_API weir_status weir_cuda_load(const weir_grid* grid, void* stream, weir_cuda_grid** loaded, weir_error* error);
 /* The same of a packed grid, which is decoded on the device into a grid that every NanoVDB reader knows: `as` is
  * "float" (every decoded bit) or "fp16" (16 bits between the least and the largest value of each leaf). weir_cuda_bytes
@@ -37,13 +38,13 @@ WEIR_API void weir_cuda_free(weir_cuda_grid* loaded);
 
 /* weir_push_slab for values on the calling thread's current device: `data` is the device's address of voxel (0, 0, z0),
  * memory that its kernels can read; it and the strides are multiples of the bytes of a value. The copy follows the work
- * queued in `stream` (a cudaStream_t, NULL: the default one), and the call returns once it is queued: work that is
+ * queued in `stream` (see weir_cuda_load), and the call returns once it is queued: work that is
  * queued there afterwards may change the values. Slabs cross the bus through page-locked host memory: four pieces of
  * 8 MiB, or two planes where a plane is larger, besides options->memory; a call waits while these are full. Planes are
  * checked as by weir_push_slab. A failure of a copy ends the push, and is the status of a later call; where there is
  * no room for these pieces (WEIR_ERROR_IO at the first slab) nothing was taken, and the push can go on. All slabs come
- * from one device; slabs of weir_push_slab may come between. Where `data` is host memory, or there is no device, it is
- * taken as weir_push_slab takes it, once the work in `stream` is done. */
+ * from one device; values on another one must be without gaps. Slabs of weir_push_slab may come between. Where `data`
+ * is host memory, or there is no device, it is taken as weir_push_slab takes it, once the work in `stream` is done. */
 WEIR_API weir_status weir_push_slab_device(weir_push* push, int64_t z0, int64_t nz, const void* data,
                                            const int64_t stride[3], void* stream, weir_error* error);
 /* Before the first slab of a device: up to `bytes` of its memory, a plane's or more, may hold slabs until they have

@@ -81,8 +81,8 @@ class DeviceGrid {
 };
 
 /// Copies the first grid of `file` to the current device, into `buffer` where that is large enough, after the work
-/// queued in `stream`; the copy is complete when it returns. On a throw the caller still owns `buffer`. With
-/// options.zero_copy `file` must outlive the grid.
+/// queued in `stream`, null: the legacy default stream; the copy is complete when it returns. On a throw the caller
+/// still owns `buffer`. With options.zero_copy `file` must outlive the grid.
 ///
 /// The file must not change meanwhile: a truncation, or a write that the file's time shows, is an Error(input) and
 /// never a signal; a write through another mapping of it may go unnoticed, and the grid is then no longer the one that

@@ -73,6 +73,13 @@ TEST_F(DeviceSlabsTest, ArriveInPiecesOfWholePlanesThroughBoundedPinnedMemory) {
   EXPECT_EQ(most_planes_, 34);
 }
 
+TEST_F(DeviceSlabsTest, NullStream_IsTheCallersDefaultStreamNotTheThreadsOwn) {
+  DeviceSlabs slabs(kExtent, 4, 0, keep());
+  slabs.add(0, 90, from(0), nullptr);
+  slabs.finish();
+  EXPECT_EQ(runtime().streams_named(), std::set<cudaStream_t>{cudaStreamLegacy});
+}
+
 TEST_F(DeviceSlabsTest, WaitInTheDeviceMemoryThatWasGranted) {
   constexpr std::uint64_t kGranted = 5 * kPlaneBytes;
   DeviceSlabs slabs(kExtent, 4, kGranted, keep());

@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include "tests/fake_cuda/fake_runtime.h"
+#include "tests/support/message_of_error.h"
 
 namespace weir::device_values_test {
 namespace {
@@ -46,6 +47,20 @@ TEST_F(DeviceValuesTest, Gaps_AreSeenAlongEachAxis) {
   EXPECT_FALSE(without_gaps({nullptr, {8, 12, 48}, 4}, extent));
   EXPECT_FALSE(without_gaps({nullptr, {4, 16, 48}, 4}, extent));
   EXPECT_FALSE(without_gaps({nullptr, {4, 12, 52}, 4}, extent));
+  EXPECT_TRUE(without_gaps({nullptr, {4, 12, 52}, 4}, {3, 4, 1})) << "one plane has no next";
+}
+
+TEST_F(DeviceValuesTest, Reach_OfAKernelIsItsOwnDeviceAndManagedMemory) {
+  const Index3 extent{3, 4, 5};
+  const DeviceValues packed{nullptr, {4, 12, 48}, 4};
+  const DeviceValues strided{nullptr, {8, 24, 96}, 4};
+  runtime().set_devices(2);
+  check_reach(strided, extent, {.device = 0, .managed = false});
+  check_reach(strided, extent, {.device = 1, .managed = true});
+  check_reach(packed, extent, {.device = 1, .managed = false});
+  EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { check_reach(strided, extent, {.device = 1, .managed = false}); }),
+            "values lie on device 1, and device 0 is current, which can copy them only where there are no gaps between "
+            "them; make the other one current, or copy them together first");
 }
 
 }  // namespace

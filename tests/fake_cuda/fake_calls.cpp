@@ -294,8 +294,9 @@ cudaError_t cudaStreamDestroy(cudaStream_t) {
   runtime().make_some_current();
   return cudaSuccess;
 }
-cudaError_t cudaStreamSynchronize(cudaStream_t) {
+cudaError_t cudaStreamSynchronize(cudaStream_t stream) {
   WEIR_ENTER("cudaStreamSynchronize");
+  runtime().name_stream(stream);
   runtime().stream_awaited();
   return cudaSuccess;
 }

@@ -45,6 +45,7 @@ void FakeRuntime::reset() {
   devices_ = 1;
   in_use_.clear();
   references_.clear();
+  streams_named_.clear();
   ++generation_;
 }
 
@@ -91,7 +92,18 @@ cudaStream_t FakeRuntime::make_stream() {
   return reinterpret_cast<cudaStream_t>(kFirstStream + static_cast<std::uintptr_t>(*current_context()));
 }
 
+std::set<cudaStream_t> FakeRuntime::streams_named() {
+  const std::lock_guard lock(mutex_);
+  return streams_named_;
+}
+
+void FakeRuntime::name_stream(cudaStream_t stream) {
+  const std::lock_guard lock(mutex_);
+  streams_named_.insert(stream);
+}
+
 cudaError_t FakeRuntime::enter_stream(cudaStream_t stream) {
+  name_stream(stream);
   const auto number = reinterpret_cast<std::uintptr_t>(stream);
   if (number < kFirstStream || static_cast<int>(number - kFirstStream) == current_context()) return cudaSuccess;
   const std::lock_guard lock(mutex_);

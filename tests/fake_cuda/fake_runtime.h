@@ -35,6 +35,9 @@ class FakeRuntime {
   /// A stream of the current context, and what a call returns that gives work to `stream`, which is of one context.
   cudaStream_t make_stream();
   cudaError_t enter_stream(cudaStream_t stream);
+  /// What copies and waits named: null, for one, or cudaStreamLegacy.
+  std::set<cudaStream_t> streams_named();
+  void name_stream(cudaStream_t stream);
   /// As a call on a thread that has no context does, for current_device().
   void make_some_current();
   /// Makes the context of `device`, or counts one more who holds it.
@@ -128,6 +131,7 @@ class FakeRuntime {
   std::uint64_t generation_ = 0;
   cudaError_t sticky_ = cudaSuccess;
   cudaError_t last_ = cudaSuccess;
+  std::set<cudaStream_t> streams_named_;
 };
 
 }  // namespace weir::test

@@ -101,6 +101,13 @@ TEST_F(GridLoaderFault, ARefusalAtAnyChunkLeadsToTheNextWay) {
   }
 }
 
+TEST_F(GridLoaderFault, NullStream_IsTheCallersDefaultStreamNotTheThreadsOwn) {
+  const NvdbFile grid_file = file();
+  const DeviceGrid grid = load_grid(grid_file, {}, kOptions);
+  EXPECT_TRUE(runtime().streams_named().contains(cudaStreamLegacy));
+  EXPECT_FALSE(runtime().streams_named().contains(nullptr));
+}
+
 TEST_F(GridLoaderFault, APlainCopyIsTheLastResort) {
   const NvdbFile grid_file = file();
   runtime().set_attribute(cudaDevAttrHostRegisterReadOnlySupported, 0);

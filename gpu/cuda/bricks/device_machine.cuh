@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 
 #include "format/nanovdb/macrocells.h"
 #include "gpu/cuda/runtime/device_array.h"
+#include "gpu/cuda/runtime/launch_kernel.cuh"
 #include "gpu/math/portable.h"
 
 namespace weir {
@@ -46,6 +48,8 @@ __global__ void run_groups(const __grid_constant__ Step step) {
 }
 
 struct DeviceMachine {
+  static constexpr std::string_view kWorking = "working on bricks";
+
   template <class T>
   using Array = DeviceArray<T>;
 
@@ -53,18 +57,17 @@ struct DeviceMachine {
   template <class Step>
   void each(std::uint32_t count, const Step& step) const {
     if (count == 0) return;
-    run_each<<<(count + kStepThreads - 1) / kStepThreads, kStepThreads, 0, cudaStreamPerThread>>>(step, count);
-    check_cuda(cudaGetLastError(), "working on bricks");
+    launch_kernel(kWorking, {(count + kStepThreads - 1) / kStepThreads, kStepThreads, cudaStreamPerThread},
+                  run_each<Step>, step, count);
   }
   /// step(thread, shared, g) by a group of threads for each g < count.
   template <class Step>
   void groups(std::uint32_t count, const Step& step) const {
     if (count == 0) return;
-    run_groups<<<count, kStepThreads, 0, cudaStreamPerThread>>>(step);
-    check_cuda(cudaGetLastError(), "working on bricks");
+    launch_kernel(kWorking, {count, kStepThreads, cudaStreamPerThread}, run_groups<Step>, step);
   }
   /// Until all work is done.
-  void wait() const { check_cuda(cudaStreamSynchronize(cudaStreamPerThread), "working on bricks"); }
+  void wait() const { check_cuda(cudaStreamSynchronize(cudaStreamPerThread), kWorking); }
   template <class T>
   void clear(Array<T>& array) const {
     check_cuda(cudaMemsetAsync(array.data(), 0, array.bytes(), cudaStreamPerThread), "clearing device memory");

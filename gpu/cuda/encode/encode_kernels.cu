@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cstdint>
+#include <string_view>
 
 #include "gpu/cuda/encode/lattice_code_steps.h"
 #include "gpu/cuda/encode/launch.h"
@@ -7,13 +8,15 @@
 #include "gpu/cuda/encode/record_steps.h"
 #include "gpu/cuda/encode/stream_steps.h"
 #include "gpu/cuda/encode/summary_steps.h"
-#include "gpu/cuda/runtime/check.h"
+#include "gpu/cuda/runtime/launch_kernel.cuh"
 
 namespace weir {
 namespace {
 
 using namespace encode_detail;
 
+constexpr std::string_view kSurveying = "surveying blocks on the device";
+constexpr std::string_view kEncoding = "encoding blocks on the device";
 constexpr unsigned kWarps = 8;  // of a group
 constexpr unsigned kThreads = kWarps * kLanes;
 constexpr unsigned kSurveyGroups = 4;  // a multiprocessor, at least
@@ -161,46 +164,42 @@ unsigned groups_for(std::uint32_t count, unsigned each) {
 }  // namespace
 
 void launch_survey(const SurveyCall& call, cudaStream_t stream) {
-  survey_blocks<<<groups_for(call.box.count(), kWarps), kThreads, 0, stream>>>(call);
-  check_cuda(cudaGetLastError(), "surveying blocks on the device");
+  launch_kernel(kSurveying, {groups_for(call.box.count(), kWarps), kThreads, stream}, survey_blocks, call);
 }
 
 void launch_near_survey(const NearCall& call, cudaStream_t stream) {
-  survey_all_near_rungs<<<groups_for(call.box.count(), kLatticeWarps), kLatticeWarps * kLanes, 0, stream>>>(call);
-  check_cuda(cudaGetLastError(), "surveying blocks on the device");
+  launch_kernel(kSurveying, {groups_for(call.box.count(), kLatticeWarps), kLatticeWarps * kLanes, stream},
+                survey_all_near_rungs, call);
 }
 
 void launch_encode(const EncodeCall& call, cudaStream_t stream) {
   const unsigned groups = groups_for(call.count, kWarps);
-  code_blocks<<<groups, kThreads, 0, stream>>>(call);
+  launch_kernel(kEncoding, {groups, kThreads, stream}, code_blocks, call);
   if (call.on_lattices) {
-    code_lattice_blocks<<<groups_for(call.count, kLatticeWarps), kLatticeWarps * kLanes, 0, stream>>>(call);
+    launch_kernel(kEncoding, {groups_for(call.count, kLatticeWarps), kLatticeWarps * kLanes, stream},
+                  code_lattice_blocks, call);
   }
-  put_all_words<<<groups_for(call.count, kWordThreads), kWordThreads, 0, stream>>>(call);
-  put_all_bytes<<<groups, kThreads, 0, stream>>>(call);
-  check_cuda(cudaGetLastError(), "encoding blocks on the device");
+  launch_kernel(kEncoding, {groups_for(call.count, kWordThreads), kWordThreads, stream}, put_all_words, call);
+  launch_kernel(kEncoding, {groups, kThreads, stream}, put_all_bytes, call);
 }
 
 void launch_records(const RecordCall& call, cudaStream_t stream) {
   constexpr unsigned kAsks = kStatisticsWarps * kLanes;
-  add_all_statistics<<<groups_for(call.count, kAsks), kAsks, 0, stream>>>(call);
-  make_records<<<groups_for(call.count, kWarps), kThreads, 0, stream>>>(call);
-  check_cuda(cudaGetLastError(), "encoding blocks on the device");
+  launch_kernel(kEncoding, {groups_for(call.count, kAsks), kAsks, stream}, add_all_statistics, call);
+  launch_kernel(kEncoding, {groups_for(call.count, kWarps), kThreads, stream}, make_records, call);
 }
 
 void launch_summaries(const SummaryCall& call, cudaStream_t stream) {
-  summarize_blocks<<<groups_for(call.box.count(), kWarps), kThreads, 0, stream>>>(call);
-  check_cuda(cudaGetLastError(), "surveying blocks on the device");
+  launch_kernel(kSurveying, {groups_for(call.box.count(), kWarps), kThreads, stream}, summarize_blocks, call);
 }
 
 void launch_values(const ValuesCall& call, cudaStream_t stream) {
-  copy_blocks<<<groups_for(call.count, kWarps), kThreads, 0, stream>>>(call);
-  check_cuda(cudaGetLastError(), "copying blocks from the device");
+  launch_kernel("copying blocks from the device", {groups_for(call.count, kWarps), kThreads, stream}, copy_blocks,
+                call);
 }
 
 void launch_count(const CountCall& call, cudaStream_t stream) {
-  count_values<<<kMostGroups, kThreads, 0, stream>>>(call);
-  check_cuda(cudaGetLastError(), "counting values on the device");
+  launch_kernel("counting values on the device", {kMostGroups, kThreads, stream}, count_values, call);
 }
 
 }  // namespace weir

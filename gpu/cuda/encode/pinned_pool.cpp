@@ -10,6 +10,10 @@ namespace {
 
 // What was locked in a context that is gone is not locked any more.
 void unlock(PinnedPool::Piece piece) {
+  if (piece.context == current_context_id()) {  // maybe one that the caller made
+    const PinnedMemory unlocked = std::move(piece.memory);
+    return;
+  }
   if (!has_context(piece.device)) return piece.memory.forget();
   free_on(piece.device, [&] {
     void* const callers = current_context();  // maybe another one of that device

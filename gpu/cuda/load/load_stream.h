@@ -1,6 +1,7 @@
 // The stream of one load, which runs after the work queued in another stream.
 #pragma once
 
+#include "gpu/cuda/runtime/caller_stream.h"
 #include "gpu/cuda/runtime/check.h"
 
 namespace weir {
@@ -9,7 +10,7 @@ namespace weir {
 class LoadStream {
  public:
   explicit LoadStream(cudaStream_t behind) {
-    check_cuda(cudaStreamSynchronize(behind), "work before a load");
+    check_cuda(cudaStreamSynchronize(caller_stream(behind)), "work before a load");
     check_cuda(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "making a stream");
   }
   ~LoadStream() { cudaStreamDestroy(stream_); }

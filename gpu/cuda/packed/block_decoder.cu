@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <array>
+#include <string_view>
 
 #include "format/base/error.h"
 #include "gpu/cuda/packed/decode_steps.h"
+#include "gpu/cuda/runtime/launch_kernel.cuh"
 
 namespace weir {
 namespace {
 
+constexpr std::string_view kDecoding = "decoding blocks";
 // Of those that are decoded at a time.
 constexpr std::size_t kBatch = std::size_t{1} << 18U;
 constexpr unsigned kSortThreads = 256;
@@ -106,7 +109,8 @@ BlockDecoder::BlockDecoder(const PackedData& packed, const std::byte* data)
   check_cuda(cudaMemcpyToSymbol(scan_steps, &kScanSteps, sizeof kScanSteps), "copying to the device");
   check_cuda(cudaMemcpyToSymbol(device_scan, &kBlockScan, sizeof kBlockScan), "copying to the device");
   check_cuda(cudaMemcpyToSymbol(diagonals, &kDiagonals, sizeof kDiagonals), "copying to the device");
-  make_tables<<<1, kNarrowThreads, 0, cudaStreamPerThread>>>(frequencies_.data(), tables_.data());
+  launch_kernel("making tables", {1, kNarrowThreads, cudaStreamPerThread}, make_tables, frequencies_.data(),
+                tables_.data());
   check_cuda(cudaStreamSynchronize(cudaStreamPerThread), "making tables");
   int device = 0;
   check_cuda(cudaGetDevice(&device), "asking for the device");
@@ -135,20 +139,24 @@ void BlockDecoder::decode(const BlockId* blocks, std::size_t most, const std::ui
       return std::min((call.most + blocks_of_group - 1) / blocks_of_group, most_groups);
     };
     check_cuda(cudaMemsetAsync(counts_.data(), 0, counts_.bytes(), stream), "clearing device memory");
-    look_at<<<groups(kSortThreads, 8 * processors_), kSortThreads, 0, stream>>>(call);
-    put_in_order<<<groups(kSortThreads, 8 * processors_), kSortThreads, 0, stream>>>(call);
-    const unsigned value_groups = groups(kValueThreads / kWarp, kValueGroups * processors_);
-    take_narrow<<<groups(kWarp, processors_), narrow_threads_, magnitude_bytes<std::uint16_t>(narrow_threads_),
-                  stream>>>(call);
+    const LaunchShape sort{groups(kSortThreads, 8 * processors_), kSortThreads, stream};
+    launch_kernel(kDecoding, sort, look_at, call);
+    launch_kernel(kDecoding, sort, put_in_order, call);
+    launch_kernel(
+        kDecoding,
+        {groups(kWarp, processors_), narrow_threads_, stream, magnitude_bytes<std::uint16_t>(narrow_threads_)},
+        take_narrow, call);
     // A few wide blocks take nearly as long as many.
     side_.leave(stream);
-    take_wide<<<groups(kWarp, processors_), wide_threads_, magnitude_bytes<std::uint32_t>(wide_threads_),
-                side_.get()>>>(call);
-    values_of<std::uint32_t><<<value_groups, kValueThreads, 0, side_.get()>>>(call);
-    values_of<std::uint16_t><<<value_groups, kValueThreads, 0, stream>>>(call);
+    launch_kernel(
+        kDecoding,
+        {groups(kWarp, processors_), wide_threads_, side_.get(), magnitude_bytes<std::uint32_t>(wide_threads_)},
+        take_wide, call);
+    const unsigned value_groups = groups(kValueThreads / kWarp, kValueGroups * processors_);
+    launch_kernel(kDecoding, {value_groups, kValueThreads, side_.get()}, values_of<std::uint32_t>, call);
+    launch_kernel(kDecoding, {value_groups, kValueThreads, stream}, values_of<std::uint16_t>, call);
     side_.join(stream);
   }
-  check_cuda(cudaGetLastError(), "decoding blocks");
 }
 
 BlockDecoder::Counts BlockDecoder::counts(cudaStream_t stream) {
@@ -156,7 +164,7 @@ BlockDecoder::Counts BlockDecoder::counts(cudaStream_t stream) {
   check_cuda(cudaMemcpyAsync(found.data(), totals_.data(), totals_.bytes(), cudaMemcpyDeviceToHost, stream),
              "copying from the device");
   check_cuda(cudaMemsetAsync(totals_.data(), 0, totals_.bytes(), stream), "clearing device memory");
-  check_cuda(cudaStreamSynchronize(stream), "decoding blocks");
+  check_cuda(cudaStreamSynchronize(stream), kDecoding);
   return {found[0], found[1]};
 }
 

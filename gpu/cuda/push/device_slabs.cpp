@@ -7,6 +7,7 @@
 
 #include "format/base/text.h"
 #include "gpu/cuda/push/gather_planes.h"
+#include "gpu/cuda/runtime/caller_stream.h"
 #include "gpu/cuda/runtime/check.h"
 
 namespace weir {
@@ -74,8 +75,9 @@ void DeviceSlabs::make_slots(std::uint64_t device_bytes) {
   }
 }
 
-void DeviceSlabs::add(std::int64_t z0, std::int64_t nz, const DeviceValues& values, cudaStream_t stream) {
+void DeviceSlabs::add(std::int64_t z0, std::int64_t nz, const DeviceValues& values, cudaStream_t callers) {
   check(values);
+  const cudaStream_t stream = caller_stream(callers);
   for (std::int64_t z = 0; z < nz; z += piece_planes_) {
     const Piece piece{take_slot(), z0 + z, std::min(piece_planes_, nz - z)};
     DeviceValues part = values;

@@ -13,7 +13,7 @@ namespace weir {
 bool without_gaps(const DeviceValues& values, const Index3& extent) {
   const auto bytes = static_cast<std::int64_t>(values.value_bytes);
   return values.stride[0] == bytes && values.stride[1] == bytes * extent.x &&
-         values.stride[2] == bytes * extent.x * extent.y;
+         (extent.z == 1 || values.stride[2] == bytes * extent.x * extent.y);
 }
 
 void check_slab(const DeviceValues& values, int device) {
@@ -29,6 +29,14 @@ void check_slab(const DeviceValues& values, int device) {
     throw Error(ErrorKind::usage, cat("on a device, the address and the strides of values must be multiples of the ",
                                       bytes, " bytes of a value"));
   }
+}
+
+void check_reach(const DeviceValues& values, const Index3& extent, const DevicePlace& place) {
+  const int current = existing_current_device();
+  if (place.managed || place.device == current || without_gaps(values, extent)) return;
+  throw Error(ErrorKind::usage, cat("values lie on device ", place.device, ", and device ", current,
+                                    " is current, which can copy them only where there are no gaps between them; make "
+                                    "the other one current, or copy them together first"));
 }
 
 std::optional<DevicePlace> device_place(const void* address) {

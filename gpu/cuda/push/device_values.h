@@ -29,6 +29,10 @@ struct DevicePlace {
   bool managed;  ///< other devices can read it, too
 };
 
+/// Throws Error(usage) where a kernel of the current device would have to read `values`, planes of `extent`, of another
+/// device, with access to it or without: it would break the context of a program that has not enabled that.
+void check_reach(const DeviceValues& values, const Index3& extent, const DevicePlace& place);
+
 /// Of the memory at `address`; nullopt where kernels cannot read it, which may be host memory that CUDA does not know
 /// of, or where there is no device. Throws Error(io).
 std::optional<DevicePlace> device_place(const void* address);

@@ -2,7 +2,7 @@
 
 #include "format/base/error.h"
 #include "gpu/cuda/push/gather_planes.h"
-#include "gpu/cuda/runtime/check.h"
+#include "gpu/cuda/runtime/launch_kernel.cuh"
 
 namespace weir {
 namespace {
@@ -26,18 +26,17 @@ __global__ void gather(const Word* first, Strides stride, std::int64_t columns, 
 }
 
 template <typename Word>
-void launch(const DeviceValues& from, const Index3& extent, std::byte* to, cudaStream_t stream) {
+void gather_words(const DeviceValues& from, const Index3& extent, std::byte* to, cudaStream_t stream) {
   constexpr int kThreads = 256;
   constexpr std::int64_t kMostBlocks = 2048;  // so many fill every device; each of their threads takes several values
   const auto bytes = static_cast<std::int64_t>(sizeof(Word));
   const std::int64_t values = volume(extent);
   const auto blocks =
       static_cast<unsigned>(std::clamp<std::int64_t>((values + kThreads - 1) / kThreads, 1, kMostBlocks));
-  gather<<<blocks, kThreads, 0, stream>>>(
-      reinterpret_cast<const Word*>(from.first),
-      Strides{from.stride[0] / bytes, from.stride[1] / bytes, from.stride[2] / bytes}, extent.x, extent.y, values,
-      reinterpret_cast<Word*>(to));
-  check_cuda(cudaGetLastError(), "gathering a slab on the device");
+  launch_kernel("gathering a slab on the device", {blocks, kThreads, stream}, gather<Word>,
+                reinterpret_cast<const Word*>(from.first),
+                Strides{from.stride[0] / bytes, from.stride[1] / bytes, from.stride[2] / bytes}, extent.x, extent.y,
+                values, reinterpret_cast<Word*>(to));
 }
 
 }  // namespace
@@ -45,13 +44,13 @@ void launch(const DeviceValues& from, const Index3& extent, std::byte* to, cudaS
 void gather_planes(const DeviceValues& from, const Index3& extent, std::byte* to, cudaStream_t stream) {
   switch (from.value_bytes) {
     case 1:
-      return launch<std::uint8_t>(from, extent, to, stream);
+      return gather_words<std::uint8_t>(from, extent, to, stream);
     case 2:
-      return launch<std::uint16_t>(from, extent, to, stream);
+      return gather_words<std::uint16_t>(from, extent, to, stream);
     case 4:
-      return launch<std::uint32_t>(from, extent, to, stream);
+      return gather_words<std::uint32_t>(from, extent, to, stream);
     case 8:
-      return launch<std::uint64_t>(from, extent, to, stream);
+      return gather_words<std::uint64_t>(from, extent, to, stream);
     default:
       throw Error(ErrorKind::internal, "values of this many bytes cannot be gathered");
   }

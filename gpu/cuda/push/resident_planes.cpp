@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "gpu/cuda/push/gather_planes.h"
+#include "gpu/cuda/runtime/caller_stream.h"
 #include "gpu/cuda/runtime/check.h"
 
 namespace weir {
@@ -27,8 +28,9 @@ ResidentPlanes::~ResidentPlanes() {
   });
 }
 
-void ResidentPlanes::add(std::int64_t z0, std::int64_t nz, const DeviceValues& values, cudaStream_t stream) {
+void ResidentPlanes::add(std::int64_t z0, std::int64_t nz, const DeviceValues& values, cudaStream_t callers) {
   check_slab(values, device_);
+  const cudaStream_t stream = caller_stream(callers);
   float* const to = values_.data() + voxels(z0);
   CopyEvent copied;
   try {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "gpu/cuda/render/render_kernel.h"
-#include "gpu/cuda/runtime/check.h"
+#include "gpu/cuda/runtime/launch_kernel.cuh"
 #include "gpu/cuda/runtime/pixel_tile.h"
 #include "gpu/cuda/volume/device_samplers.h"
 
@@ -34,12 +34,8 @@ void launch_render(const RenderTask<Volume>& task, std::uint32_t first, std::uin
   const dim3 threads(kTileWidth, kTileHeight);
   const dim3 blocks((static_cast<unsigned>(task.width) + kTileWidth - 1) / kTileWidth,
                     (static_cast<unsigned>(task.height) + kTileHeight - 1) / kTileHeight);
-  if (task.mode == RenderMode::path) {
-    render_kernel<Volume, true><<<blocks, threads, 0, stream>>>(task, first, last, sums);
-  } else {
-    render_kernel<Volume, false><<<blocks, threads, 0, stream>>>(task, first, last, sums);
-  }
-  check_cuda(cudaGetLastError(), "starting the renderer");
+  const auto kernel = task.mode == RenderMode::path ? &render_kernel<Volume, true> : &render_kernel<Volume, false>;
+  launch_kernel("starting the renderer", {blocks, threads, stream}, kernel, task, first, last, sums);
 }
 
 }  // namespace weir

@@ -4,7 +4,7 @@
 #include "gpu/cuda/bricks/paged_sampler.h"
 #include "gpu/cuda/render/render_kernel.cuh"
 #include "gpu/cuda/render/render_paged.h"
-#include "gpu/cuda/runtime/check.h"
+#include "gpu/cuda/runtime/launch_kernel.cuh"
 #include "gpu/cuda/volume/device_samplers.h"
 #include "gpu/volume/levelled_volume.h"
 
@@ -79,8 +79,8 @@ template <Noting kNoting, class Volume>
 void launch_paged(const RenderTask<Volume>& task, const PagedPicture& picture, std::uint32_t first_tile,
                   std::uint32_t tiles, cudaStream_t stream) {
   const dim3 threads(kTileWidth, kTileHeight);
-  render_paged_kernel<Volume, kNoting == Noting::called><<<tiles, threads, 0, stream>>>(task, picture, first_tile);
-  check_cuda(cudaGetLastError(), "starting the renderer");
+  launch_kernel("starting the renderer", {tiles, threads, stream},
+                render_paged_kernel<Volume, kNoting == Noting::called>, task, picture, first_tile);
 }
 
 template <Filter kFilter, Noting kNoting, class Positions>

@@ -1,5 +1,7 @@
 #include "gpu/cuda/volume/device_macrocells.h"
 
+#include "gpu/cuda/runtime/launch_kernel.cuh"
+
 namespace weir {
 
 namespace {
@@ -66,8 +68,8 @@ __global__ void find_majorants(OpacityBounds transfer, const MinMax* bounds, std
 template <class Block>
 std::vector<MinMax> gather_macrocells(const BlockTable<Block>& table, const CellLattice& cells) {
   const DeviceArray<MinMax> bounds(static_cast<std::size_t>(cells.size()));
-  gather<<<static_cast<unsigned>(cells.size()), kThreads, 0, cudaStreamPerThread>>>(table, cells, bounds.data());
-  check_cuda(cudaGetLastError(), "gathering macrocells");
+  launch_kernel("gathering macrocells", {static_cast<unsigned>(cells.size()), kThreads, cudaStreamPerThread},
+                gather<Block>, table, cells, bounds.data());
   return bounds.download();
 }
 
@@ -98,8 +100,8 @@ void DeviceTransfer::replace(const TransferFunction& transfer) {
 
 void DeviceMacrocells::update(const DeviceTransfer& transfer, cudaStream_t stream) {
   const auto blocks = static_cast<unsigned>((bounds_.size() + kThreads - 1) / kThreads);
-  find_majorants<<<blocks, kThreads, 0, stream>>>(transfer.bounds(), bounds_.data(), bounds_.size(), majorants_.data());
-  check_cuda(cudaGetLastError(), "finding majorants");
+  launch_kernel("finding majorants", {blocks, kThreads, stream}, find_majorants, transfer.bounds(), bounds_.data(),
+                bounds_.size(), majorants_.data());
 }
 
 }  // namespace weir

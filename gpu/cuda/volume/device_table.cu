@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "gpu/cuda/runtime/launch_kernel.cuh"
 #include "gpu/math/narrow.h"
 #include "gpu/volume/leaf_table.h"
 
@@ -90,8 +91,8 @@ DeviceTable<Block>::DeviceTable(const NvdbGrid& grid, const std::byte* data) {
                       narrow(lattice.first - roots.first * (kUpperDim / kLeafDim))};
   blocks_ = DeviceArray<Block>(static_cast<std::size_t>(lattice.size()));
   const auto launched = static_cast<unsigned>((lattice.size() + kThreads - 1) / kThreads);
-  fill<<<launched, kThreads, 0, cudaStreamPerThread>>>(tree, lattice.size(), blocks_.data());
-  check_cuda(cudaGetLastError(), "building the block table");
+  launch_kernel("building the block table", {launched, kThreads, cudaStreamPerThread}, fill<Block>, tree,
+                lattice.size(), blocks_.data());
   check_cuda(cudaStreamSynchronize(cudaStreamPerThread), "building the block table");
   view_ = {.blocks = blocks_.data(),
            .leaves = data,

@@ -192,6 +192,9 @@ int main(void) {
     CHECK(strstr(error.message, "; see whether nvidia-smi shows the device") != NULL);
     printf("no device: %s\n", error.message);
   } else {
+    /* A program need not clear an error that it has dealt with. */
+    void* refused = NULL;
+    CHECK(cudaMalloc(&refused, (size_t)1 << 60) == cudaErrorMemoryAllocation);
     CHECK_OK(weir_cuda_load(a, NULL, &loaded, &error));
     expect_on_device(a, loaded);
     CHECK_OK(weir_cuda_load(b, NULL, &loaded, &error)); /* larger */
