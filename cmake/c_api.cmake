@@ -20,7 +20,8 @@ file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/weir.map @ONLY
 set_target_properties(weir_c PROPERTIES OUTPUT_NAME weir EXPORT_NAME c VERSION ${PROJECT_VERSION}
                       SOVERSION ${WEIR_ABI}
                       CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON LINK_DEPENDS ${CMAKE_BINARY_DIR}/weir.map)
-target_link_options(weir_c PRIVATE LINKER:--version-script=${CMAKE_BINARY_DIR}/weir.map LINKER:--as-needed)
+target_link_options(weir_c PRIVATE LINKER:--version-script=${CMAKE_BINARY_DIR}/weir.map LINKER:--as-needed
+                    LINKER:-z,nodelete)  # oneTBB's threads run on after a conversion, with code that dlclose would unmap
 
 # weir_install_c(): the library and its header, for find_package(weir), pkg-config, or -lweir.
 function(weir_install_c)

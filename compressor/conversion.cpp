@@ -1,7 +1,5 @@
 #include "compressor/conversion.h"
 
-#include <tbb/global_control.h>
-
 #include <algorithm>
 #include <chrono>
 #include <string>
@@ -13,6 +11,7 @@
 #include "compressor/damaged_input.h"
 #include "compressor/look_ahead.h"
 #include "compressor/plan/memory_plan.h"
+#include "compressor/plan/own_threads.h"
 #include "compressor/plan/startable_threads.h"
 #include "compressor/resume.h"
 #include "compressor/select/file_size.h"
@@ -117,25 +116,30 @@ void clear_pages(VolumeSource& source, const ConversionOptions& options) {
 // What counts besides what a conversion takes.
 enum class Held { by_the_process, by_nobody };
 
-// All of it but what comes after an error.
-Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const ConversionControl& control,
-                   OutputFiles& output, WorkDirectory& work, Journal* journal, Team& team, Held counted) {
-  const ForkGuard forks;
-  clear_pages(source, options);
-  const std::uint64_t held = counted == Held::by_the_process ? resident_bytes() : 0;
-  const auto started = std::chrono::steady_clock::now();
-  const SourceInfo& info = source.info();
-  say_axes(info, control.notice);
-  const Box domain = info.domain();
-  BlockCoder* const coder = source.resident() == nullptr ? control.coder : nullptr;
-  const Workers workers = choose_workers(source, options, coder, held);
-  if (options.threads == 0 && workers.threads < workers.processors && control.notice) {
-    control.notice(fewer_threads_notice(workers.threads, workers.processors, options.memory));
-  }
-  std::size_t threads = workers.threads;
-  team.run([&] { threads = startable_workers(workers.threads, control.notice); });
-  const tbb::global_control parallelism(tbb::global_control::max_allowed_parallelism, threads);
+// Where a conversion reads and writes.
+struct Conversion {
+  VolumeSource& source;
+  const ConversionOptions& options;
+  const ConversionControl& control;
+  OutputFiles& output;
+  WorkDirectory& work;
+  Journal* journal;  // null: none
+  Team& team;
 
+  BlockCoder* coder() const { return source.resident() == nullptr ? control.coder : nullptr; }
+};
+
+// Surveys and writes, on `threads` of the `workers` that there were to be.
+Sidecar convert_on(std::size_t threads, const Workers& workers, const Conversion& conversion,
+                   std::chrono::steady_clock::time_point started) {
+  VolumeSource& source = conversion.source;
+  const ConversionOptions& options = conversion.options;
+  const ConversionControl& control = conversion.control;
+  WorkDirectory& work = conversion.work;
+  Journal* const journal = conversion.journal;
+  Team& team = conversion.team;
+  const SourceInfo& info = source.info();
+  const Box domain = info.domain();
   MemoryPlan memory;
   ReadingPlan reading;
   std::uint64_t cache_bytes = 0;
@@ -149,7 +153,9 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
     using PagesOf = MemoryFileSystem::PagesOf;
     work.hold_records(reuses_pages(source, options) ? PagesOf::earlier_files : PagesOf::the_system);
   }
-  if (journal == nullptr && team.alone() && threads == workers.threads) reserve_ahead(output, options, control, source);
+  if (journal == nullptr && team.alone() && threads == workers.threads) {
+    reserve_ahead(conversion.output, options, control, source);
+  }
   StreamOptions stream = stream_options(control);
   // Of use to the survey, whose blocks are smaller; where threads are few, one has to do for reading.
   if (threads == workers.threads) stream.buffer_bytes = 2 * memory.block_bytes;
@@ -193,7 +199,7 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
       ladders->near = state.near;
       ladders->window = state.window();
     }
-    ladders->coder = coder;
+    ladders->coder = conversion.coder();
   }
   if (cache_bytes > 0 && voxels_of(surveyed.done, reading.survey) < voxels) {
     stores.rows.set_cache(LeafCache::where_there_is_room(leaves, cache_bytes));
@@ -205,8 +211,26 @@ Sidecar convert_to(VolumeSource& source, const ConversionOptions& options, const
                           pauses, ladders});
   }();
   check_source(source, team);  // before an encode pass is spent on it
-  return convert_surveyed({source, options, control, output, work, journal, visibility}, reading, survey, stores,
-                          started);
+  return convert_surveyed({source, options, control, conversion.output, work, journal, visibility}, reading, survey,
+                          stores, started);
+}
+
+// All of it but what comes after an error.
+Sidecar convert_to(const Conversion& conversion, Held counted) {
+  const ForkGuard forks;
+  const ConversionOptions& options = conversion.options;
+  const Notice& notice = conversion.control.notice;
+  clear_pages(conversion.source, options);
+  const std::uint64_t held = counted == Held::by_the_process ? resident_bytes() : 0;
+  const auto started = std::chrono::steady_clock::now();
+  say_axes(conversion.source.info(), notice);
+  const Workers workers = choose_workers(conversion.source, options, conversion.coder(), held);
+  if (options.threads == 0 && workers.threads < workers.processors && notice) {
+    notice(fewer_threads_notice(workers.threads, workers.processors, options.memory));
+  }
+  std::size_t threads = workers.threads;
+  conversion.team.run([&] { threads = startable_workers(workers.threads, notice); });
+  return OwnThreads(threads).run([&] { return convert_on(threads, workers, conversion, started); });
 }
 
 // A volume of weir's own is taken for what its certificate says.
@@ -244,7 +268,7 @@ Sidecar convert_volume(VolumeSource& source, const ConversionOptions& options, c
   const Hdf5CrashRemoval at_crash(std::move(begun));
   try {
     team.lead([&] { check_certified(source.info(), control); });
-    Sidecar sidecar = convert_to(source, options, control, output, work, journal.get(), team, Held::by_the_process);
+    Sidecar sidecar = convert_to({source, options, control, output, work, journal.get(), team}, Held::by_the_process);
     if (journal) journal->discard();
     return sidecar;
   } catch (const Error& error) {
@@ -259,7 +283,7 @@ Sidecar convert_volume(VolumeSource& source, const ConversionOptions& options, c
 
 Sidecar convert_into(OutputFiles& output, WorkDirectory& work, VolumeSource& source, const ConversionOptions& options,
                      const ConversionControl& control, Team& team) {
-  return convert_to(source, options, control, output, work, nullptr, team, Held::by_nobody);
+  return convert_to({source, options, control, output, work, nullptr, team}, Held::by_nobody);
 }
 
 }  // namespace weir

@@ -18,6 +18,7 @@
 #include "gpu/cuda/encode/resident_volume.h"
 #include "gpu/cuda/push/device_slabs.h"
 #include "gpu/cuda/push/resident_planes.h"
+#include "gpu/cuda/runtime/caller_stream.h"
 #include "gpu/cuda/runtime/check.h"
 #include "gpu/packed/coder_choice.h"
 #include "ingest/values/array_source.h"
@@ -179,12 +180,15 @@ void push_slab(weir_push& push, std::int64_t z0, std::int64_t nz, const void* da
   required(data, "data");
   const SourceInfo& info = push.volume->info();
   const std::array<std::int64_t, 3> strides = slab_stride(*push.volume, stride);
-  if (is_device_memory(data)) {
+  if (const std::optional<DevicePlace> place = device_place(data)) {
     push.callbacks.look_for_cancel();
-    in_flight(push).add(z0, nz, {static_cast<const std::byte*>(data), strides, scalar_bytes(info.type)}, stream);
+    push.volume->check_slab(z0, nz, strides);
+    const DeviceValues values{static_cast<const std::byte*>(data), strides, scalar_bytes(info.type)};
+    check_reach(values, {info.extent.x, info.extent.y, nz}, *place);
+    in_flight(push).add(z0, nz, values, stream);
     return;
   }
-  if (device_count() > 0) check_cuda(cudaStreamSynchronize(stream), "work before a slab");
+  if (device_count() > 0) check_cuda(cudaStreamSynchronize(caller_stream(stream)), "work before a slab");
   push_host_slab(push, z0, nz, data, strides);
 }
 
@@ -196,7 +200,7 @@ bool take_in_place(weir_push& push, const void* data, const std::int64_t* stride
   check_cuda(cudaGetDevice(&device), "asking for the current device");
   if (!without_gaps(values, push.volume->info().extent) || !lies_on(data, device)) return false;
   check_slab(values, device);
-  check_cuda(cudaStreamSynchronize(stream), "work before a volume");
+  check_cuda(cudaStreamSynchronize(caller_stream(stream)), "work before a volume");
   push.in_flight = try_resident(
       push.notice, [&] { return std::make_unique<ResidentInFlight>(push, device, static_cast<const float*>(data)); });
   return push.in_flight != nullptr;

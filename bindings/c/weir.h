@@ -8,9 +8,12 @@
  * set. There is no global state and no last error; no C++ exception leaves the library, and none may leave a callback.
  *
  * Threads: a call may be made by any thread at any time, and calls with different handles by several threads at once.
- * The comment of a handle's type says what that handle allows. Conversions use threads of their own (oneTBB's); while
- * several run in one process, all use the smallest number of threads that one of them was given. A child that is
- * forked while one runs can convert only after exec, and gets WEIR_ERROR_USAGE before; any other may convert.
+ * The comment of a handle's type says what that handle allows. Conversions use threads of oneTBB's, whose number they
+ * limit for the process while they run: several conversions, and oneTBB loops of the program itself, then have the
+ * smallest number of threads that one of them was given. They compute in a floating-point mode of their own, whatever
+ * the caller's is (-ffast-math, rounding), which the caller has again afterwards. A child that is forked while one runs
+ * can convert only after exec, and gets WEIR_ERROR_USAGE before; any other may convert. Since oneTBB's threads go on
+ * after a conversion, dlclose leaves the library loaded.
  *
  * Structs: set every struct up by its _init function, with its sizeof, then change members; a member of 0 or NULL is
  * always its default. A program built with an older weir.h runs with a newer library. One built with a newer weir.h

@@ -103,7 +103,6 @@ void stop_all_calls() {
 
 void stop_calls_at_exit() {
   ending_thread() = std::thread::id();  // an embedded interpreter may have ended, and another one begun
-  if (PyInterpreterState_Get() != PyInterpreterState_Main()) return;
   py::module_::import("atexit").attr("register")(py::cpp_function(stop_all_calls));
 }
 

@@ -10,6 +10,10 @@
 
 namespace py = pybind11;
 
+// pybind11's own entry gets another name: in an interpreter beside the main one it waits for itself. (Python from 3.13
+// on calls it in the main one first.)
+#define PyInit__core init_in_main_interpreter
+
 PYBIND11_MODULE(_core, m) {
   using weir::python::Grid;
   m.doc() = "The compiled part of weir; use the package weir.";
@@ -52,4 +56,14 @@ PYBIND11_MODULE(_core, m) {
         return std::make_unique<Grid>(url, fetch, interrupt, cache);
       },
       py::arg("url"), py::arg("fetch"), py::arg("interrupt"), py::arg("cache"));
+}
+
+#undef PyInit__core
+
+extern "C" PYBIND11_EXPORT PyObject* PyInit__core();
+extern "C" PYBIND11_EXPORT PyObject* PyInit__core() {
+  if (PyInterpreterState_Get() == PyInterpreterState_Main()) return init_in_main_interpreter();
+  PyErr_SetString(PyExc_ImportError,
+                  "weir cannot be imported in a subinterpreter; use the main interpreter, or another process");
+  return nullptr;
 }

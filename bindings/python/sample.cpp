@@ -6,7 +6,7 @@
 #include "bindings/python/interpreter_end.h"
 #include "bindings/python/sampled_blocks.h"
 #include "bindings/python/watch.h"
-#include "format/process/float_mode.h"
+#include "compressor/plan/own_threads.h"
 #include "gpu/volume/volume_sampler.h"
 
 namespace weir::python {
@@ -56,10 +56,11 @@ py::array_t<float> Grid::sample(const py::array_t<float, py::array::c_style>& po
   }
   without_lock([&] {
     file->require_unchanged();
-    const FloatMode mode;
     std::call_once(file->samples_made, [&] { file->samples.emplace(file->grid()); });
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, positions.size() / 3, kGrain), [&](const auto& part) {
-      file->samples->with_volume(filter, [&](const auto& volume) { sample_part(volume, positions, part, values); });
+    OwnArena().run([&] {
+      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, positions.size() / 3, kGrain), [&](const auto& part) {
+        file->samples->with_volume(filter, [&](const auto& volume) { sample_part(volume, positions, part, values); });
+      });
     });
   });
   return array;

@@ -1,7 +1,6 @@
 #include "compressor/push/pushed_volume.h"
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <bit>
@@ -14,6 +13,7 @@
 #include "compressor/conversion_control.h"
 #include "compressor/conversion_memory.h"
 #include "compressor/plan/memory_plan.h"
+#include "compressor/plan/own_threads.h"
 #include "compressor/plan/startable_threads.h"
 #include "compressor/push/leaf_spool.h"
 #include "compressor/push/plane_set.h"
@@ -109,12 +109,22 @@ class PushedVolume::State {
   void slab(std::int64_t z0, std::int64_t nz, const void* data, const std::array<std::int64_t, 3>& stride) {
     check_going_on();
     if (data == nullptr) throw Error(ErrorKind::usage, cat(info_.path, ": the slab's data is a null pointer"));
+    check_slab(z0, nz, stride);
     const Taking taking(*this, z0, nz);
     add(z0, nz, data, stride);
   }
 
+  void check_slab(std::int64_t z0, std::int64_t nz, const std::array<std::int64_t, 3>& stride) const {
+    if (z0 < 0 || nz < 1 || z0 >= info_.extent.z || nz > info_.extent.z - z0) {
+      throw Error(ErrorKind::usage, cat(info_.path, ": a slab of ", nz, nz == 1 ? " plane" : " planes", " from ", z0,
+                                        " on is not in the volume, whose planes are 0 to ", info_.extent.z - 1));
+    }
+    check_strides(info_.path, {info_.extent.x, info_.extent.y, nz}, stride);
+  }
+
   void expect(std::int64_t z0, std::int64_t nz) {
     check_going_on();
+    check_slab(z0, nz, packed_stride(info_.extent, info_.type));
     const std::lock_guard lock(mutex_);
     take_planes(z0, nz);
     expected_planes_ += nz;
@@ -255,10 +265,6 @@ class PushedVolume::State {
   }
 
   void take_planes(std::int64_t z0, std::int64_t nz) {
-    if (z0 < 0 || nz < 1 || z0 >= info_.extent.z || nz > info_.extent.z - z0) {
-      throw Error(ErrorKind::usage, cat(info_.path, ": a slab of ", nz, nz == 1 ? " plane" : " planes", " from ", z0,
-                                        " on is not in the volume, whose planes are 0 to ", info_.extent.z - 1));
-    }
     if (const auto twice = given_.add({z0, z0 + nz})) {
       throw Error(ErrorKind::usage, cat(info_.path, ": a slab of ", nz, nz == 1 ? " plane" : " planes", " from ", z0,
                                         " on holds ", planes_text({*twice}), ", given before; give each plane once"));
@@ -292,12 +298,12 @@ class PushedVolume::State {
   Sidecar convert(std::chrono::steady_clock::time_point started) {
     floats_.clear();
     const ForkGuard forks;
-    const tbb::global_control parallelism(tbb::global_control::max_allowed_parallelism,
-                                          startable_workers(threads_, control_.notice));
-    const std::unique_ptr<VolumeSource> source = open_spool(*files_->spool, info_);
-    const Survey survey = files_->survey->result(files_->survey->tally());
-    return convert_surveyed({*source, options_, control_, files_->output, files_->work, nullptr, seen_},
-                            plan_reading(*source, memory_), survey, *files_->stores, started);
+    return OwnThreads(startable_workers(threads_, control_.notice)).run([&] {
+      const std::unique_ptr<VolumeSource> source = open_spool(*files_->spool, info_);
+      const Survey survey = files_->survey->result(files_->survey->tally());
+      return convert_surveyed({*source, options_, control_, files_->output, files_->work, nullptr, seen_},
+                              plan_reading(*source, memory_), survey, *files_->stores, started);
+    });
   }
 
   Sidecar convert_whole(VolumeSource& whole) {
@@ -339,6 +345,10 @@ void PushedVolume::slab(std::int64_t z0, std::int64_t nz, const void* data, cons
 
 void PushedVolume::slab(std::int64_t z0, std::int64_t nz, const void* data) {
   slab(z0, nz, data, packed_stride(state_->info().extent, state_->info().type));
+}
+
+void PushedVolume::check_slab(std::int64_t z0, std::int64_t nz, const std::array<std::int64_t, 3>& stride) const {
+  state_->check_slab(z0, nz, stride);
 }
 
 void PushedVolume::expect(std::int64_t z0, std::int64_t nz) { state_->expect(z0, nz); }

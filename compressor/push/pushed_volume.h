@@ -43,12 +43,15 @@ class PushedVolume {
   /// machine's byte order, at any alignment; `stride` the bytes from one voxel to the next along x, y, z, any, also
   /// <= 0. Waits only while all of the memory is in use and the workers are making room.
   ///
-  /// Throws Error(usage), and nothing is taken, where data is null, planes are not in the volume, or one was given
-  /// before. Throws Error(io) where the disk is full or fails, Error(interrupted) where control.cancel is set: that is
+  /// Throws Error(usage), and nothing is taken, where data is null, check_slab() throws, or a plane was given before.
+  /// Throws Error(io) where the disk is full or fails, Error(interrupted) where control.cancel is set: that is
   /// then the answer of every later call, and nothing is left on the disk.
   void slab(std::int64_t z0, std::int64_t nz, const void* data, const std::array<std::int64_t, 3>& stride);
   /// Without gaps, x fastest: Fortran's a(x, y, z), C's a[z][y][x].
   void slab(std::int64_t z0, std::int64_t nz, const void* data);
+
+  /// Throws Error(usage) where planes are not in the volume, or the strides lead out of the address space.
+  void check_slab(std::int64_t z0, std::int64_t nz, const std::array<std::int64_t, 3>& stride) const;
 
   /// The same in two steps, for values that arrive later. `expect` checks and takes the planes, as slab does without
   /// data; `fill` gives the values of planes that were expected, in any number of calls, each plane once, or all of

@@ -143,20 +143,6 @@ class ArraySource final : public VolumeSource {
   std::atomic<std::uint64_t> bytes_read_{0};
 };
 
-void check_strides(const DenseArray& array) {
-  const std::array<std::int64_t, 3> extent{array.extent.x, array.extent.y, array.extent.z};
-  std::int64_t reach = 0;
-  for (std::size_t a = 0; a < 3; ++a) {
-    std::int64_t along = 0;
-    if (array.stride[a] == std::numeric_limits<std::int64_t>::min() ||
-        __builtin_mul_overflow(std::abs(array.stride[a]), extent[a] - 1, &along) ||
-        __builtin_add_overflow(reach, along, &reach)) {
-      throw Error(ErrorKind::usage, cat(kPath, ": a stride of ", array.stride[a], " bytes along ", "xyz"[a], " for ",
-                                        extent[a], " voxels leaves the address space; strides are in bytes"));
-    }
-  }
-}
-
 void check_place(const DenseArray& array) {
   for (const double s : array.spacing) {
     if (!(s > 0.0) || !std::isfinite(s)) {
@@ -183,6 +169,20 @@ std::array<std::int64_t, 3> packed_stride(const Index3& extent, ScalarType type)
   const std::uint64_t row = bytes * static_cast<std::uint64_t>(extent.x);
   const std::uint64_t plane = row * static_cast<std::uint64_t>(extent.y);
   return {static_cast<std::int64_t>(bytes), static_cast<std::int64_t>(row), static_cast<std::int64_t>(plane)};
+}
+
+void check_strides(std::string_view path, const Index3& extent, const std::array<std::int64_t, 3>& stride) {
+  const std::array<std::int64_t, 3> voxels{extent.x, extent.y, extent.z};
+  std::int64_t reach = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    std::int64_t along = 0;
+    if (stride[a] == std::numeric_limits<std::int64_t>::min() ||
+        __builtin_mul_overflow(std::abs(stride[a]), voxels[a] - 1, &along) ||
+        __builtin_add_overflow(reach, along, &reach)) {
+      throw Error(ErrorKind::usage, cat(path, ": a stride of ", stride[a], " bytes along ", "xyz"[a], " for ",
+                                        voxels[a], " voxels leaves the address space; strides are in bytes"));
+    }
+  }
 }
 
 SourceInfo array_info(const DenseArray& array) {
@@ -215,7 +215,7 @@ SourceInfo array_info(const DenseArray& array) {
 std::unique_ptr<VolumeSource> open_array(const DenseArray& array) {
   SourceInfo info = array_info(array);
   if (array.data == nullptr) throw Error(ErrorKind::usage, cat(kPath, ": the array's data is a null pointer"));
-  check_strides(array);
+  check_strides(kPath, array.extent, array.stride);
   return std::make_unique<ArraySource>(array, std::move(info));
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "format/base/index.h"
@@ -34,6 +35,9 @@ struct DenseArray {
 
 /// The strides of an array without gaps, x fastest: Fortran's a(x, y, z), C's a[z][y][x].
 std::array<std::int64_t, 3> packed_stride(const Index3& extent, ScalarType type);
+
+/// Throws Error(usage), which begins with `path`, where these strides of `extent` voxels lead out of the address space.
+void check_strides(std::string_view path, const Index3& extent, const std::array<std::int64_t, 3>& stride);
 
 /// What a source of `array` says of it; neither data nor strides are looked at. info().mtime_ns is the time of this
 /// call. Throws Error(input) where the extent is impossible, Error(usage) where spacing or origin are no place, or a

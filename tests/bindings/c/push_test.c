@@ -109,6 +109,9 @@ static void out_of_order(const float* values) {
   CHECK(strstr(error.message, ".partial: is being written by another process or conversion; wait for it"));
   CHECK(second == NULL);
   CHECK_STATUS(WEIR_ERROR_USAGE, weir_push_end(push, &error)); /* nothing was given */
+  const int64_t too_far[3] = {4, 4 * NX, INT64_MAX / 4};
+  CHECK_STATUS(WEIR_ERROR_USAGE, weir_push_slab(push, 0, NZ - 1, values, too_far, &error));
+  CHECK(strstr(error.message, "memory: a stride of 2305843009213693951 bytes along z for ") == error.message);
   CHECK_OK(weir_push_slab(push, 0, NZ - 1, values, NULL, &error));
   CHECK_STATUS(WEIR_ERROR_USAGE, weir_push_slab(push, 3, 1, values, NULL, &error));
   CHECK_STATUS(WEIR_ERROR_USAGE, weir_push_slab(push, NZ - 2, 2, values, NULL, &error));
@@ -116,6 +119,8 @@ static void out_of_order(const float* values) {
   CHECK_STATUS(WEIR_ERROR_USAGE, weir_push_slab(push, -1, 1, values, NULL, &error));
   CHECK_STATUS(WEIR_ERROR_USAGE, weir_push_slab(push, NZ - 1, 0, values, NULL, &error));
   CHECK_STATUS(WEIR_ERROR_USAGE, weir_push_slab(push, INT64_MAX, INT64_MAX, values, NULL, &error));
+  CHECK_STATUS(WEIR_ERROR_USAGE, weir_push_slab(push, 0, INT64_MAX, values, NULL, &error));
+  CHECK(strstr(error.message, " planes from 0 on is not in the volume, whose planes are 0 to ") != NULL);
   CHECK_USAGE("memory: the slab's data is a null pointer", weir_push_slab(push, NZ - 1, 1, NULL, NULL, &error));
   CHECK_STATUS(WEIR_ERROR_USAGE, weir_push_end(push, &error)); /* a plane is missing, and can still be given */
   CHECK_OK(weir_push_slab(push, NZ - 1, 1, values + NX * NY * (NZ - 1), NULL, &error));

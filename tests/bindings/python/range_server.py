@@ -43,7 +43,7 @@ class RangeServer:
         self.asked = []
         self.lock = threading.Lock()
         self.server = QuietServer(("127.0.0.1", 0), self.handler())
-        self.thread = threading.Thread(target=self.server.serve_forever, daemon=True)
+        self.thread = threading.Thread(target=self.server.serve_forever, args=(0.02,), daemon=True)  # shutdown waits so long
         self.thread.start()
 
     def url(self, path):

@@ -101,5 +101,21 @@ class InterpreterEnd(FolderTest):
         self.assertEqual(self.names(), ["a.nvdb", "a.nvdb.json"])
 
 
+@unittest.skipIf(sys.version_info >= (3, 13), "Python initialises modules in the main interpreter from 3.13 on")
+class Subinterpreter(unittest.TestCase):
+    def test_is_refused(self):
+        program = (
+            "import _xxsubinterpreters, sys\n"
+            "sub = _xxsubinterpreters.create()\n"
+            "_xxsubinterpreters.run_string(sub, f'import sys; sys.path[:] = {sys.path!r}; import weir')\n"
+        )
+        ended = subprocess.run([sys.executable, "-B", "-c", program], capture_output=True, text=True, timeout=60)
+        self.assertEqual(ended.returncode, 1)
+        self.assertIn(
+            "ImportError'>: weir cannot be imported in a subinterpreter; use the main interpreter, or another process",
+            ended.stderr,
+        )
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -98,6 +98,16 @@ TEST(WorkDirectory, AMissingOneIsAnError) {
             "--work-dir /nowhere: does not exist; make it or choose another");
 }
 
+TEST(WorkDirectory, OneBelowAFileIsAnErrorOfItsPath) {
+  const TemporaryDirectory scratch;
+  std::ofstream(scratch / "volume.raw") << "values";
+  const std::string below = scratch / "volume.raw/d";
+  Directories files;
+  files.existing = {"/data"};
+  EXPECT_EQ(message_of(files, "/data/out.nvdb", below, ErrorKind::io),
+            below + ": cannot be --work-dir: Not a directory; correct the path, a part of which is a file");
+}
+
 TEST(WorkDirectory, AFileInItsPlaceIsAnError) {
   const TemporaryDirectory scratch;
   const std::string file = scratch / "volume.raw";

@@ -87,6 +87,19 @@ TEST(CInterface, TheDocumentShowsTheCodeThatIsCompiled) {
 
 #ifdef WEIR_INSTALLS  // not in builds with sanitizers
 
+// A host of plugins unloads them; oneTBB's threads still run then, with code of a library that only weir needs.
+TEST(CInterface, UnloadedAfterAConversion_TheProgramGoesOn) {
+  const TemporaryDirectory directory;
+  const std::string program = directory / "plugin_host";
+  const CommandResult compiled =
+      run_command({WEIR_CC, "-std=c99", "-D_DEFAULT_SOURCE", "-Wall", "-Werror", "-I", kBindings,
+                   WEIR_SOURCE_DIR "/tests/tools/install/plugin_host.c", "-o", program, "-ldl"});
+  ASSERT_EQ(compiled.exit_code, 0) << compiled.err;
+  const CommandResult ran = run_command({program, WEIR_C_LIBRARY, directory / "a.nvdb"});
+  EXPECT_EQ(ran.exit_code, 0) << ran.err;
+  EXPECT_EQ(ran.out, "3 conversions\n");
+}
+
 bool has_program(const std::string& name) { return run_command({"sh", "-c", "command -v " + name}).exit_code == 0; }
 
 /// For a build on a busy machine.
