@@ -12,7 +12,7 @@ if(NOT MPI_C_FOUND)
   return()
 endif()
 
-add_library(weir_mpi_team STATIC bindings/mpi/mpi_team.cpp bindings/mpi/mpi_file_system.cpp)
+add_library(weir_mpi_team STATIC bindings/mpi/agreement.cpp bindings/mpi/mpi_team.cpp bindings/mpi/mpi_file_system.cpp)
 target_link_libraries(weir_mpi_team PUBLIC weir_compressor MPI::MPI_C)
 target_compile_definitions(weir_mpi_team PUBLIC OMPI_SKIP_MPICXX MPICH_SKIP_MPICXX)
 
@@ -33,7 +33,8 @@ file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/weir_mpi.map @ONLY
 set_target_properties(weir_mpi PROPERTIES EXPORT_NAME mpi VERSION ${PROJECT_VERSION} SOVERSION ${WEIR_ABI}
                       CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
                       LINK_DEPENDS ${CMAKE_BINARY_DIR}/weir_mpi.map)
-target_link_options(weir_mpi PRIVATE LINKER:--version-script=${CMAKE_BINARY_DIR}/weir_mpi.map LINKER:--as-needed)
+target_link_options(weir_mpi PRIVATE LINKER:--version-script=${CMAKE_BINARY_DIR}/weir_mpi.map LINKER:--as-needed
+                    LINKER:-z,nodelete)  # as weir_c
 
 # weir_install_mpi(): the command, the library and its header, as the component `mpi` of their own, since they need the MPI
 # that they were built with: cmake --install BUILD --component mpi, to where the rest is installed.
@@ -65,7 +66,7 @@ function(weir_mpi_tests)
     set_target_properties(${target} PROPERTIES C_STANDARD 99 C_STANDARD_REQUIRED ON C_EXTENSIONS OFF)
   endforeach()
   cmake_path(GET MPI_C_COMPILER PARENT_PATH wrappers)  # the Fortran compiler's wrapper of the same MPI, where there is one
-  add_executable(weir_tests_mpi tests/bindings/mpi/hangup_test.cpp tests/bindings/mpi/mpi_test.cpp)
+  add_executable(weir_tests_mpi tests/bindings/mpi/agreement_test.cpp tests/bindings/mpi/hangup_test.cpp tests/bindings/mpi/mpi_test.cpp)
   add_dependencies(weir_tests weir_tests_mpi)
   add_dependencies(weir_tests_mpi weir weir-mpi weir_mpi_push_boxes weir_mpi_heat)
   target_link_libraries(weir_tests_mpi PRIVATE weir_test_support GTest::gtest_main)

@@ -23,7 +23,15 @@ class MpiFile final : public File {
   MpiFile(MpiTeam& team, std::string path, std::unique_ptr<File> own, int mode)
       : team_(team), path_(std::move(path)), own_(std::move(own)) {
     const std::lock_guard lock(team_.calls());
-    check_mpi(MPI_File_open(MPI_COMM_SELF, path_.c_str(), mode, MPI_INFO_NULL, &file_), "opening " + path_);
+    const int code = MPI_File_open(MPI_COMM_SELF, path_.c_str(), mode, MPI_INFO_NULL, &file_);
+    int kind = MPI_SUCCESS;
+    MPI_Error_class(code, &kind);
+    if (kind == MPI_ERR_NO_SUCH_FILE && !team_.leads()) {
+      throw Error(ErrorKind::io, cat(path_, ": process ", team_.rank(), " of ", team_.size(),
+                                     " does not find what process 0 made; output and work directory must be on a file "
+                                     "system that all processes share"));
+    }
+    check_mpi(code, "opening " + path_);
   }
   ~MpiFile() override {
     const std::lock_guard lock(team_.calls());

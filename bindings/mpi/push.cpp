@@ -5,12 +5,13 @@
 
 #include "bindings/c/conversion_options.h"
 #include "bindings/c/status.h"
+#include "bindings/mpi/agreement.h"
 #include "bindings/mpi/mpi_team.h"
 #include "bindings/mpi/pushed_boxes.h"
 #include "bindings/mpi/weir_mpi.h"
-#include "compressor/conversion_identity.h"
+#include "compressor/conversion_memory.h"
+#include "compressor/plan/memory_plan.h"
 #include "format/base/text.h"
-#include "ingest/source/stored_value.h"
 
 /// What outlives a PushedBoxes comes before it.
 struct weir_mpi_push {
@@ -43,32 +44,12 @@ Index3 index_of(const int64_t* values, const char* name, int64_t least) {
   return {values[0], values[1], values[2]};
 }
 
-// What the processes must say alike, since each goes by what it was told.
-std::string said_by_all(const SourceInfo& info, const ConversionOptions& options) {
-  ConversionIdentity said = identify_conversion(info, options);
-  said.erase("source");  // where and of when a file would be
-  said.erase("source modified (ns)");
-  for (std::size_t i = 0; i < 3; ++i) {
-    said["spacing"] += cat(stored_value_text(info.spacing.at(i)), ' ');
-    said["origin"] += cat(stored_value_text(info.origin.at(i)), ' ');
-  }
-  said["output"] = options.output;
-  said["certify"] = options.certify == Certify::gradient ? "gradient" : "values";
-  said["overwrite"] = options.overwrite ? "yes" : "no";
-  said["work-dir"] = options.work_dir;
-  std::string text;
-  for (const auto& [name, value] : said) text += cat(name, '=', value, '\n');
-  return text;
-}
-
-void require_alike(Team& team, const std::string& said) {
-  std::vector<char> leading(said.begin(), said.end());
-  team.follow(leading);
-  team.run([&] {
-    if (std::string(leading.begin(), leading.end()) == said) return;
-    throw usage(cat("process ", team.rank(), " of ", team.size(),
-                    " gives another volume, output or other options than process 0; all must give the same"));
-  });
+// At the end it would be said too late: all boxes would have been taken.
+void require_memory(const ConversionOptions& options, const Box& domain) {
+  const std::uint64_t region = region_bytes(options);
+  const std::size_t threads =
+      choose_threads(options.threads, processors_or_all(options.processors), options.memory, 0, domain, region);
+  plan_memory(options.memory, 0, threads, domain, region);
 }
 
 }  // namespace
@@ -99,8 +80,9 @@ weir_status weir_mpi_push_begin(MPI_Comm comm, const weir_volume* volume, const 
       if (conversion.backend == CoderChoice::cuda)
         throw usage("backend is WEIR_BACKEND_CUDA, and ranks encode on the CPU");
     });
-    require_alike(made->team, said_by_all(info, conversion));
+    require_alike(made->team, info.path, said_by_all(info, conversion));
     conversion.processors = made->team.own_cores();
+    made->team.run([&] { require_memory(conversion, info.domain()); });
     made->boxes = std::make_unique<PushedBoxes>(std::move(info), conversion, made->control, made->team);
     *push = made.release();
   });

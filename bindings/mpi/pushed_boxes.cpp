@@ -13,6 +13,7 @@
 #include "format/base/text.h"
 #include "ingest/plan/strided_copy.h"
 #include "ingest/source/extent.h"
+#include "ingest/values/array_source.h"
 
 namespace weir {
 namespace {
@@ -97,6 +98,7 @@ void PushedBoxes::box(const Box& box, const void* data, const std::array<std::in
     throw Error(ErrorKind::usage, cat(info_.path, ": a box of voxels ", box_text(box, {}), " is not in the volume of ",
                                       extent_text(info_.extent)));
   }
+  check_strides(info_.path, box.extent(), stride);
   const Index3 origin = info_.index_origin;
   const StridedVoxels from{
       {box.lo + origin, box.hi + origin}, static_cast<const std::byte*>(data), stride, scalar_bytes(info_.type)};

@@ -35,8 +35,9 @@ class PushedBoxes {
 
   /// Takes the voxels of `box`, counted from the volume's first: `data` is its lowest one, of info's type in this
   /// machine's byte order, `stride` the bytes from one voxel to the next along x, y, z. One call at a time. Throws
-  /// Error(usage), and nothing is taken, where the box is empty or not in the volume, or data is null; Error(io) where
-  /// the disk fails, Error(interrupted) where control.cancel is set, which then is the answer of end() too.
+  /// Error(usage), and nothing is taken, where the box is empty or not in the volume, data is null, or the strides lead
+  /// out of the address space; Error(io) where the disk fails, Error(interrupted) where control.cancel is set, which
+  /// then is the answer of end() too.
   void box(const Box& box, const void* data, const std::array<std::int64_t, 3>& stride);
 
   /// Writes the volume and its sidecar, which it returns. Throws Error(usage) naming a box that two processes gave, or

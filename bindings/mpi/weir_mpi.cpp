@@ -6,8 +6,11 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <span>
+#include <sstream>
 #include <string>
 
+#include "bindings/mpi/agreement.h"
 #include "bindings/mpi/mpi_file_system.h"
 #include "bindings/mpi/mpi_team.h"
 #include "compressor/build_commit.h"
@@ -58,10 +61,31 @@ void add_convert(CLI::App& app, Arguments& a) {
   weir::add_log_level(command);
 }
 
+// Parses on all ranks. What --help or --version prints, of the lowest rank that has it; empty: none has.
+std::string parse(CLI::App& app, int argc, char** argv, weir::MpiTeam& team) {
+  std::ostringstream asked;
+  team.run([&] {
+    try {
+      weir::parse_command_line(app, argc, argv);
+    } catch (const CLI::ParseError& error) {
+      if (error.get_exit_code() != 0) throw weir::usage_error(weir::parse_message(app, error));
+      app.exit(error, asked);
+    }
+  });
+  const std::string text = asked.str();
+  const auto bytes = std::as_bytes(std::span(text));
+  weir::Team::Bytes lowest(bytes.begin(), bytes.end());
+  team.merge(lowest, [](weir::Team::Bytes& lower, const weir::Team::Bytes& higher) {
+    if (lower.empty()) lower = higher;
+  });
+  return {reinterpret_cast<const char*>(lowest.data()), lowest.size()};
+}
+
 void convert(const CLI::App& command, const Arguments& a, weir::MpiTeam& team) {
   const std::size_t processors = team.own_cores();
   weir::ConversionOptions options;
   std::unique_ptr<weir::VolumeSource> source;
+  weir::ConversionIdentity said;
   team.run([&] {
     weir::ConversionRequest request = weir::command_request(a.options);
     options = std::move(request.conversion);
@@ -72,7 +96,11 @@ void convert(const CLI::App& command, const Arguments& a, weir::MpiTeam& team) {
     if (!team.leads()) request.source.notice = {};
     request.source.spool_directory = options.work_dir.empty() ? weir::directory_of(a.output) : options.work_dir;
     source = weir::open_source(a.input, request.source);
+    said = weir::said_by_all(source->info(), options);
+    said["input"] = a.input;
+    if (!team.alone()) said["input with bytes of digest"] = sampled_bytes(source->info().files).hex();
   });
+  weir::require_alike(team, a.input, said);
   weir::Progress progress(a.progress);
   weir::ConversionControl control;
   control.cancel = &weir::interrupt_flag();
@@ -106,13 +134,14 @@ int run(int argc, char** argv, int rank) {
   Arguments arguments;
   add_convert(app, arguments);
   try {
-    weir::parse_command_line(app, argc, argv);
     weir::MpiTeam team(MPI_COMM_WORLD);
+    const std::string asked = parse(app, argc, argv, team);
+    if (!asked.empty()) {
+      if (says) std::fputs(asked.c_str(), stdout);
+      return 0;
+    }
     convert(*app.get_subcommands().front(), arguments, team);
     return 0;
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return says ? app.exit(error) : 0;
-    return fail(weir::parse_message(app, error), static_cast<int>(weir::ErrorKind::usage), says);
   } catch (const weir::Error& error) {
     return fail(weir::command_message(app, error), weir::exit_code_of(error), says);
   }

@@ -22,7 +22,8 @@ typedef struct weir_mpi_push weir_mpi_push;
 
 /* Collective over `comm`, which is copied; volume, options and output are the same in all processes, or
  * WEIR_ERROR_USAGE (options->memory, threads and callbacks are each its own; threads 0: an equal part of the machine's
- * cores). Takes the output's lock. *push is the caller's, for weir_mpi_push_free. */
+ * cores). Where the memory of one of them is too small, that is WEIR_ERROR_USAGE, too. Takes the output's lock. *push
+ * is the caller's, for weir_mpi_push_free. */
 WEIR_API weir_status weir_mpi_push_begin(MPI_Comm comm, const weir_volume* volume, const weir_convert_options* options,
                                          const char* output, weir_mpi_push** push, weir_error* error);
 /* The same with Fortran's handle of the communicator. */

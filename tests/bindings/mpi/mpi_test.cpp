@@ -241,11 +241,15 @@ TEST_F(Mpi, AFileThatSomeProcessDoesNotFindLeavesNothing) {
   fs::create_directory(directory_ / "work");
   const CommandResult output = run_apart({"-o", "out.nvdb"});
   EXPECT_EQ(output.exit_code, 5) << output.err;
-  EXPECT_TRUE(line_of(output.err, "weir-mpi").starts_with("weir-mpi: MPI: opening out.nvdb.partial: ")) << output.err;
+  const std::string missing =
+      ": process 1 of 2 does not find what process 0 made; output and work directory must be on a file system that all "
+      "processes share";
+  EXPECT_EQ(line_of(output.err, "weir-mpi"), "weir-mpi: out.nvdb.partial" + missing) << output.err;
   EXPECT_EQ(leftovers(), std::vector<std::string>{});
   const CommandResult work = run_apart({"-o", directory_ / "out.nvdb", "--work-dir", "work"});
   EXPECT_EQ(work.exit_code, 5) << work.err;
-  EXPECT_TRUE(line_of(work.err, "weir-mpi").starts_with("weir-mpi: MPI: opening work/.weir.")) << work.err;
+  const std::string said = line_of(work.err, "weir-mpi");
+  EXPECT_TRUE(said.starts_with("weir-mpi: work/.weir.") && said.ends_with(missing)) << work.err;
   EXPECT_EQ(leftovers(), std::vector<std::string>{});
   EXPECT_TRUE(fs::is_empty(directory_ / "work"));
 }
@@ -264,17 +268,27 @@ TEST_F(Mpi, PushOfMissingOrRepeatedVoxels_IsRefused) {
   refused("outside",
           "box: 2 memory: a box of voxels 10:20,20:30,31:41 is not in the volume of 20x30x40\n"
           "end: 2 memory: 1000 voxels are missing, those of 10:20,20:30,30:40 first\n");
+  const std::string remedy = "; give all processes the same volume, options and output\n";
   refused("differing",
-          "begin: 2 process 2 of 3 gives another volume, output or other options than process 0; all must give the "
-          "same\n");
-  refused("elsewhere",
-          "begin: 2 process 2 of 3 gives another volume, output or other options than process 0; all must give the "
-          "same\n");
+          "begin: 2 memory: process 2 of 3 has extent 20,30,39 where process 0 has extent 20,30,40" + remedy);
+  refused("elsewhere", "begin: 2 memory: process 2 of 3 has origin 100,0,0 where process 0 has origin 0,0,0" + remedy);
+  refused("memory", "begin: 2 memory 1 B is too small for this volume with 1 thread; give at least 20MiB\n");
   refused("options", cat("begin: 2 weir_convert_options: struct_size is 0, and must be at least ",
                          offsetof(weir_convert_options, preview), "; set it up with weir_convert_options_init\n"));
   refused("null",
           "box: 2 data is a null pointer\n"
           "end: 2 memory: 1000 voxels are missing, those of 10:20,20:30,30:40 first\n");
+}
+
+TEST_F(Mpi, PushOfABoxWithStridesOutOfTheAddressSpace_IsRefusedAndGoesOn) {
+  const CommandResult run = push(3, sample("cloud", "20x30x40", "float32"), {"20", "30", "40", "10"},
+                                 {cat(WEIR_BUDGET_LOSSLESS), "0"}, "strides");
+  EXPECT_EQ(
+      sorted_lines(run.out),
+      sorted_lines("box: 2 memory: a stride of 2305843009213693951 bytes along z for 10 voxels leaves the address "
+                   "space; strides are in bytes\n"
+                   "end: 0 \nafter: the push has ended; begin another\n"))
+      << run.err;
 }
 
 TEST_F(Mpi, PushThatOneProcessCancels_IsInterruptedInAll) {

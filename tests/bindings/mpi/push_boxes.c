@@ -1,6 +1,8 @@
 /* push_boxes VOLUME.raw X Y Z TYPE OUT.nvdb KIND BUDGET MODE: hands a raw volume over in boxes, by all processes of the
  * job, and prints status and message of the end. MODE: all; or, what must be refused: missing, twice, outside, null,
- * differing, elsewhere, options; or cancelled, by the process that has the last box. */
+ * differing, elsewhere, memory, options; or, by the process that has the last box: cancelled, or strides, which are
+ * wrong at first. */
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -52,6 +54,7 @@ int main(int argc, char** argv) {
 
   if (rank == size - 1 && strcmp(mode, "differing") == 0) volume.extent[2] -= 1;
   if (rank == size - 1 && strcmp(mode, "elsewhere") == 0) volume.origin[0] = 100;
+  if (rank == size - 1 && strcmp(mode, "memory") == 0) options.memory = 1;
   if (rank == size - 1 && strcmp(mode, "options") == 0) options.struct_size = 0;
   weir_error error;
   weir_mpi_push* push = NULL;
@@ -73,6 +76,11 @@ int main(int argc, char** argv) {
     if (empty || (last && strcmp(mode, "missing") == 0)) continue;
     if (b % size != rank && !(last && strcmp(mode, "twice") == 0)) continue;
     if (last && strcmp(mode, "outside") == 0) lo[2] += 1;
+    if (last && strcmp(mode, "strides") == 0) {
+      const int64_t far_away[3] = {stride[0], stride[1], LLONG_MAX / 4};
+      status = weir_mpi_push_box(push, lo, extent, first, far_away, &error);
+      if (status != WEIR_OK) printf("box: %d %s\n", (int)status, error.message);
+    }
     cancelled = last && strcmp(mode, "cancelled") == 0;
     status = weir_mpi_push_box(push, lo, extent, last && strcmp(mode, "null") == 0 ? NULL : first, stride, &error);
     cancelled = 0;
