@@ -31,12 +31,51 @@ export function bytes_per_s(value) {
   return value === null ? kUnknown : `${bytes(value)}/s`;
 }
 
+// Of usual sizes in plain digits, else in those or with an exponent, whichever is shorter.
+function written(value) {
+  const size = Math.abs(value);
+  const plain = String(value);
+  if (size === 0 || (size >= 1e-3 && size < 1e6)) return plain;
+  const exponential = value.toExponential().replace("e+", "e");
+  return exponential.length < plain.length ? exponential : plain;
+}
+
 /** Three digits, as short as they can be written: "0.0125", "4.2e-7", "125000". */
 export function number(value) {
-  if (value === null) return kUnknown;  // JSON has no NaN and no infinity
+  return value === null ? kUnknown : written(Number(value.toPrecision(3)));  // JSON has no NaN and no infinity
+}
+
+// With as few digits as tell its float32 from all others.
+function shortest(value) {
+  let digits = 1;
+  while (digits < 9 && Math.fround(Number(value.toPrecision(digits))) !== Math.fround(value)) ++digits;
+  return Number(value.toPrecision(digits));
+}
+
+/** A float32 with all digits that count: "12666", "1013.2". An infinity comes as its text. */
+export function exact(value) {
+  if (value === null) return kUnknown;
+  return typeof value === "string" ? value : written(shortest(value));
+}
+
+/** A place in the world where voxels are `spacing` wide, to a ten-thousandth of that or less. */
+export function place(value, spacing) {
+  const unit = 10 ** (Math.floor(Math.log10(spacing)) - 4);
+  return written(Number((Math.round(value / unit) * unit).toPrecision(15)));
+}
+
+/** A float32 of a range that is `span` wide, likewise. */
+export function within(value, span) {
+  return span > 0 ? place(shortest(value), span) : exact(value);
+}
+
+/** Three digits of a bound, never below it. */
+export function bound(value) {
+  if (value === null) return kUnknown;
   const short = Number(value.toPrecision(3));
-  const size = Math.abs(short);
-  return size !== 0 && (size < 1e-3 || size >= 1e6) ? short.toExponential().replace("e+", "e") : String(short);
+  if (short >= value) return written(short);
+  const [digits, power] = short.toExponential(2).split("e");
+  return written(Number(`${(Number(digits) + 0.01).toFixed(2)}e${power}`));
 }
 
 export function count(value) {
@@ -87,7 +126,7 @@ export function rate(output) {
 
 /** "largest error 0.0012", or nothing where that is unknown. */
 export function largest_error(output) {
-  return output.max_error === null ? "" : `largest error ${number(output.max_error)}`;
+  return output.max_error === null ? "" : `largest error ${bound(output.max_error)}`;
 }
 
 /** "values 0 to 4.2", or nothing where they are unknown. */

@@ -31,6 +31,7 @@ struct UnfinishedPass {
   using Progress = std::pair<std::size_t, std::uint64_t>;
 
   std::vector<Image> layers;  ///< that are whole
+  GridFrame frame;            ///< of the first one's file
   KeptPixels next_layer;      ///< of the one after them
 
   /// Grows with all that is drawn.

@@ -10,6 +10,7 @@
 #include "format/base/seconds_since.h"
 #include "format/base/text.h"
 #include "gpu/image/image_output.h"
+#include "tools/view/compared_scene.h"
 #include "tools/view/jpeg_picture.h"
 
 namespace weir {
@@ -270,6 +271,9 @@ std::vector<Image> RenderLoop::render(const Turn& turn, const FrameSize& size, s
       events_.progress(turn.viewer, view.id, "load", 0);
     }
     const std::shared_ptr<LoadedVolume> volume = shelf_.get(file);
+    const GridFrame& frame = volume->info().frame;
+    if (layer == 0) pass.frame = frame;
+    const std::optional<Scene> scene = layer == 0 ? view.scene : scene_of_other(view.scene, pass.frame, frame);
     if (turn.moving) {
       const auto begun = Clock::now();
       const double longest_s = turn.least() ? kLongestSmall_s : kLongestMoving_s;
@@ -287,7 +291,7 @@ std::vector<Image> RenderLoop::render(const Turn& turn, const FrameSize& size, s
         events_.progress(turn.viewer, view.id, "render", (all / layers * layer + static_cast<double>(done)) / all);
       };
     }
-    Picture picture = backend_.render(*volume, view.scene, options, sampling);
+    Picture picture = backend_.render(*volume, scene ? *scene : without_volume(view.scene), options, sampling);
     if (!picture.memory_note.empty() && picture.memory_note != warned_) {
       warned_ = picture.memory_note;
       spdlog::warn("{}: {}", file, warned_);

@@ -14,6 +14,7 @@
 #include "format/base/text.h"
 #include "tools/options/backend_choice.h"
 #include "tools/view/base/file_identity.h"
+#include "tools/view/compared_scene.h"
 #include "tools/view/value_probe.h"
 #include "tools/view/view_access.h"
 #include "tools/view/view_page.h"
@@ -41,12 +42,6 @@ AccessRules rules_of(const ViewSettings& settings) {
                   settings.any_host ? "that it printed to --progress-fd" : "in the file that --token-file names")};
 }
 
-Json names_of(const std::vector<std::string>& paths) {
-  Json names = Json::array();
-  for (const std::string& path : paths) names.push_back(path.substr(path.rfind('/') + 1));
-  return names;
-}
-
 // As weir render has it where there is one file: that file's own.
 std::optional<float> picture_background(const ViewedFiles& files) {
   return files.series() ? files.heads.summary().background : std::nullopt;
@@ -57,11 +52,6 @@ bool is_page_file(const RequestTarget& target) {
 }
 
 }  // namespace
-
-std::size_t volumes_held(const ViewedFiles& files) {
-  const std::size_t steps = files.series() ? 2 : 1;  // that is seen, and the next
-  return steps + (files.against.empty() ? 0 : files.against.size() > 1 ? 2 : 1);
-}
 
 ViewServer::ViewServer(boost::asio::io_context& io, ViewSettings settings, ViewedFiles files, Backend& backend)
     : io_(io),
@@ -81,7 +71,7 @@ ViewServer::ViewServer(boost::asio::io_context& io, ViewSettings settings, Viewe
                       {"series", files_.key},
                       {"version", settings_.version},
                       {"grows", files_.grow},
-                      {"against", names_of(files_.against)},
+                      {"against", step_names(files_.against)},
                       {"preview_of", settings_.preview_of.empty() ? Json() : Json(settings_.preview_of)},
                       {"render_input", settings_.render_input.empty() ? Json() : Json(settings_.render_input)},
                       {"allow_convert", settings_.allow_convert},
@@ -139,7 +129,7 @@ HttpResponse ViewServer::route(const HttpRequest& request) const {
   }
   if (target->path == std::vector<std::string>{"api", "state"}) {
     Json state = Json::parse(state_text_);
-    state["steps"] = names_of(steps_.paths());
+    state["steps"] = steps_.names();
     state["order"] = steps_.order();
     state["viewers"] = viewers_.size();
     return {200, "application/json", line(state) + "\n", {}};
@@ -205,7 +195,7 @@ void ViewServer::receive(ViewerId id, std::string_view text) {
 
 void ViewServer::handle(ViewerId id, Viewer& viewer, ViewRequest view) {
   viewer.view = std::make_shared<const ViewRequest>(view);
-  if (viewer.told != view.step || viewer.told_of != file_identity(file_of(view.step, 0))) {
+  if (viewer.told != view.step || viewer.told_of != told_file(view.step)) {
     viewer.wanted = view.step;
     tell_facts(id, viewer);
   }
@@ -227,6 +217,16 @@ std::string ViewServer::file_of(std::size_t step, int side) const {
   return files_.against.at(files_.against.size() == 1 ? 0 : step);
 }
 
+std::string ViewServer::name_of(std::size_t step, int side) const {
+  if (side == 0) return steps_.name(step);
+  return step_names(files_.against).at(files_.against.size() == 1 ? 0 : step);
+}
+
+// What the facts of a step are of: they say its name, too, which changes when a step comes from another folder.
+std::string ViewServer::told_file(std::size_t step) const {
+  return cat(steps_.name(step), ' ', file_identity(steps_.path(step)));
+}
+
 // The first number, that of the file which was named, where that is still there.
 std::size_t ViewServer::first_step() const {
   const std::vector<std::size_t> order = steps_.order();  // never empty
@@ -237,7 +237,7 @@ std::size_t ViewServer::first_step() const {
 // then.
 void ViewServer::tell_steps(const SeriesSummary& summary) {
   summary_ = summary;
-  Json told{{"type", "steps"}, {"steps", names_of(steps_.paths())}, {"order", steps_.order()}};
+  Json told{{"type", "steps"}, {"steps", steps_.names()}, {"order", steps_.order()}};
   told.update(values_facts(common_values()));
   const std::string text = line(told);
   std::vector<ViewerId> ids;  // one that reads nothing is gone after a text too many
@@ -250,7 +250,7 @@ void ViewServer::tell_facts(ViewerId id, Viewer& viewer) {
   if (!viewer.wanted || viewer.telling) return;
   const std::size_t step = *std::exchange(viewer.wanted, std::nullopt);
   viewer.told = step;
-  viewer.told_of = file_identity(file_of(step, 0));
+  viewer.told_of = told_file(step);
   viewer.telling = true;
   boost::asio::post(side_, [this, id, step, common = common_values(), alive = std::weak_ptr(alive_)] {
     Facts found;
@@ -258,10 +258,11 @@ void ViewServer::tell_facts(ViewerId id, Viewer& viewer) {
       const std::string path = file_of(step, side);
       try {
         const SeenValues values = values_of(file_of(step, 0), common);
-        const std::string key = cat(step, ' ', side, ' ', values.range.min, ' ', values.range.max, ' ');
+        const std::string name = name_of(step, side);
+        const std::string key = cat(step, ' ', side, ' ', values.range.min, ' ', values.range.max, ' ', name, ' ');
         found.texts.push_back(facts_cache_.get(key + file_identity(path), [&] {
           Json facts{{"type", "facts"}, {"step", step}, {"side", side}};
-          facts.update(volume_facts(*open_files_.get(path), values));
+          facts.update(volume_facts(*open_files_.get(path), name, values));
           return line(facts);
         }));
       } catch (const std::exception& error) {
@@ -337,10 +338,12 @@ void ViewServer::answer_probe(ViewerId id, Viewer& viewer) {
           picture.width = view->width;
           picture.height = view->height;
           picture.background = picture_background(files_);
-          const Camera camera = cameras_.camera(file, view->scene, picture);
+          const GridFrame first = frame_of(open_files_.get(file_of(view->step, 0))->grid());
+          const std::optional<Scene> scene = scene_of_other(view->scene, first, frame_of(file->grid()));
           const SeenValues values = values_of(file_of(view->step, probe.side), common);
-          if (const auto found =
-                  probe_voxel(file->grid(), view->scene, camera, values.range, values.background, probe.x, probe.y)) {
+          if (const auto found = !scene ? std::nullopt
+                                        : probe_voxel(file->grid(), *scene, cameras_.camera(file, *scene, picture),
+                                                      values.range, values.background, probe.x, probe.y)) {
             answer["found"] = true;
             answer["value"] = found->value;
             answer["voxel"] = {found->voxel.x, found->voxel.y, found->voxel.z};

@@ -53,9 +53,6 @@ struct ViewSettings {
   ViewerLimits sockets = {};
 };
 
-/// How many volumes are held at a time: VoxelMemory::volumes.
-std::size_t volumes_held(const ViewedFiles& files);
-
 class ViewServer {
  public:
   /// Listens from here on. `backend` must outlive the server. Throws Error(usage) for an address that others can reach
@@ -76,7 +73,7 @@ class ViewServer {
     std::optional<ProbeRequest> probe;  // that waits until the one under way is answered
     bool probing = false;
     std::optional<std::size_t> told;    // the step whose facts it has, or gets
-    std::string told_of;                // file_identity of its file
+    std::string told_of;                // told_file of that
     std::optional<std::size_t> wanted;  // the step whose facts it gets next
     bool telling = false;
     std::optional<boost::asio::steady_timer> retry;  // until `wanted` is looked at, where no step could be read
@@ -106,6 +103,8 @@ class ViewServer {
   void send(ViewerId id, std::string text);
   RenderEvents render_events();
   std::string file_of(std::size_t step, int side) const;
+  std::string name_of(std::size_t step, int side) const;
+  std::string told_file(std::size_t step) const;
   std::size_t first_step() const;
   SeenValues common_values() const { return seen_values(summary_); }
   void tell_steps(const SeriesSummary& summary);

@@ -1,7 +1,6 @@
 #include "tools/view/volume_facts.h"
 
 #include <cmath>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "format/base/error.h"
@@ -26,6 +25,12 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kOpacities = 33;  // of the curve where a scene gives none
 
 Json index_json(const Index3& i) { return {i.x, i.y, i.z}; }
+
+// JSON has no infinity.
+Json end_json(float value) {
+  if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
+  return value;
+}
 
 // Blocks by kind, those that there are: [["transform", 1234], ...].
 Json kinds_of(const NvdbGrid& grid, const std::optional<Sidecar>& sidecar) {
@@ -97,11 +102,10 @@ Json values_facts(const SeenValues& values) {
   return {{"range", {values.range.min, values.range.max}}, {"background", values.background}, {"opacity", opacity}};
 }
 
-Json volume_facts(const NvdbFile& file, const SeenValues& values) {
+Json volume_facts(const NvdbFile& file, const std::string& name, const SeenValues& values) {
   const NvdbGrid& grid = file.grid();
   const std::optional<Sidecar> sidecar = own_sidecar(file);
   const Box box = grid.index_bbox();
-  const std::string name = std::filesystem::path(file.path()).filename().string();
   Json facts{{"file", name},
              {"word", shell_word(name.starts_with('-') ? "./" + name : name)},
              {"bytes", file.bytes().size()},
@@ -110,7 +114,7 @@ Json volume_facts(const NvdbFile& file, const SeenValues& values) {
              {"box", {index_json(box.lo), index_json(box.hi)}},
              {"voxel_size", grid.voxel_size()},
              {"origin", grid.world_origin()},
-             {"values", {grid.value_min(), grid.value_max()}},
+             {"values", {end_json(grid.value_min()), end_json(grid.value_max())}},
              {"kinds", kinds_of(grid, sidecar)},
              {"certificate", sidecar ? certificate_of(*sidecar) : Json()}};
   facts.update(values_facts(values));

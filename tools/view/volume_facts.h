@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
+#include <string>
 
 #include "format/nanovdb/nvdb_file.h"
 #include "gpu/volume/macrocell_grid.h"
@@ -29,9 +30,9 @@ SeenValues seen_values(const NvdbFile& file, const std::function<std::shared_ptr
 /// {"range", "background", "opacity"}, the opacity where a scene gives none.
 nlohmann::ordered_json values_facts(const SeenValues& values);
 
-/// The grid, `values` and, of the sidecar where one belongs to the file, the certificate; quick. Throws as
-/// read_sidecar.
-nlohmann::ordered_json volume_facts(const NvdbFile& file, const SeenValues& values);
+/// The grid, `values` and, of the sidecar where one belongs to the file, the certificate; quick. `name` is that of
+/// the file for a page, which commands name it by. Throws as read_sidecar.
+nlohmann::ordered_json volume_facts(const NvdbFile& file, const std::string& name, const SeenValues& values);
 
 /// {"min", "max", "counts"}: the sidecar's, else counted, which decodes the whole file. Throws Error(interrupted) where
 /// `cancel` was set meanwhile.

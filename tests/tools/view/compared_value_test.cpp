@@ -1,10 +1,14 @@
-// The value of the other file where two that lie otherwise are compared: that of the same place, not of the same index.
+// What is seen of the other file where two that lie otherwise are compared: the value of the same place, not of the
+// same index, and the same clip box.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstring>
 #include <limits>
+#include <string>
 
 #include "format/base/text.h"
+#include "gpu/image/png_input.h"
 #include "tests/tools/support/converted_volume.h"
 #include "tests/tools/view/served_view.h"
 #include "tests/tools/view/view_client.h"
@@ -42,15 +46,45 @@ class ComparedValue : public testing::Test {
     return directory_ / name;
   }
 
-  /// The answer of the voxel with the largest value of `file` along x at y = 20, z = 40 of the world.
-  static Json probe(const std::string& file, const std::string& against) {
+  /// The answer of the voxel with the largest value of a side along x at y = 20, z = 40 of the world.
+  static Json probe(const std::string& file, const std::string& against, int side = 0, const std::string& volume = "") {
     ServedView served(file, against);
     ViewClient client(served.port());
     const std::string along_x =
         "mode = \"mip\"\n[camera]\nposition = [900, 20, 40]\nlook_at = [0, 20, 40]\nzoom = 20\n";
-    client.show(1, false, {{"scene", along_x}, {"against", true}});
-    client.send({{"type", "probe"}, {"id", 3}, {"x", 0.5}, {"y", 0.5}});
+    client.show(1, false, {{"scene", along_x + volume}, {"against", true}});
+    client.send({{"type", "probe"}, {"id", 3}, {"x", 0.5}, {"y", 0.5}, {"side", side}});
     return client.text("value").value();
+  }
+
+  /// Of the pixels of both pictures, where the region of `file` is white before black: how many are white in the first,
+  /// in the second, and in one alone.
+  std::array<int, 3> white_pixels(const std::string& file, const std::string& against,
+                                  const std::string& region) const {
+    ServedView served(file, against);
+    ViewClient client(served.port());
+    const std::string scene =
+        "mode = \"mip\"\n[camera]\nposition = [31.5, -200, 31.5]\nlook_at = [31.5, 31.5, 31.5]\n[volume]\ncolormap = "
+        "\"white\"\nopacity = [[0, 1], [1, 1]]\nregion = " +
+        region + "\n";
+    client.show(1, false, {{"scene", scene}, {"against", true}});
+    const auto frame = client.refined(1, 16);
+    EXPECT_TRUE(frame) << region;
+    if (!frame) return {};
+    write_file(directory_ / "seen.png", frame->picture);
+    const Image seen = read_png(directory_ / "seen.png");
+    const int height = seen.height / 2;
+    std::array<int, 3> white{};
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < seen.width; ++x) {
+        const bool first = seen.at(x, y).x > 0.5F;
+        const bool second = seen.at(x, y + height).x > 0.5F;
+        white[0] += first ? 1 : 0;
+        white[1] += second ? 1 : 0;
+        white[2] += first != second ? 1 : 0;
+      }
+    }
+    return white;
   }
 
   TemporaryDirectory directory_;
@@ -73,6 +107,44 @@ TEST_F(ComparedValue, BeyondTheOtherFilesBox_IsNone) {
   EXPECT_EQ(answer["world"], Json::parse("[63, 20, 40]"));
   EXPECT_TRUE(answer["against"].is_null()) << answer;
   EXPECT_EQ(answer["outside"], true);
+}
+
+TEST_F(ComparedValue, InAClipBox_IsOfTheSamePlacesOnBothSides) {
+  const auto largest = [&](int side, const std::string& x) {
+    return probe(fine_, coarse_, side, cat("[volume]\nregion = [", x, ", [0, 64], [0, 64]]\n"))["voxel"];
+  };
+  EXPECT_EQ(largest(0, "[0, 32]"), Json::parse("[31, 20, 40]"));
+  EXPECT_EQ(largest(1, "[0, 32]"), Json::parse("[15, 10, 20]")) << "both end at 31.5";
+  EXPECT_EQ(largest(0, "[32, 64]"), Json::parse("[63, 20, 40]"));
+  EXPECT_EQ(largest(1, "[32, 64]"), Json::parse("[31, 10, 20]"));
+  EXPECT_EQ(largest(1, "[7, 8]"), Json::parse("[3, 10, 20]")) << "half a voxel of it";
+  EXPECT_EQ(probe(coarse_, fine_, 1, "[volume]\nregion = [[0, 16], [0, 32], [0, 32]]\n")["voxel"],
+            Json::parse("[31, 20, 40]"));
+}
+
+TEST_F(ComparedValue, ClipBox_CutsBothPicturesAtTheSamePlaces) {
+  const auto [all, all_of_other, apart] = white_pixels(fine_, coarse_, "[[0, 64], [0, 64], [0, 64]]");
+  EXPECT_GT(all, 400);
+  EXPECT_NEAR(all_of_other, all, 10);
+  EXPECT_LE(apart, 10);
+  for (const std::string x : {"[0, 32]", "[32, 64]"}) {
+    const auto [half, half_of_other, different] = white_pixels(fine_, coarse_, cat("[", x, ", [0, 64], [0, 64]]"));
+    EXPECT_NEAR(half, all / 2, 0.15 * all) << x;
+    EXPECT_NEAR(half_of_other, half, 10) << x;
+    EXPECT_LE(different, 10) << x;
+  }
+}
+
+TEST_F(ComparedValue, ClipBoxBeyondTheOtherFile_ShowsNothingOfThat) {
+  const std::string corner = make("corner.nvdb", 24, 2, 0.5);  // up to 47.5
+  const std::string beyond = "[[56, 64], [0, 64], [0, 64]]";
+  const auto [first, second, different] = white_pixels(fine_, corner, beyond);
+  EXPECT_GT(first, 20);
+  EXPECT_EQ(second, 0);
+  EXPECT_EQ(different, first);
+  const Json answer = probe(fine_, corner, 1, cat("[volume]\nregion = ", beyond, "\n"));
+  EXPECT_EQ(answer["found"], false) << answer;
+  EXPECT_FALSE(answer.contains("message")) << answer;
 }
 
 TEST_F(ComparedValue, AtTheEdgesOfTheBox_EndsWhereItsVoxelsEnd) {

@@ -74,6 +74,15 @@ TEST_F(ViewPageTest, ScrubsASeries) {
   run("scrubs_a_series", {directory_ / "s_*.nvdb"});
 }
 
+TEST_F(ViewPageTest, TellsStepsOfOneBaseNameApart) {
+  for (const char* letter : {"A", "B", "C"}) {
+    const std::string folder = std::string("run") + letter;
+    std::filesystem::create_directory(directory_ / folder);
+    cloud(folder + "/out.nvdb");
+  }
+  run("tells_steps_of_one_base_name_apart", {directory_ / "run*/out.nvdb"});
+}
+
 TEST_F(ViewPageTest, ShowsStepsThatCome) {
   for (const char* step : {"0", "2", "3", "4"}) cloud(std::string("later_s_") + step + ".nvdb", "8", step);
   run("shows_steps_that_come", {cloud("s_1.nvdb"), "--series"});

@@ -181,6 +181,13 @@ def works_with_keys(browser, url):
     browser.press("3")
     equal(browser.visible("#iso-field"), True)
     converged(browser)
+    # They work after a click on a control, too, but for what a field takes.
+    browser.script("document.querySelector('#convert-panel').open = true")
+    for control in ("#reset-camera", "#log", "#colormap", "#convert-panel summary", "#rate", "#frame"):
+        browser.script("document.querySelector(arguments[0]).focus()", control)
+        browser.press("4")
+        equal((control, state(browser)["m"]), (control, "iso" if control in ("#colormap", "#rate") else "mip"))
+        browser.press("3")
     controls = {"button", "slider", "spinbutton", "checkbox", "radio", "combobox", "application", "progressbar", "textbox"}
     for panel in ("light-panel", "box-panel", "convert-panel"):
         browser.script("document.getElementById(arguments[0]).open = true", panel)
@@ -356,6 +363,27 @@ def tells_values(browser, url):
             clientX: box.left + box.width / 2, clientY: box.top + box.height / 2}))""")
     text = browser.wait("a value", lambda: browser.text("#value"))
     assert re.match(r"-?[\d.e-]+ \u00b1 [\d.e-]+ at \d+, \d+, \d+", text), text
+    written = lambda name, *values: browser.script("""
+        const [name, values] = arguments;
+        return import('./page/format.js').then((format) => values.map((value) => format[name](...value)))""", name, values)
+    # Numbers of a float32 are the doubles that it is.
+    equal(written("exact", [12666], [1236], [1013.2000122070312], [1013.4000244140625], [0.10000000149011612], [-3.4028234663852886e38],
+                  [1.401298464324817e-45], [0], [1e8], ["inf"], [None]),
+          ["12666", "1236", "1013.2", "1013.4", "0.1", "-3.4028235e38", "1e-45", "0", "1e8", "inf", "\u2013"])
+    equal(written("place", [1240, 1], [0.30000000000000004, 0.1], [1 / 3, 1 / 3], [1000000.05, 0.1], [1e-17, 0.1]),
+          ["1240", "0.3", "0.33333", "1000000.05", "0"])
+    equal(written("within", [1999, 1999], [0, 1999], [1013.2000122070312, 0.2], [0.12345678, 0.12345678], [5, 0]),
+          ["1999", "0", "1013.2", "0.12346", "5"])
+    equal(written("bound", [0.36543], [0.365], [9.996], [0.000099991], [0], [None]),
+          ["0.366", "0.365", "10", "1e-4", "0", "\u2013"])
+    of = lambda answer, facts: browser.script("""
+        return import('./page/certificate.js').then((certificate) => certificate.value_text(...arguments[0]))""",
+        [{"found": True, **answer}, facts])
+    equal(of({"value": 12666, "voxel": [1236, 63, 32], "world": [1236, 63, 32]},
+             {"certificate": {"lossless": True}, "voxel_size": [1, 1, 1]}), "12666, exact at 1236, 63, 32")
+    equal(of({"value": 1013.2000122070312, "against": 1013.4000244140625, "voxel": [1236, 0, 0], "world": [1236.0001, 0, 0]},
+             {"certificate": {"lossless": False, "max_abs": 0.01001}, "voxel_size": [0.001, 1, 1]}),
+          "1013.2 \u00b1 0.0101, other file 1013.4 at 1236, 0, 0 (world 1236.0001, 0, 0)")
 
 
 def scrubs_a_series(browser, url):
@@ -381,6 +409,36 @@ def scrubs_a_series(browser, url):
     browser.wait("it plays", lambda: len({f["step"] for f in frames(browser)}) == 3)
     browser.press("SPACE")
     picture(browser, "series")
+    # Keys go on after a click on a control; Space presses a button, once.
+    browser.click("#play")
+    equal(browser.text("#play"), "Stop")
+    browser.press("SPACE")
+    equal(browser.text("#play"), "Play")
+    browser.script("""
+        const slider = document.querySelector('#step');
+        slider.focus();
+        slider.value = 2;
+        slider.dispatchEvent(new Event('change'))""")
+    browser.press("[")
+    equal(browser.text("#step-name"), "2 of 3: s_2.nvdb")
+    browser.press("]")
+    equal(browser.text("#step-name"), "3 of 3: s_3.nvdb")
+
+
+def tells_steps_of_one_base_name_apart(browser, url):
+    loaded(browser, url)
+    equal(browser.text("#step-name"), "1 of 3: runA/out.nvdb")
+    browser.press("]")
+    converged(browser)
+    equal(browser.text("#step-name"), "2 of 3: runB/out.nvdb")
+    equal(state(browser), {"f": "runB%2Fout.nvdb"})
+    browser.wait("its facts", lambda: not browser.script("return document.querySelector('#certificate.awaited')"))
+    equal(browser.text("#render-command").split()[:3], ["weir", "render", "runB/out.nvdb"])
+    link = browser.script("return location.href")
+    browser.open("about:blank")
+    loaded(browser, link)
+    equal(browser.text("#step-name"), "2 of 3: runB/out.nvdb")
+    equal(browser.text("#file-name"), "runB/out.nvdb")
 
 
 def shows_steps_that_come(browser, url):
@@ -438,6 +496,10 @@ def shows_steps_that_come(browser, url):
     equal(browser.script("return document.querySelector('#play').textContent"), "Play")
     converged(browser)
     equal(browser.text("#file-name"), "s_0.nvdb")
+    # A page that is opened now begins there, not at the step that was the first.
+    browser.open("about:blank")
+    loaded(browser, url)
+    equal((browser.text("#file-name"), browser.visible("#banner")), ("s_0.nvdb", False))
 
 
 def compares_two_files(browser, url):
@@ -626,7 +688,7 @@ def asks_again(browser, url):
 def shows_values_that_are_not_finite(browser, url):
     loaded(browser, url)
     browser.wait("the certificate", lambda: "Values" in (browser.text("#certificate") or ""))
-    assert "0 to \u2013" in browser.text("#certificate"), browser.text("#certificate")
+    assert "0 to inf" in browser.text("#certificate"), browser.text("#certificate")
     equal(browser.complaints(), [])
 
 

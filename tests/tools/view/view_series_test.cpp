@@ -120,6 +120,8 @@ TEST_F(ViewSeriesTest, FileWithInfinities_HasTheRangeOfItsFiniteValues) {
   };
   ASSERT_FALSE(std::isfinite(NvdbFile(path).grid().value_max()));
   EXPECT_EQ(range(), Json::parse("[0, 7]"));
+  ServedView served(path);
+  EXPECT_EQ(ViewClient(served.port()).text("facts").value()["values"], Json::parse(R"([0, "inf"])"));
   std::filesystem::remove(sidecar_path(path));
   EXPECT_EQ(range(), Json::parse("[0, 7]")) << "by the macrocells";
 }
@@ -137,6 +139,29 @@ TEST_F(ViewSeriesTest, StepWithInfinities_WidensTheRangeByItsFiniteValues) {
   std::filesystem::remove(step(3));
   ServedView fewer(directory_ / "steps");
   EXPECT_EQ(ViewClient(fewer.port()).text("facts").value()["range"], Json::parse("[0, 30]"));
+}
+
+TEST_F(ViewSeriesTest, StepsOfOneBaseName_AreNamedWithTheirFolders) {
+  ViewSettings settings;
+  settings.look_again = milliseconds(30);
+  const auto run = [&](const std::string& letter) {
+    std::filesystem::create_directory(directory_ / ("run" + letter));
+    std::filesystem::copy(volume_, directory_ / ("run" + letter) + "/out.nvdb");
+  };
+  run("A");
+  ServedView served(directory_ / "run*/out.nvdb", "", settings);
+  ViewClient client(served.port());
+  EXPECT_EQ(client.text("facts").value()["file"], "out.nvdb");
+  run("B c");
+  const Json names = Json::parse(R"(["runA/out.nvdb", "runB c/out.nvdb"])");
+  EXPECT_EQ(client.text("steps").value()["steps"], names);
+  EXPECT_EQ(Json::parse(get(served.port(), "/api/state").second)["steps"], names);
+  client.show(1, true, {{"step", 0}});
+  EXPECT_EQ(client.text("facts").value()["file"], names[0]) << "of the same file, by its new name";
+  client.show(2, true, {{"step", 1}});
+  const Json second = client.text("facts").value();
+  EXPECT_EQ(second["file"], names[1]);
+  EXPECT_EQ(second["word"], "'runB c/out.nvdb'");
 }
 
 TEST_F(ViewSeriesTest, FirstStepThatCannotBeRead_IsSaidAndAnotherIsTold) {

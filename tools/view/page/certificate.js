@@ -8,21 +8,23 @@ const kColours = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e0
 
 const unit_of = (facts) => facts.certificate?.units ? ` ${facts.certificate.units}` : "";
 
+/** "0 to 12740 K": the values of a file. */
+export const values_text = (facts) => `${facts.values.map(format.exact).join(" to ")}${unit_of(facts)}`;
+
 export function rows(facts) {
   const extent = facts.box[1].map((hi, i) => hi - facts.box[0][i]);
   const found = [["Voxels", extent.join(" \u00d7 ")], ["Bytes", `${format.count(facts.bytes)} (${format.bytes(facts.bytes)})`]];
   const certificate = facts.certificate;
   if (!certificate) {
-    found.push(["Values", `${format.number(facts.values[0])} to ${format.number(facts.values[1])}`],
-               ["Certificate", "none beside the file"]);
+    found.push(["Values", values_text(facts)], ["Certificate", "none beside the file"]);
     return found;
   }
   found.push(["Rate", `${format.number(certificate.rate)} (${format.bytes(certificate.dense_bytes)} as float32)`]);
-  found.push(["Values", `${format.number(facts.values[0])} to ${format.number(facts.values[1])}${unit_of(facts)}`]);
+  found.push(["Values", values_text(facts)]);
   if (certificate.lossless) found.push(["Error", "none, lossless"]);
   else {
     found.push(["PSNR", certificate.psnr_db === null ? "none" : `${certificate.psnr_db.toFixed(1)} dB`]);
-    found.push(["Largest error", `${format.number(certificate.max_abs)}${unit_of(facts)}`]);
+    found.push(["Largest error", `${format.bound(certificate.max_abs)}${unit_of(facts)}`]);
   }
   if (certificate.time) found.push(["Time", certificate.time]);
   found.push(["Source", certificate.source]);
@@ -59,11 +61,11 @@ export function value_text(answer, facts) {
   if (!answer.found) return "";
   const unit = unit_of(facts);
   const certificate = facts.certificate;
-  let text = `${format.number(answer.value)}${unit}`;
-  if (certificate) text += certificate.lossless ? ", exact" : ` \u00b1 ${format.number(certificate.max_abs)}`;
+  let text = `${format.exact(answer.value)}${unit}`;
+  if (certificate) text += certificate.lossless ? ", exact" : ` \u00b1 ${format.bound(certificate.max_abs)}`;
   if (answer.outside) text += ", outside the other file";
-  else if (answer.against !== undefined) text += `, other file ${format.number(answer.against)}`;
+  else if (answer.against !== undefined) text += `, other file ${format.exact(answer.against)}`;
   text += ` at ${answer.voxel.join(", ")}`;
-  const world = answer.world.map(format.number).join(", ");
-  return world === answer.voxel.join(", ") ? text : `${text} (world ${world})`;
+  if (answer.world.every((place, axis) => place === answer.voxel[axis])) return text;
+  return `${text} (world ${answer.world.map((place, axis) => format.place(place, facts.voxel_size[axis])).join(", ")})`;
 }

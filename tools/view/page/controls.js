@@ -36,7 +36,7 @@ export class Controls {
     };
     const iso = look.iso ?? start_iso(facts);
     const [low, high] = this.range;
-    set("iso", Math.round(kIsoSteps * (iso - low) / (high - low || 1)) / kIsoSteps, format.number(iso));
+    set("iso", Math.round(kIsoSteps * (iso - low) / (high - low || 1)) / kIsoSteps, format.within(iso, high - low));
     const density = look.density ?? kStartDensity[look.mode];
     set("density", Math.log10(Math.max(density, 1)), format.number(density));
     set("shading", look.shading ?? 0.7, (look.shading ?? 0.7).toFixed(2));

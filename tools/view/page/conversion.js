@@ -24,7 +24,7 @@ function forecast_text({exact, share, none, bytes, lossless, psnr_db, visible, m
   else if (visible?.lossless) parts.push("no error in what is shown");
   else if (is_known(visible?.psnr_db)) parts.push(`PSNR of what is shown ${about}${expected(visible.psnr_db, decibels)}`);
   if (!lossless && is_known(psnr_db)) parts.push(`${is_known(visible?.psnr_db) ? "" : "PSNR "}of all voxels ${about}${expected(psnr_db, decibels)}`);
-  if (!lossless && max_abs !== null) parts.push(`largest error ${format.number(max_abs)}`);
+  if (!lossless && max_abs !== null) parts.push(`largest error ${format.bound(max_abs)}`);
   if (total_s !== null) parts.push(`in about ${format.seconds(total_s)}`);
   const text = parts.join(", ");
   if (none) return `${text ? `${text}; ` : ""}nothing was tried: ${none}.`;

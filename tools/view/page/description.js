@@ -1,5 +1,6 @@
 // What the picture shows, in words, for who does not see it.
 
+import {values_text} from "./certificate.js";
 import * as format from "./format.js";
 
 const kModes = {dvr: "Volume", path: "Path tracing", iso: "Surface", mip: "Maximum"};
@@ -8,15 +9,14 @@ const kModes = {dvr: "Volume", path: "Path tracing", iso: "Surface", mip: "Maxim
 export function picture_text(look, facts, box) {
   const extent = facts.box[1].map((hi, i) => hi - facts.box[0][i]).join(" \u00d7 ");
   const unit = facts.certificate?.units ? ` ${facts.certificate.units}` : "";
-  const [low, high] = facts.values.map(format.number);
-  const parts = [`${kModes[look.mode]} of ${facts.file}, ${extent} voxels with values from ${low} to ${high}${unit}`];
+  const parts = [`${kModes[look.mode]} of ${facts.file}, ${extent} voxels with values from ${values_text(facts)}`];
   parts.push(`seen from ${Math.round(look.az)}\u00b0 around and ${Math.round(look.el)}\u00b0 above, ${format.number(look.zoom)} times`);
   if (box) parts.push(`only the box ${box.map((ends) => ends.join(" to ")).join(", ")}`);
   const certificate = facts.certificate;
   if (certificate?.lossless) parts.push("without error");
   else if (certificate) {
     const psnr = certificate.psnr_db === null ? "" : `PSNR ${certificate.psnr_db.toFixed(1)} dB, `;
-    parts.push(`${psnr}largest error ${format.number(certificate.max_abs)}${unit}`);
+    parts.push(`${psnr}largest error ${format.bound(certificate.max_abs)}${unit}`);
   }
   return `${parts.join(", ")}.`;
 }

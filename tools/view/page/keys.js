@@ -1,8 +1,9 @@
-// Keys of the whole page, but for those of fields.
+// Keys of the whole page, but for those that the control with the focus takes.
 
 import {kModes} from "./look.js";
 
 const kFields = "input[type=text], input[type=password], input[type=number], select, textarea";
+const kPressed = "button, summary, input:not([type=range])";  // by Space
 
 /** `does`: mode(name), reset(), play(), step(by), undo("undo" or "redo"). */
 export function listen_to_keys(does) {
@@ -13,10 +14,10 @@ export function listen_to_keys(does) {
       does.undo(event.shiftKey ? "redo" : "undo");
       return;
     }
-    if (event.ctrlKey || event.metaKey || event.altKey || event.target.matches?.("button, summary, input")) return;
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
     if (event.key >= "1" && event.key <= "4") does.mode(kModes[Number(event.key) - 1]);
     else if (event.key === "0") does.reset();
-    else if (event.key === " ") does.play();
+    else if (event.key === " " && !event.target.matches?.(kPressed)) does.play();
     else if (event.key === "[") does.step(-1);
     else if (event.key === "]") does.step(1);
     else return;

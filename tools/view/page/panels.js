@@ -24,8 +24,9 @@ export function show_transfer(editor, look, facts, histogram, colormaps) {
   const iso = look.iso ?? start_iso(facts);
   editor.show_iso(look.mode === "iso" ? (iso - range[0]) / (range[1] - range[0] || 1) : null);
   by_id("gradient").style.backgroundImage = gradient(look, colormaps);
-  set_text(by_id("range-low"), format.number(range[0]));
-  set_text(by_id("range-high"), format.number(range[1]));
+  for (const [i, end] of ["low", "high"].entries()) {
+    set_text(by_id(`range-${end}`), format.within(range[i], range[1] - range[0]));
+  }
   set_text(by_id("range-unit"), facts.title || "value");
   by_id("log").checked = look.log;
 }

@@ -1,7 +1,7 @@
 // Opacity over the values, drawn over their histogram: points are dragged, added, removed, by mouse, touch and keys.
 
 import {element} from "./dom.js";
-import {number} from "./format.js";
+import {within} from "./format.js";
 
 const kSvg = "http://www.w3.org/2000/svg";
 const kWidth = 320;   // of the drawing, in its own units
@@ -120,7 +120,8 @@ export class TransferEditor {
       handle.dataset.point = i;
       handle.style.left = `${this.x(x) / kWidth * 100}%`;
       handle.style.top = `${this.y(y) / kHeight * 100}%`;
-      const value = number(this.range[0] + x * (this.range[1] - this.range[0]));
+      const span = this.range[1] - this.range[0];
+      const value = within(this.range[0] + x * span, span);
       handle.setAttribute("aria-label", `Opacity at ${value}`);
       handle.setAttribute("aria-valuenow", y.toFixed(2));
       handle.title = `${value}: opacity ${y.toFixed(2)}`;

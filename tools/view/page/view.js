@@ -124,14 +124,19 @@ function go_to_step(step, moving) {
 
 function receive_steps(message) {
   const other_values = files.set_values(message);
+  const name = steps.names[look.step];
   steps.set(message);
+  const other_name = steps.names[look.step] !== name;  // there are steps of another folder
   const found = wanted_file === null ? undefined : steps.number(wanted_file);
   if (found !== undefined) go_to_step(found, false);
   else if (!message.order.includes(look.step)) show_banner(`${steps.names[look.step]} is no longer there.`);
-  if (!other_values || found !== undefined) return;
-  show_look();
-  conversion.changed();
-  if (look.range === null) ask_picture(false);
+  if (found !== undefined) return;
+  if (other_name) show_shown_file();
+  if (other_values) {
+    show_look();
+    conversion.changed();
+  }
+  if (other_name || (other_values && look.range === null)) ask_picture(false);
 }
 
 function receive(message) {
@@ -282,7 +287,7 @@ function known(wanted) {
     ...wanted,
     file: null,
     colormap: wanted.colormap && server.colormaps[wanted.colormap] ? wanted.colormap : null,
-    step: named ?? 0,
+    step: named ?? Math.min(...server.order),  // the first one that is there
     split: server.against.length > 0 ? wanted.split : null,
   };
 }

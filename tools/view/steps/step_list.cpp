@@ -16,7 +16,22 @@ void sort_naturally(std::vector<std::size_t>& order, const std::vector<std::stri
 
 }  // namespace
 
-StepList::StepList(std::vector<std::string> paths) : paths_(std::move(paths)), order_(paths_.size()) {
+std::vector<std::string> step_names(const std::vector<std::string>& paths) {
+  if (paths.empty()) return {};
+  std::string folders = paths.front().substr(0, paths.front().rfind('/') + 1);
+  for (const std::string& path : paths) {
+    while (!path.starts_with(folders)) {
+      folders.pop_back();  // its '/'
+      folders.resize(folders.rfind('/') + 1);
+    }
+  }
+  std::vector<std::string> names;
+  for (const std::string& path : paths) names.push_back(path.substr(folders.size()));
+  return names;
+}
+
+StepList::StepList(std::vector<std::string> paths)
+    : paths_(std::move(paths)), names_(step_names(paths_)), order_(paths_.size()) {
   std::iota(order_.begin(), order_.end(), std::size_t{0});
   sort_naturally(order_, paths_);
 }
@@ -34,6 +49,16 @@ std::string StepList::path(std::size_t step) const {
 std::vector<std::string> StepList::paths() const {
   const std::lock_guard lock(mutex_);
   return paths_;
+}
+
+std::vector<std::string> StepList::names() const {
+  const std::lock_guard lock(mutex_);
+  return names_;
+}
+
+std::string StepList::name(std::size_t step) const {
+  const std::lock_guard lock(mutex_);
+  return names_.at(step);
 }
 
 std::vector<std::size_t> StepList::order() const {
@@ -59,6 +84,7 @@ bool StepList::update(const std::vector<std::string>& paths) {
     if (fresh) paths_.push_back(path);
     order.push_back(at->second);
   }
+  names_ = step_names(paths_);
   sort_naturally(order, paths_);
   return std::exchange(order_, order) != order;
 }

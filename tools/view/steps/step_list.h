@@ -10,6 +10,9 @@
 
 namespace weir {
 
+/// What tells the paths apart: each without the folders that all of them lie in.
+std::vector<std::string> step_names(const std::vector<std::string>& paths);
+
 class StepList {
  public:
   /// Numbered as they stand; one at least.
@@ -21,6 +24,10 @@ class StepList {
   std::string path(std::size_t step) const;
   /// All, by number.
   std::vector<std::string> paths() const;
+  /// step_names() of paths(): as long as no step comes from another folder, they stay.
+  std::vector<std::string> names() const;
+  /// One of these. Throws as path().
+  std::string name(std::size_t step) const;
   /// The numbers of those that are there, in natural order of their paths.
   std::vector<std::size_t> order() const;
   /// The one after `step` in that order; none after the last.
@@ -33,6 +40,7 @@ class StepList {
  private:
   mutable std::mutex mutex_;
   std::vector<std::string> paths_;
+  std::vector<std::string> names_;
   std::vector<std::size_t> order_;
 };
 

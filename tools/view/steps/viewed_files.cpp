@@ -64,6 +64,11 @@ std::vector<std::string> find_steps(const StepChoice& choice) {
   return files;
 }
 
+std::size_t volumes_held(const ViewedFiles& files) {
+  const std::size_t steps = files.series() ? 2 : 1;  // that is seen, and the next
+  return steps + (files.against.empty() ? 0 : files.against.size() > 1 ? 2 : 1);
+}
+
 // Of a series that of any of its files.
 std::string viewed_key(const StepChoice& choice, const std::string& against) {
   if (choice.series && against.empty() && !is_directory(choice.input)) return series_digest(choice.input);

@@ -1,6 +1,7 @@
 // Which files a viewer shows: one, the steps of a series, or those of a directory, and those they are compared with.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,9 @@ struct ViewedFiles {
   /// All steps have one range of values and one background; else a file has its own.
   bool series() const { return steps.size() > 1 || grow; }
 };
+
+/// How many volumes are held at a time: VoxelMemory::volumes.
+std::size_t volumes_held(const ViewedFiles& files);
 
 /// ViewedFiles::key of what is named so.
 std::string viewed_key(const StepChoice& choice, const std::string& against);

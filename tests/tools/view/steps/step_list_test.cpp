@@ -31,6 +31,21 @@ TEST(StepList, StepThatIsGone_KeepsItsNumberForItsReturn) {
   EXPECT_EQ(steps.order(), (Numbers{0, 1, 2}));
 }
 
+TEST(StepList, Names_LackTheFoldersThatAllLieIn) {
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(step_names({"/d/s_1", "/d/s_2"}), (Names{"s_1", "s_2"}));
+  EXPECT_EQ(step_names({"/d/runA/out", "/d/runB/out"}), (Names{"runA/out", "runB/out"}));
+  EXPECT_EQ(step_names({"/a/s", "/b/s"}), (Names{"a/s", "b/s"}));
+  EXPECT_EQ(step_names({"runA/out", "/runB/out"}), (Names{"runA/out", "/runB/out"}));
+  EXPECT_EQ(step_names({"s_1"}), Names{"s_1"});
+  EXPECT_EQ(step_names({}), Names{});
+  StepList steps({"runA/out"});
+  EXPECT_EQ(steps.name(0), "out");
+  EXPECT_TRUE(steps.update({"runA/out", "runB/out"}));
+  EXPECT_EQ(steps.names(), (Names{"runA/out", "runB/out"}));
+  EXPECT_EQ(steps.name(0), "runA/out");
+}
+
 TEST(StepList, NothingSeen_ChangesNothing) {
   StepList steps({"s_1"});
   EXPECT_FALSE(steps.update({}));
