@@ -23,17 +23,28 @@ void remove_if_empty(FileSystem& files, const std::string& path) noexcept {
   }
 }
 
+void check_work_directory(FileSystem& files, const std::string& chosen) {
+  if (!files.exists(chosen)) {
+    std::error_code why;
+    static_cast<void>(std::filesystem::status(chosen, why));
+    // Below a file, or behind a circle of links, none can be made.
+    if (why == std::errc::not_a_directory || why == std::errc::too_many_symbolic_link_levels) {
+      throw io_error(chosen, compose("be ", option("work-dir")), why.value());
+    }
+    throw Error(ErrorKind::io, compose(option("work-dir", chosen), ": does not exist; make it or choose another"),
+                SystemFailure{ENOENT, chosen});
+  }
+  if (std::error_code ignored; std::filesystem::is_regular_file(chosen, ignored))
+    throw Error(ErrorKind::usage, compose(option("work-dir", chosen), ": is a file; choose a directory"));
+  if (files.is_memory(chosen)) {
+    throw Error(ErrorKind::usage,
+                compose(option("work-dir", chosen), ": is a memory file system; choose a directory on a disk"));
+  }
+}
+
 WorkDirectory::WorkDirectory(FileSystem& files, const std::string& output, const std::string& chosen) : files_(files) {
   if (!chosen.empty()) {
-    if (!files_.exists(chosen))
-      throw Error(ErrorKind::io, compose(option("work-dir", chosen), ": does not exist; make it or choose another"),
-                  SystemFailure{ENOENT, chosen});
-    if (std::error_code ignored; std::filesystem::is_regular_file(chosen, ignored))
-      throw Error(ErrorKind::usage, compose(option("work-dir", chosen), ": is a file; choose a directory"));
-    if (files_.is_memory(chosen)) {
-      throw Error(ErrorKind::usage,
-                  compose(option("work-dir", chosen), ": is a memory file system; choose a directory on a disk"));
-    }
+    check_work_directory(files, chosen);
     path_ = chosen;
     return;
   }

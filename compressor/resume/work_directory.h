@@ -18,10 +18,14 @@ std::string hidden_directory_of(const std::string& output);
 /// Removes the directory at `path`, unless it holds files that are not weir's.
 void remove_if_empty(FileSystem& files, const std::string& path) noexcept;
 
+/// Throws Error where `chosen`, the --work-dir, cannot be one: of kind io where it is missing, usage where it is a file
+/// or in memory.
+void check_work_directory(FileSystem& files, const std::string& chosen);
+
 class WorkDirectory {
  public:
-  /// `chosen` is --work-dir or empty. Throws Error(usage) where `chosen` is missing or in memory, and
-  /// where the output lies in memory and so does /var/tmp.
+  /// `chosen` is --work-dir or empty. Throws as check_work_directory, and Error(usage) where the output lies in memory
+  /// and so does /var/tmp.
   WorkDirectory(FileSystem& files, const std::string& output, const std::string& chosen);
   ~WorkDirectory();
   WorkDirectory(const WorkDirectory&) = delete;

@@ -22,16 +22,30 @@ Error input_error(const std::string& path, const Message& message) {
   return {ErrorKind::input, compose(path, ": ", message)};
 }
 
+const char* remedy_of(int errno_value) {
+  switch (errno_value) {
+    case ENOTDIR:
+      return "; correct the path, a part of which is a file";
+    case ELOOP:
+      return "; correct the symbolic links of its path, which lead in a circle";
+    case ENAMETOOLONG:
+      return "; choose a shorter name";
+    case EIO:
+    case ESTALE:
+      return "; check the disk or the file server";
+    default:
+      return "";
+  }
+}
+
 Error io_error(const std::string& path, const Message& action, int errno_value) {
-  Message remedy;
+  Message remedy = remedy_of(errno_value);
   if (errno_value == ENOSPC || errno_value == EDQUOT) {
     remedy = disk_full_remedy();
   } else if (errno_value == EACCES || errno_value == EPERM || errno_value == EROFS) {
     remedy = "; check the permissions or choose another place";
   } else if (errno_value == EFBIG) {
     remedy = "; raise the limit of file size (ulimit -f) or choose another file system";
-  } else if (errno_value == EIO || errno_value == ESTALE) {
-    remedy = "; check the disk or the file server";
   }
   return {ErrorKind::io, compose(path, ": cannot ", action, ": ", std::generic_category().message(errno_value), remedy),
           SystemFailure{errno_value, path}};

@@ -61,7 +61,10 @@ Error usage_error(Message message);
 /// "PATH: MESSAGE", kind input.
 Error input_error(const std::string& path, const Message& message);
 
-/// "PATH: ACTION: strerror(ERRNO)", kind io; ENOENT and ENOTDIR say the path is missing.
+/// "; what to do", where that follows from what the system said alone; else empty.
+const char* remedy_of(int errno_value);
+
+/// "PATH: cannot ACTION: strerror(ERRNO)" and what to do, kind io.
 Error io_error(const std::string& path, const Message& action, int errno_value);
 
 /// What `error` says in the command line's words, without "WHERE: " where it begins so: for a list that says where.

@@ -14,7 +14,7 @@ toml::table parse_toml(std::string_view text, const std::string& path) {
   try {
     return toml::parse(text, path);
   } catch (const toml::parse_error& error) {
-    fail_toml(path, error.source(), std::string(error.description()));
+    fail_toml(path, error.source(), cat(error.description(), "; correct the TOML there"));
   }
 }
 

@@ -119,6 +119,19 @@ class PosixFile final : public File {
   throw usage_error(cat(path, ": ", what, ", so it is none of weir's own files; remove it or choose another output"));
 }
 
+bool is_link(const std::string& path) {
+  struct stat status {};
+  return ::lstat(path.c_str(), &status) == 0 && S_ISLNK(status.st_mode);
+}
+
+// Of a new file or directory, whose own directory was there when it was looked for.
+Error not_created(const std::string& path, const char* action, int errno_value) {
+  const Error error = io_error(path, action, errno_value);
+  if (errno_value != ENOENT) return error;
+  return {ErrorKind::io, compose(error.message(), "; its directory is gone or takes no files, choose another place"),
+          error.system_failure()};
+}
+
 class PosixFileSystem final : public FileSystem {
  public:
   explicit PosixFileSystem(PosixFileSystemOptions options) : options_(std::move(options)) {}
@@ -140,8 +153,12 @@ class PosixFileSystem final : public FileSystem {
       int descriptor = ::open(path.c_str(), kFlags | O_EXCL, 0666);
       const bool made = descriptor >= 0;
       if (!made && errno == EEXIST) descriptor = ::open(path.c_str(), kFlags, 0666);
-      if (descriptor < 0 && errno == ELOOP) refuse_foreign(path, "is a symbolic link");
-      if (descriptor < 0) throw io_error(path, "create", errno);
+      if (descriptor < 0) {
+        const int reason = errno;
+        // The links of its directory may be at fault as well.
+        if (reason == ELOOP && is_link(path)) refuse_foreign(path, "is a symbolic link");
+        throw not_created(path, "create", reason);
+      }
       auto file = std::make_unique<PosixFile>(descriptor, path, made);
       if (lock(descriptor) == 0) {
         file->set_exclusive();
@@ -180,7 +197,7 @@ class PosixFileSystem final : public FileSystem {
       descriptor = ::mkostemp(name.data(), O_CLOEXEC);
       if (descriptor >= 0) ::unlink(name.c_str());
     }
-    if (descriptor < 0) throw io_error(directory, "create a temporary file in it", errno);
+    if (descriptor < 0) throw not_created(directory, "create a temporary file in it", errno);
     return PosixFile::unnamed(descriptor, directory);
   }
 
@@ -209,7 +226,7 @@ class PosixFileSystem final : public FileSystem {
 
   void make_directory(const std::string& path) override {
     if (::mkdir(path.c_str(), 0777) == 0) return;
-    if (errno != EEXIST) throw io_error(path, "create the directory", errno);
+    if (errno != EEXIST) throw not_created(path, "create the directory", errno);
     struct stat status {};
     if (::lstat(path.c_str(), &status) == 0 && !S_ISDIR(status.st_mode)) refuse_foreign(path, "is no directory");
   }

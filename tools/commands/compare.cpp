@@ -315,6 +315,12 @@ std::vector<std::string> input_paths(const CompareArguments& arguments) {
 void compare(const CompareArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   const ConversionOptions run = read_conversion_request(arguments.options).conversion;
+  if (run.scene) {
+    spdlog::info(
+        "{}: changes no figure: they are of all voxels; weir inspect tells the error of what the conversion's "
+        "scene shows",
+        run.scene->path);
+  }
   const auto threads = limit_threads(run.threads);
   const auto files = make_posix_file_system();
   std::optional<SpectrumFile> spectrum_file;
@@ -346,6 +352,14 @@ void add_compare(CLI::App& app) {
   levels.help = "of an AMReX plotfile: separate where the file is of one level, which its sidecar names";
   levels.standard = "as the sidecar says";
   add_option(*command, levels, arguments->options, "Input");
+  OptionRow nonfinite = conversion_option("nonfinite");
+  nonfinite.help =
+      "as at the conversion; changes no figure: voxels without a number are left out of the error, and counted";
+  nonfinite.standard = {};
+  add_option(*command, nonfinite, arguments->options, "Input");
+  OptionRow scene = conversion_option("scene");
+  scene.help = "as at the conversion; is read, and changes no figure: they are of all voxels";
+  add_option(*command, scene, arguments->options, "Input");
   add_run_options(*command, arguments->options, arguments->progress);
   add_trace_option(*command, arguments->trace);
   command->add_flag("--derived", arguments->derived,

@@ -11,10 +11,12 @@
 #include <string>
 
 #include "compressor/options/conversion_request.h"
+#include "compressor/resume/work_directory.h"
 #include "daemon/config/token_file.h"
 #include "daemon/jobs/worker_process.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "format/io/file_system.h"
 #include "tools/command.h"
 #include "tools/options/backend_choice.h"
 #include "tools/options/picture_options.h"
@@ -129,6 +131,8 @@ std::unique_ptr<WorkerProcess> open_browser(boost::asio::io_context& io, const s
 }
 
 void view(const ViewArguments& arguments) {
+  // The conversions of previews and forecasts, which need it, may come much later.
+  if (!arguments.work_dir.empty()) check_work_directory(*make_posix_file_system(), arguments.work_dir);
   ViewSettings settings = settings_of(arguments);
   BackendChoice choice = read_backend_choice(arguments.backend);
   std::optional<SourcePreview> preview;

@@ -76,6 +76,9 @@ std::optional<std::string> value_wording(const std::string& option, const std::s
   if (const auto path = between(fault, "Directory does not exist: ", "")) {
     return cat(option, " is \"", *path, "\", which does not exist; name a directory");
   }
+  if (const auto path = between(fault, "Directory is actually a file: ", "")) {
+    return cat(option, " is \"", *path, "\", which is a file; name a directory");
+  }
   if (const auto parts = around_last(fault, " not in range "); parts && parts->before.starts_with("Value ")) {
     const std::string value = parts->before.substr(std::string_view("Value ").size());
     if (const auto ends = around_first(parts->behind, " to ")) {

@@ -56,6 +56,19 @@ void check_error(const std::string& name, const Sidecar::CertifiedError& error, 
                     exact || !error.lossless});
 }
 
+// Decoded values keep to the source's range, widened by a background outside it. Weir 0.1, which did not say what
+// became of missing voxels, kept no such promise.
+void check_span(const std::string& name, const Sidecar::CertifiedError& error, const Sidecar& s,
+                std::vector<VolumeCheck>& checks) {
+  if (s.missing.policy.empty()) return;
+  const auto [lo, hi] = s.value_range;
+  const double reach = std::fmax(hi, s.background.value) - std::fmin(lo, s.background.value);
+  const bool known = std::isfinite(error.max_abs) && std::isfinite(lo) && std::isfinite(hi);
+  checks.push_back({name + ".max_abs in value_range", cat(error.max_abs),
+                    cat("at most ", reach, ", what value_range and background span"),
+                    !known || error.max_abs <= reach * (1 + kRounding)});
+}
+
 // Figures that are not finite are null in the sidecar, and contradict nothing.
 void check_gradient(const Sidecar::GradientError& gradient, std::uint64_t voxels, std::vector<VolumeCheck>& checks) {
   const std::string name = "sidecar error.gradient";
@@ -108,6 +121,10 @@ void check_budget(const Sidecar& s, std::uint64_t dense, std::vector<VolumeCheck
   const Sidecar::Budget& budget = s.budget;
   const Sidecar::CertifiedError& error = s.visible ? s.visible->error : s.error;
   const std::string asked = cat("sidecar budget.requested of kind ", budget.kind);
+  if (budget.kind == "lossless" || budget.kind == "minimum") {
+    checks.push_back({"sidecar budget.requested", shown(budget.requested), cat("none, of kind ", budget.kind),
+                      !budget.requested.has_value()});
+  }
   if (budget.kind == "lossless") {
     checks.push_back({asked, error.lossless ? "lossless" : "not lossless", "lossless", error.lossless});
     return;
@@ -145,7 +162,11 @@ void check_timing(const Sidecar::Timing& timing, std::vector<VolumeCheck>& check
 std::vector<VolumeCheck> check_certificate(const Sidecar& s) {
   std::vector<VolumeCheck> checks;
   check_error("sidecar error", s.error, s.value_range, checks);
-  if (s.visible) check_error("sidecar visible.error", s.visible->error, s.value_range, checks);
+  check_span("sidecar error", s.error, s, checks);
+  if (s.visible) {
+    check_error("sidecar visible.error", s.visible->error, s.value_range, checks);
+    check_span("sidecar visible.error", s.visible->error, s, checks);
+  }
   if (s.error_preview) check_error("sidecar error_preview", *s.error_preview, s.value_range, checks);
   checks.push_back(
       {"sidecar source.extent", shown(s.source.extent), shown(s.grid.extent), s.source.extent == s.grid.extent});

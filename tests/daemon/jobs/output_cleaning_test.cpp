@@ -174,7 +174,8 @@ TEST(OutputCleaning, SidecarThatCannotBeLookedAt_StaysWithThePreviousOne) {
   write_file(sidecar + ".previous", "previous");
   fs::create_symlink(std::string(300, 'x'), sidecar);  // leads to a name that no file can have
   const CleaningReport report = clean(directory);
-  EXPECT_EQ(report.left, Names{cat(sidecar, ".previous: ", sidecar, ": cannot look at it: File name too long")});
+  EXPECT_EQ(report.left, Names{cat(sidecar, ".previous: ", sidecar,
+                                   ": cannot look at it: File name too long; choose a shorter name")});
   EXPECT_TRUE(fs::is_symlink(sidecar));
   EXPECT_EQ(read_file(sidecar + ".previous"), "previous");
   EXPECT_FALSE(fs::exists(directory / "a.nvdb.partial")) << "the lock";

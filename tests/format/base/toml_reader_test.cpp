@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/message_of_error.h"
+
 namespace weir::toml_reader_test {
 namespace {
 
@@ -56,6 +58,11 @@ TEST(TomlReader, WrongTypeIsRefusedWithLineAndColumn) {
   EXPECT_EQ(refusal<double>("a = [1]", "a"), "f.toml:1:5: a is an array, it must be a number");
   EXPECT_EQ(refusal<double>("a = {}", "a"), "f.toml:1:5: a is a table, it must be a number");
   EXPECT_EQ(refusal<double>("a = 1979-05-27", "a"), "f.toml:1:5: a is a date or a time, it must be a number");
+}
+
+TEST(TomlReader, TextThatIsNoToml_IsRefusedInOneLineWithItsPlace) {
+  EXPECT_EQ(message_of_error(ErrorKind::input, [] { parse_toml("[camera\n", kPath); }),
+            "f.toml:1:8: Error while parsing table header: expected ']', saw '\\n'; correct the TOML there");
 }
 
 TEST(TomlReader, UnknownKeyIsRefusedByName) {

@@ -76,9 +76,14 @@ TEST(FileMapping, FileThatCannotBeMapped_IsAnIoError) {
 TEST(FileMapping, ErrorsOfTheName_AreInputErrors) {
   const TemporaryDirectory directory;
   std::ofstream(directory / "file") << "bytes";
-  EXPECT_EQ(refusal(directory / "file/a"), directory / "file/a" + ": cannot open: Not a directory");
+  EXPECT_EQ(refusal(directory / "file/a"),
+            directory / "file/a" + ": cannot open: Not a directory; correct the path, a part of which is a file");
   const std::string longer = directory / std::string(300, 'x');
-  EXPECT_EQ(refusal(longer), longer + ": cannot open: File name too long");
+  EXPECT_EQ(refusal(longer), longer + ": cannot open: File name too long; choose a shorter name");
+  std::filesystem::create_symlink("loop", directory / "loop");
+  EXPECT_EQ(refusal(directory / "loop"), directory / "loop" +
+                                             ": cannot open: Too many levels of symbolic links; correct the symbolic "
+                                             "links of its path, which lead in a circle");
 }
 
 TEST(FileMapping, ReadsAndPopulatesAnyRange) {

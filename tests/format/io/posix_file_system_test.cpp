@@ -5,6 +5,8 @@
 #include <cerrno>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
+#include <fstream>
 #include <functional>
 #include <limits>
 #include <string>
@@ -73,6 +75,38 @@ TEST(PosixFileSystem, FileWithAName_FailsWithItAsThePath) {
   EXPECT_EQ(error.what(), path + ": cannot reserve 18446744073709551615 bytes: Invalid argument");
   ASSERT_TRUE(error.system_failure());
   EXPECT_EQ(error.system_failure()->path, path);
+}
+
+TEST(PosixFileSystem, DirectoryThatIsACircleOfLinks_IsAnIoErrorOfThePath) {
+  const TemporaryDirectory directory;
+  std::filesystem::create_symlink("loop2", directory / "loop1");
+  std::filesystem::create_symlink("loop1", directory / "loop2");
+  const Error error = error_of([&] { make_posix_file_system()->create(directory / "loop1/a"); });
+  EXPECT_EQ(error.kind(), ErrorKind::io);
+  EXPECT_EQ(error.what(), directory / "loop1/a" +
+                              ": cannot create: Too many levels of symbolic links; correct the symbolic links of its "
+                              "path, which lead in a circle");
+  ASSERT_TRUE(error.system_failure());
+  EXPECT_EQ(error.system_failure()->errno_value, ELOOP);
+}
+
+TEST(PosixFileSystem, DirectoryThatTakesNoFiles_IsSaidWithARemedy) {
+  const TemporaryDirectory directory;
+  const auto files = make_posix_file_system();
+  std::ofstream(directory / "file") << "bytes";
+  EXPECT_EQ(error_of([&] { files->create(directory / "file/a"); }).what(),
+            directory / "file/a" + ": cannot create: Not a directory; correct the path, a part of which is a file");
+  const std::string remedy = "; its directory is gone or takes no files, choose another place";
+  const std::string missing = directory / "none/a";
+  const std::array<Error, 3> errors{error_of([&] { files->create(missing); }),
+                                    error_of([&] { files->make_directory(missing); }),
+                                    error_of([&] { files->create_unnamed(missing); })};
+  const std::array<std::string, 3> actions{"create", "create the directory", "create a temporary file in it"};
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    EXPECT_EQ(errors[i].what(), missing + ": cannot " + actions[i] + ": No such file or directory" + remedy);
+    ASSERT_TRUE(errors[i].system_failure()) << actions[i];
+    EXPECT_EQ(errors[i].system_failure()->errno_value, ENOENT);
+  }
 }
 
 TEST(PosixFileSystem, FullDisk_FileWithoutAName_FailsWithItsDirectoryAsThePath) {

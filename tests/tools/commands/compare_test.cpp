@@ -252,6 +252,30 @@ TEST(Compare, NonFiniteVoxelsAreCounted) {
       << help;
 }
 
+// The contract gives compare the input options of convert; these two are read, and say nothing of the error.
+TEST(Compare, PolicyAndSceneOfTheConversion_ChangeNoFigure) {
+  const ConvertedPair volume("some-nan", "97x10x10_float32", {"--lossless", "--nonfinite", "background"});
+  const std::string plain = run_weir({"compare", volume.raw, volume.nvdb}).out;
+  for (const char* policy : {"error", "background", "keep"}) {
+    const CommandResult said = run_weir({"compare", volume.raw, volume.nvdb, "--nonfinite", policy});
+    EXPECT_EQ(said.out, plain) << policy;
+    EXPECT_EQ(said.err, "") << policy;
+  }
+  EXPECT_EQ(run_weir({"compare", volume.raw, volume.nvdb, "--nonfinite", "drop"}).err,
+            "weir: --nonfinite is \"drop\", it must be error, background or keep\n");
+  const std::string scene = volume.directory / "s.toml";
+  write_file(scene, "[volume]\nregion = [[0, 9], [0, 9], [0, 9]]\n");
+  const CommandResult said = run_weir({"compare", volume.raw, volume.nvdb, "--scene", scene});
+  EXPECT_EQ(said.out, plain);
+  EXPECT_TRUE(said.err.ends_with(" info " + scene +
+                                 ": changes no figure: they are of all voxels; weir inspect tells the error of what "
+                                 "the conversion's scene shows\n"))
+      << said.err;
+  const CommandResult missing = run_weir({"compare", volume.raw, volume.nvdb, "--scene", scene + "x"});
+  EXPECT_EQ(missing.exit_code, 3);
+  EXPECT_EQ(missing.err, "weir: " + scene + "x: cannot read the scene; it must be an existing TOML file\n");
+}
+
 TEST(Compare, BoundedMemory) {
   if (kSanitized) GTEST_SKIP() << kSanitizedSkip;
   const ConvertedPair volume("turbulence", "400x400x400_float32", {"--rate", "2"});  // 244 MiB, half of it leaves

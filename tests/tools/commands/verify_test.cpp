@@ -137,7 +137,7 @@ TEST_F(Verify, SeveralFiles_AreAllCheckedAndOneThatFailsCounts) {
 TEST_F(Verify, IntactVolumeHoldsAllChecks) {
   const CommandResult result = verify();
   EXPECT_EQ(result.exit_code, 0);
-  EXPECT_EQ(result.out, volume_ + ": all 60 checks hold\n");
+  EXPECT_EQ(result.out, volume_ + ": all 61 checks hold\n");
   EXPECT_EQ(result.err, "");
   EXPECT_EQ(fs::file_size(volume_), 450001U);
 }
@@ -146,7 +146,7 @@ TEST_F(Verify, JsonListsEveryCheck) {
   const CommandResult result = run_weir({"verify", volume_, "--json", "--progress", "never"});
   const auto report = nlohmann::json::parse(result.out);
   EXPECT_EQ(report["ok"], true);
-  EXPECT_EQ(report["checks"].size(), 60U);
+  EXPECT_EQ(report["checks"].size(), 61U);
   write_file(sidecar_path(volume_), "{}");
   const CommandResult broken = run_weir({"verify", volume_, "--json", "--progress", "never"});
   EXPECT_EQ(broken.exit_code, 3);

@@ -59,6 +59,8 @@ TEST(ParserWording, EveryWrongValue_IsNamedWithWhatItMustBe) {
   EXPECT_EQ(refused({"jobs", "--offset", "-1"}), "weir: --offset is \"-1\", it must be a number from 0 on");
   EXPECT_EQ(refused({"convert", "a.raw", "--within", "no/where"}),
             "weir: --within is \"no/where\", which does not exist; name a directory");
+  EXPECT_EQ(refused({"convert", "a.raw", "--within", "/dev/null"}),
+            "weir: --within is \"/dev/null\", which is a file; name a directory");
   EXPECT_EQ(refused({"convert", "a.raw", "--again"}), "weir: --again needs --skip-done");
 }
 

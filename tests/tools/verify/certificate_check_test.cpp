@@ -75,6 +75,25 @@ TEST_F(CertificateCheck, FigureThatContradictsAnother_Fails) {
             "sidecar visible.voxels\n");
 }
 
+TEST_F(CertificateCheck, ErrorLargerThanValuesAndBackgroundSpan_Fails) {
+  Sidecar changed = with_error(sidecar());
+  const auto [low, high] = changed.value_range;
+  changed.error.max_abs = high - low;
+  EXPECT_EQ(failed_names(changed), "");
+  changed.error.max_abs = high - low + 1;
+  EXPECT_EQ(failed_names(changed), "sidecar error.max_abs in value_range\n");
+  changed.background.value = low - 1;
+  EXPECT_EQ(failed_names(changed), "") << "what dropped blocks read";
+  changed.background.value = high + 0.5;
+  EXPECT_EQ(failed_names(changed), "sidecar error.max_abs in value_range\n");
+  changed.missing.policy = "";
+  EXPECT_EQ(failed_names(changed), "") << "as of weir 0.1";
+  changed = with_error(sidecar());
+  changed.visible = Sidecar::Visible{"a.toml", 1, 1, changed.error, ""};
+  changed.visible->error.max_abs = high - low + 1;
+  EXPECT_EQ(failed_names(changed), "sidecar visible.error.max_abs in value_range\n");
+}
+
 TEST_F(CertificateCheck, NameThatWeirDoesNotWrite_Fails) {
   const auto failed = [&](const std::function<void(Sidecar&)>& change) {
     Sidecar changed = sidecar();
@@ -103,7 +122,9 @@ TEST_F(CertificateCheck, BudgetThatTheFileDoesNotMeet_Fails) {
   EXPECT_EQ(failed("max_error", 3), "");
   EXPECT_EQ(failed("max_error", 2.999), "sidecar budget.requested of kind max_error\n");
   EXPECT_EQ(failed("lossless", std::nullopt), "sidecar budget.requested of kind lossless\n");
+  EXPECT_EQ(failed("lossless", 60), "sidecar budget.requested\nsidecar budget.requested of kind lossless\n");
   EXPECT_EQ(failed("minimum", std::nullopt), "");
+  EXPECT_EQ(failed("minimum", 8), "sidecar budget.requested\n");
   const auto bytes = static_cast<double>(good.budget.file_bytes);
   EXPECT_EQ(failed("size", bytes), "");
   EXPECT_EQ(failed("size", bytes + 1), "sidecar budget.requested of kind size\n");
