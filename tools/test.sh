@@ -240,7 +240,7 @@ check_shell() {
     skip shellcheck "not installed"
     return 0
   fi
-  check shellcheck shellcheck tools/*.sh bench/*.sh .ci/run packaging/postinst packaging/prerm || true
+  check shellcheck shellcheck tools/*.sh bench/*.sh .ci/run packaging/postinst packaging/postrm packaging/prerm || true
 }
 
 check_tidy() {

@@ -7,7 +7,6 @@
 #include <string_view>
 #include <vector>
 
-#include "daemon/config/watch_conflicts.h"
 #include "format/base/text.h"
 #include "format/io/real_path.h"
 
@@ -83,12 +82,17 @@ void exclude_own_files(DaemonConfig& config) {
   own.erase(std::unique(own.begin(), own.end()), own.end());
   std::vector<NumberedFiles> numbered{{service.state + ".corrupt-", "", true}};
   if (!service.log_file.empty()) numbered.push_back(rotated_logs(service.log_file));
+  std::erase(own, "");
+  // Each is looked up once: there may be as many as watches.
+  std::vector<fs::path> real;
+  for (const std::string& path : own) real.push_back(real_path(path));
   for (WatchConfig& watch : config.watches) {
-    for (const std::string& path : own) {
-      if (!path.empty() && is_within(path, watch.directory)) watch.excluded_paths.push_back(path);
+    const fs::path directory = real_path(watch.directory);
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      if (lies_below(real[i], directory)) watch.excluded_paths.push_back(own[i]);
     }
     for (const NumberedFiles& files : numbered) {
-      if (is_within(files.before, watch.directory)) watch.excluded_numbers.push_back(files);
+      if (lies_below(real_path(files.before), directory)) watch.excluded_numbers.push_back(files);
     }
   }
 }

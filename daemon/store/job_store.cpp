@@ -295,16 +295,20 @@ bool JobStore::remove(std::int64_t id) {
 }
 
 void JobStore::forget_other_watches(const std::vector<Watched>& watches) {
-  std::string kept = "0";
-  for (std::size_t i = 0; i < watches.size(); ++i) kept += " OR (watch = ? AND substr(source, 1, length(?)) = ?)";
   Transaction transaction(database_);
-  Statement forget = database_.prepare(cat("DELETE FROM jobs WHERE NOT (", kept, ") AND ", in_state(kForgottenStates)));
+  // A condition with a term for each watch is too deep for SQLite from a thousand on.
+  database_.run("CREATE TEMPORARY TABLE kept (watch TEXT, below TEXT)");
   for (const Watched& watch : watches) {
     const std::string below = watch.directory.ends_with('/') ? watch.directory : watch.directory + '/';
-    forget.bind(watch.label).bind(below).bind(below);
+    database_.prepare("INSERT INTO kept VALUES (?, ?)").bind(watch.label).bind(below).step();
   }
-  forget.step();
+  database_
+      .prepare(cat("DELETE FROM jobs WHERE ", in_state(kForgottenStates),
+                   " AND NOT EXISTS (SELECT 1 FROM kept WHERE kept.watch = jobs.watch"
+                   " AND substr(jobs.source, 1, length(kept.below)) = kept.below)"))
+      .step();
   if (database_.changes() > 0) database_.prepare("DELETE FROM outputs WHERE job NOT IN (SELECT id FROM jobs)").step();
+  database_.run("DROP TABLE kept");
   transaction.commit();
 }
 

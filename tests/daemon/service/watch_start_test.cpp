@@ -76,6 +76,7 @@ TEST(WatchStart, UnitStartsTheServiceAloneAndStaysDownAfter2And3) {
   EXPECT_EQ(unit.find("\nExecStartPre="), std::string::npos) << unit;
   EXPECT_NE(unit.find("\nRestart=on-failure\n"), std::string::npos) << unit;
   EXPECT_NE(unit.find("\nRestartPreventExitStatus=2 3\n"), std::string::npos) << unit;
+  EXPECT_NE(unit.find("\nOOMPolicy=continue\n"), std::string::npos) << unit;
 }
 
 }  // namespace

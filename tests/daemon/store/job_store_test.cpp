@@ -293,6 +293,16 @@ TEST_F(StoredJobs, ForgetOtherWatches_KeepsDoneCancelledAndRunningJobs) {
   EXPECT_FALSE(store_->job(kept));
 }
 
+TEST_F(StoredJobs, ForgetOtherWatches_TakesMoreWatchesThanSqliteTakesTerms) {
+  observe("/in/7/a.raw", kIdentity, "w7");
+  observe("/in/7/a.raw", kIdentity, "w");
+  std::vector<JobStore::Watched> watches;
+  for (int i = 0; i < 2000; ++i) watches.push_back({cat("w", i), cat("/in/", i)});
+  store_->forget_other_watches(watches);
+  EXPECT_EQ(sources({std::nullopt, "w7", ""}), Names{"/in/7/a.raw"});
+  EXPECT_EQ(sources({std::nullopt, "w", ""}), Names{});
+}
+
 TEST_F(StoredJobs, ForgetOtherWatches_ForgetsJobsOfFormerDirectories) {
   observe("/old/a.raw", kIdentity, "w");
   observe("/new/a.raw", kIdentity, "w");

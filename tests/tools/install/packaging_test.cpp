@@ -116,7 +116,7 @@ TEST_F(DebianPackage, IsForAllWhateverTheUmask) {
 TEST_F(DebianPackage, SpeaksOfTheServiceOnlyWhereThereIsOne) {
   const TemporaryDirectory with;
   EXPECT_EQ(control_files(with, make_package(with, "ON")),
-            (std::vector<std::string>{"conffiles", "control", "md5sums", "postinst", "prerm", "triggers"}));
+            (std::vector<std::string>{"conffiles", "control", "md5sums", "postinst", "postrm", "prerm", "triggers"}));
   const TemporaryDirectory without;
   EXPECT_EQ(control_files(without, make_package(without, "OFF")),
             (std::vector<std::string>{"control", "md5sums", "triggers"}));
