@@ -120,6 +120,14 @@ class Sweep {
   }
 
  private:
+  // The remedies are options of weir convert.
+  static std::string without_remedy(std::string note) {
+    for (const char* const remedy : {"; ask for --size", ", which --at-most leaves out"}) {
+      note.resize(std::min(note.find(remedy), note.size()));
+    }
+    return note;
+  }
+
   void run_conversion(const SweepMethod& method, ConversionControl& control, SweepRow& row) {
     ConversionOptions options = conversion_of(method, arguments_.options);
     // What is not kept has a name of its own: it takes the place of nothing that an earlier sweep kept.
@@ -139,7 +147,7 @@ class Sweep {
     control.notice = [&](const Message& message) {
       const std::string line = message.text();
       if (is_own(line)) {
-        row.note = line.substr(own.size());
+        row.note = without_remedy(line.substr(own.size()));
       } else if (said_.insert(line).second) {
         spdlog::warn("{}", line);
       }
@@ -159,9 +167,7 @@ class Sweep {
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::budget) throw;
       const std::string line = error.what();
-      row.note = is_own(line) ? line.substr(own.size()) : line;
-      // The remedy is an option of weir convert.
-      row.note.resize(std::min(row.note.find("; ask for --size"), row.note.size()));
+      row.note = without_remedy(is_own(line) ? line.substr(own.size()) : line);
       return;
     }
     if (!arguments_.keep) {

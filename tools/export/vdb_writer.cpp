@@ -75,7 +75,7 @@ class Writer {
     leaves(out);
     written_.bytes = head.end = out.position();
     head.metadata["file_voxel_count"] = static_cast<std::int64_t>(written_.active_voxels);
-    if (options_.half) head.metadata["weir_half_max_abs_error"] = written_.half_max_abs_error;
+    if (options_.half) add_rounding(head.metadata);
     const std::string without_uuid = vdb_head_bytes(head);
     DigestStream content;
     content.update(piece_digest(std::as_bytes(std::span(without_uuid))));
@@ -87,6 +87,12 @@ class Writer {
   }
 
  private:
+  void add_rounding(VdbMetadata& metadata) const {
+    metadata["weir_half_max_abs_error"] = written_.half_max_abs_error;
+    const auto lossless = metadata.find("weir_lossless");
+    if (lossless != metadata.end() && written_.half_max_abs_error > 0) lossless->second = false;
+  }
+
   VdbHead empty_head() {
     VdbHead head;
     head.creator = options_.creator;

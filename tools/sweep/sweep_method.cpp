@@ -47,7 +47,9 @@ std::vector<SweepMethod> parse_sweep_methods(std::string_view text) {
 
 ConversionOptions conversion_of(const SweepMethod& method, const GivenOptions& given) {
   GivenOptions options(method.options.begin(), method.options.end());
-  if (const auto policy = given.find("nonfinite"); policy != given.end()) options.insert(*policy);
+  for (const char* const key : {"nonfinite", "missing-policy"}) {
+    if (const auto policy = given.find(key); policy != given.end()) options.insert(*policy);
+  }
   return read_conversion_request(options).conversion;
 }
 

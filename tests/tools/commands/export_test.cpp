@@ -181,6 +181,15 @@ TEST_F(ExportCommand, CertificateIsWrittenAsMetadata) {
   }
 }
 
+TEST_F(ExportCommand, LosslessFileThatIsRoundedToHalf_IsLosslessNoMore) {
+  sample("turbulence", "40,40,40", {"--lossless"});
+  exported();
+  EXPECT_EQ(test::read_facts(vdb_).metadata.at("weir_lossless"), "true");
+  const CommandResult half = run_weir({"export", nvdb_, "-o", vdb_, "--overwrite", "--half"});
+  ASSERT_EQ(half.exit_code, 0) << half.err;
+  EXPECT_EQ(test::read_facts(vdb_).metadata.at("weir_lossless"), "false");
+}
+
 TEST_F(ExportCommand, HalfReportsItsLargestError) {
   sample("turbulence", "130,100,90", {"--rate", "4"});
   const nlohmann::json report = exported({"--half"});

@@ -1,8 +1,10 @@
 // weir inspect as a user runs it.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "format/base/text.h"
 #include "format/layout/nanovdb_layout.h"
@@ -81,6 +83,29 @@ TEST_F(Inspect, WorksWithoutSidecar) {
   EXPECT_EQ(voxels, open().grid().active_voxels());
   const CommandResult bad = run_weir({"inspect", volume_, "--plot", directory_ / "h.jpg"});
   EXPECT_EQ(bad.exit_code, 2);
+}
+
+TEST_F(Inspect, HistogramWithoutSidecar_IsOfTheFiniteValues) {
+  const auto histogram = [&](std::vector<float> values) {
+    const std::string raw = directory_ / "v_8x8x8_float32.raw";
+    values.resize(512, 0.5F);
+    write_file(raw, {reinterpret_cast<const char*>(values.data()), 4 * values.size()});
+    const std::string made = directory_ / "v.nvdb";
+    const CommandResult converted = run_weir(
+        {"convert", raw, "-o", made, "--overwrite", "--lossless", "--encoding", "float", "--nonfinite", "keep"});
+    EXPECT_EQ(converted.exit_code, 0) << converted.err;
+    fs::remove(sidecar_path(made));
+    return nlohmann::json::parse(run_weir({"inspect", made, "--json", "--progress", "never"}).out)["histogram"];
+  };
+  const nlohmann::json one_value = histogram({});
+  EXPECT_EQ(one_value["min"], 0.5);
+  EXPECT_EQ(one_value["max"], 0.5);
+  EXPECT_EQ(one_value["counts"], nlohmann::json({512}));
+  const nlohmann::json with_infinity = histogram({INFINITY, 0.25F, 0.25F, NAN});
+  EXPECT_EQ(with_infinity["min"], 0.25);
+  EXPECT_EQ(with_infinity["max"], 0.5);
+  EXPECT_EQ(with_infinity["counts"].front(), 2);
+  EXPECT_EQ(with_infinity["counts"].back(), 508);
 }
 
 // As a writer leaves it that computes no statistics.

@@ -49,6 +49,7 @@ TEST(SweepMethod, MethodNamesSetTheConversionOptions) {
   EXPECT_EQ(conversion("fp16").encoding, Encoding::fp16);
   EXPECT_EQ(conversion("fp16").metric, Metric::sse);
   EXPECT_EQ(conversion("auto", {{"nonfinite", "keep"}}).non_finite, NonFinitePolicy::keep);
+  EXPECT_EQ(conversion("packed", {{"missing-policy", "background"}}).missing, MissingPolicy::background);
   const ConversionOptions paper = conversion("paper");
   EXPECT_EQ(paper.encoding, Encoding::float32);
   EXPECT_EQ(paper.metric, Metric::farthest);
