@@ -13,8 +13,15 @@
 #include "ingest/synthetic/synthetic.h"
 #include "tests/compressor/support/converted.h"
 
-namespace weir::test {
+namespace weir::compare_test {
 namespace {
+
+using test::bits_of;
+using test::convert;
+using test::convert_to;
+using test::Converted;
+using test::MemoryVolume;
+using test::minimum_size;
 
 constexpr float kInf = std::numeric_limits<float>::infinity();
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
@@ -240,4 +247,4 @@ TEST(Compare, AgreesWithTheDefinitionAndTheCertificate) {
 }
 
 }  // namespace
-}  // namespace weir::test
+}  // namespace weir::compare_test
