@@ -56,8 +56,8 @@ py::array_t<float> Grid::sample(const py::array_t<float, py::array::c_style>& po
   }
   without_lock([&] {
     file->require_unchanged();
-    std::call_once(file->samples_made, [&] { file->samples.emplace(file->grid()); });
     OwnArena().run([&] {
+      std::call_once(file->samples_made, [&] { file->samples.emplace(file->grid()); });
       tbb::parallel_for(tbb::blocked_range<std::size_t>(0, positions.size() / 3, kGrain), [&](const auto& part) {
         file->samples->with_volume(filter, [&](const auto& volume) { sample_part(volume, positions, part, values); });
       });

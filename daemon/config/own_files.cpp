@@ -84,15 +84,18 @@ void exclude_own_files(DaemonConfig& config) {
   if (!service.log_file.empty()) numbered.push_back(rotated_logs(service.log_file));
   std::erase(own, "");
   // Each is looked up once: there may be as many as watches.
-  std::vector<fs::path> real;
-  for (const std::string& path : own) real.push_back(real_path(path));
+  const auto looked_up = [](const std::string& path) { return real_path(path); };
+  std::vector<fs::path> real(own.size());
+  std::ranges::transform(own, real.begin(), looked_up);
+  std::vector<fs::path> real_numbered(numbered.size());
+  std::ranges::transform(numbered, real_numbered.begin(), looked_up, &NumberedFiles::before);
   for (WatchConfig& watch : config.watches) {
     const fs::path directory = real_path(watch.directory);
     for (std::size_t i = 0; i < own.size(); ++i) {
       if (lies_below(real[i], directory)) watch.excluded_paths.push_back(own[i]);
     }
-    for (const NumberedFiles& files : numbered) {
-      if (lies_below(real_path(files.before), directory)) watch.excluded_numbers.push_back(files);
+    for (std::size_t i = 0; i < numbered.size(); ++i) {
+      if (lies_below(real_numbered[i], directory)) watch.excluded_numbers.push_back(numbered[i]);
     }
   }
 }

@@ -297,10 +297,10 @@ bool JobStore::remove(std::int64_t id) {
 void JobStore::forget_other_watches(const std::vector<Watched>& watches) {
   Transaction transaction(database_);
   // A condition with a term for each watch is too deep for SQLite from a thousand on.
-  database_.run("CREATE TEMPORARY TABLE kept (watch TEXT, below TEXT)");
+  database_.run("CREATE TEMPORARY TABLE kept (watch TEXT, below TEXT, PRIMARY KEY (watch, below)) WITHOUT ROWID");
   for (const Watched& watch : watches) {
     const std::string below = watch.directory.ends_with('/') ? watch.directory : watch.directory + '/';
-    database_.prepare("INSERT INTO kept VALUES (?, ?)").bind(watch.label).bind(below).step();
+    database_.prepare("INSERT OR IGNORE INTO kept VALUES (?, ?)").bind(watch.label).bind(below).step();
   }
   database_
       .prepare(cat("DELETE FROM jobs WHERE ", in_state(kForgottenStates),

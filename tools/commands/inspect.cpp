@@ -8,7 +8,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
-#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -106,27 +105,14 @@ MinMax range_of_values(const NvdbGrid& grid) {
   return MacrocellGrid(grid, kMacrocell).finite_range().value_or(stored);
 }
 
-// Of the finite values, whatever the ends of `range` are.
 Sidecar::Histogram counted_histogram(const NvdbGrid& grid, const MinMax& range, const ProgressOptions& shown) {
   Progress progress(shown);
+  progress.start("histogram", grid.data_bytes());
   const auto leaf_bytes = grid.data_bytes() / std::max<std::uint64_t>(census_blocks(grid), 1);
-  const CensusProgress tell = [&](std::uint64_t leaves) {
+  return finite_histogram(grid, range, kBins, [&](std::uint64_t leaves) {
     progress.update(leaves * leaf_bytes);
     if (interrupt_flag()) throw Error(ErrorKind::interrupted, "interrupted");
-  };
-  auto [lo, hi] = range;
-  if (!std::isfinite(lo) || !std::isfinite(hi)) {
-    progress.start("range", grid.data_bytes());
-    const TreeCensus census = take_census(grid, tell);
-    if (!(census.min <= census.max)) return {range.min, range.max, {}};
-    lo = census.min;
-    hi = census.max;
-  }
-  progress.start("histogram", grid.data_bytes());
-  if (lo < hi) return {lo, hi, count_values(grid, lo, hi, kBins, tell)};
-  // One bin, of which the other end is no infinity.
-  const float beside = std::nextafter(lo, lo > 0 ? 0.0F : std::numeric_limits<float>::max());
-  return {lo, hi, count_values(grid, std::min(lo, beside), std::max(lo, beside), 1, tell)};
+  });
 }
 
 Inspection look_at(const NvdbFile& file, const ProgressOptions& progress) {

@@ -311,4 +311,26 @@ std::vector<std::uint64_t> count_values(const NvdbGrid& grid, float lo, float hi
       .counts;
 }
 
+Sidecar::Histogram finite_histogram(const NvdbGrid& grid, const MinMax& range, std::size_t bins,
+                                    const CensusProgress& progress) {
+  auto [lo, hi] = range;
+  if (!std::isfinite(lo) || !std::isfinite(hi)) {
+    const TreeCensus census = take_census(grid, [&](std::uint64_t) {
+      if (progress) progress(0);
+    });
+    lo = census.min;
+    hi = census.max;
+  }
+  Sidecar::Histogram histogram{lo, hi, {}};
+  if (lo < hi) {
+    histogram.counts = count_values(grid, lo, hi, bins, progress);
+  } else if (lo == hi) {  // up to the next number towards 0, which is never infinite
+    const float next = std::nextafter(lo, lo == 0 ? 1.0F : 0.0F);
+    histogram.counts = count_values(grid, std::min(lo, next), std::max(lo, next), 1, progress);
+  }
+  const bool empty = std::ranges::all_of(histogram.counts, [](std::uint64_t count) { return count == 0; });
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  return empty ? Sidecar::Histogram{kNone, kNone, {}} : histogram;
+}
+
 }  // namespace weir

@@ -12,7 +12,9 @@
 
 #include "format/base/index.h"
 #include "format/base/trace.h"
+#include "format/leaf/bounds.h"
 #include "format/nanovdb/nvdb_grid.h"
+#include "format/sidecar/sidecar.h"
 
 namespace weir {
 
@@ -49,5 +51,10 @@ std::uint64_t census_blocks(const NvdbGrid& grid);
 /// NaN is not counted. Decodes every block, on all threads of TBB. Throws as take_census.
 std::vector<std::uint64_t> count_values(const NvdbGrid& grid, float lo, float hi, std::size_t bins,
                                         const CensusProgress& progress);
+
+/// The same of the finite values, between the ends of `range` or, where one of these is not finite, their own: one bin
+/// where they are one value, and none, between NaN, where there are none.
+Sidecar::Histogram finite_histogram(const NvdbGrid& grid, const MinMax& range, std::size_t bins,
+                                    const CensusProgress& progress);
 
 }  // namespace weir

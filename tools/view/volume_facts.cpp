@@ -123,11 +123,11 @@ Json volume_facts(const NvdbFile& file, const std::string& name, const SeenValue
 
 Json histogram_facts(const NvdbFile& file, const std::atomic<bool>& cancel) {
   const NvdbGrid& grid = file.grid();
-  Sidecar::Histogram histogram{grid.value_min(), grid.value_max(), {}};
+  Sidecar::Histogram histogram;
   if (const auto sidecar = own_sidecar(file)) {
     histogram = sidecar->histogram;
-  } else if (std::isfinite(histogram.min) && std::isfinite(histogram.max) && histogram.min < histogram.max) {
-    histogram.counts = count_values(grid, grid.value_min(), grid.value_max(), kViewBins, [&](std::uint64_t) {
+  } else {
+    histogram = finite_histogram(grid, {grid.value_min(), grid.value_max()}, kViewBins, [&](std::uint64_t) {
       if (cancel) throw Error(ErrorKind::interrupted, "interrupted");
     });
   }

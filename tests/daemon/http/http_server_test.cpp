@@ -222,7 +222,7 @@ TEST(HttpServer, DropsAClientThatDoesNotReadItsAnswers) {
   RawClient client(served.port());
   // Megabytes of answers that nobody reads fill the socket's buffers.
   for (int i = 0; i < 8; ++i) client.send("GET /api/jobs?limit=1000 HTTP/1.1\r\nHost: localhost\r\n\r\n");
-  std::this_thread::sleep_for(milliseconds(3000));
+  std::this_thread::sleep_for(milliseconds(2500));
   int whole = 0;
   while (client.receive().status == 200) ++whole;
   EXPECT_LT(whole, 8);

@@ -106,6 +106,11 @@ TEST_F(Inspect, HistogramWithoutSidecar_IsOfTheFiniteValues) {
   EXPECT_EQ(with_infinity["max"], 0.5);
   EXPECT_EQ(with_infinity["counts"].front(), 2);
   EXPECT_EQ(with_infinity["counts"].back(), 508);
+  for (const float value : {NAN, INFINITY, -INFINITY}) {
+    const nlohmann::json none = histogram(std::vector<float>(512, value));
+    EXPECT_EQ(none["counts"].size(), 0U) << value;
+    EXPECT_TRUE(none["min"].is_null() && none["max"].is_null()) << value;
+  }
 }
 
 // As a writer leaves it that computes no statistics.

@@ -171,6 +171,7 @@ TEST_F(SweepCommand, PaddingOfALosslessFile_IsNoted) {
   EXPECT_TRUE(found[0]["psnr_db"].is_null());
   const std::string note = found[0]["note"];
   EXPECT_EQ(note.find("lossless takes "), 0U) << note;
+  EXPECT_EQ(note.find("--at-most"), std::string::npos) << note;
 }
 
 TEST_F(SweepCommand, NonFiniteVolumes) {
