@@ -75,6 +75,13 @@ Workers choose_workers(VolumeSource& source, const ConversionOptions& options, c
           resident};
 }
 
+void check_memory(const ConversionOptions& options, const Box& domain, std::uint64_t resident) {
+  const std::uint64_t region = region_bytes(options);
+  const std::size_t threads =
+      choose_threads(options.threads, processors_or_all(options.processors), options.memory, resident, domain, region);
+  plan_memory(options.memory, resident, threads, domain, region);
+}
+
 MemoryShares share_memory(VolumeSource& source, const ConversionOptions& options, std::uint64_t resident,
                           std::size_t threads, bool may_hold) {
   const Box domain = source.info().domain();

@@ -31,6 +31,10 @@ struct Workers {
 Workers choose_workers(VolumeSource& source, const ConversionOptions& options, const BlockCoder* coder,
                        std::uint64_t held);
 
+/// Throws as choose_threads() and plan_memory() do where options.memory is too little for a volume over `domain`, with
+/// `resident` bytes in use besides.
+void check_memory(const ConversionOptions& options, const Box& domain, std::uint64_t resident);
+
 /// How a conversion divides its memory, and what it reads by that.
 struct MemoryShares {
   MemoryPlan memory;

@@ -37,14 +37,14 @@ WEIR_API void weir_cuda_free(weir_cuda_grid* loaded);
 /* ---- Push: a volume out of the memory of a device. Since 0.2 --------------------------------------------------- */
 
 /* weir_push_slab for values on the calling thread's current device: `data` is the device's address of voxel (0, 0, z0),
- * memory that its kernels can read; it and the strides are multiples of the bytes of a value. The copy follows the work
- * queued in `stream` (see weir_cuda_load), and the call returns once it is queued: work that is
- * queued there afterwards may change the values. Slabs cross the bus through page-locked host memory: four pieces of
- * 8 MiB, or two planes where a plane is larger, besides options->memory; a call waits while these are full. Planes are
- * checked as by weir_push_slab. A failure of a copy ends the push, and is the status of a later call; where there is
- * no room for these pieces (WEIR_ERROR_IO at the first slab) nothing was taken, and the push can go on. All slabs come
- * from one device; values on another one must be without gaps. Slabs of weir_push_slab may come between. Where `data`
- * is host memory, or there is no device, it is taken as weir_push_slab takes it, once the work in `stream` is done. */
+ * memory that its kernels can read; it and the strides are multiples of the bytes of a value. The copy follows the
+ * work queued in `stream` (see weir_cuda_load), and the call returns once it is queued: work that is queued there
+ * afterwards may change the values. Slabs cross the bus through page-locked host memory: four pieces of 8 MiB, or two
+ * planes where a plane is larger, besides options->memory; a call waits while these are full. Planes are checked as by
+ * weir_push_slab. A failure of a copy ends the push, and is the status of a later call; where there is no room for
+ * these pieces (WEIR_ERROR_IO at the first slab) nothing was taken, and the push can go on. All slabs come from one
+ * device; values on another one must be without gaps. Slabs of weir_push_slab may come between. Where `data` is host
+ * memory, or there is no device, it is taken as weir_push_slab takes it, once the work in `stream` is done. */
 WEIR_API weir_status weir_push_slab_device(weir_push* push, int64_t z0, int64_t nz, const void* data,
                                            const int64_t stride[3], void* stream, weir_error* error);
 /* Before the first slab of a device: up to `bytes` of its memory, a plane's or more, may hold slabs until they have

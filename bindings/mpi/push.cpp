@@ -10,7 +10,6 @@
 #include "bindings/mpi/pushed_boxes.h"
 #include "bindings/mpi/weir_mpi.h"
 #include "compressor/conversion_memory.h"
-#include "compressor/plan/memory_plan.h"
 #include "format/base/text.h"
 
 /// What outlives a PushedBoxes comes before it.
@@ -44,14 +43,6 @@ Index3 index_of(const int64_t* values, const char* name, int64_t least) {
   return {values[0], values[1], values[2]};
 }
 
-// At the end it would be said too late: all boxes would have been taken.
-void require_memory(const ConversionOptions& options, const Box& domain) {
-  const std::uint64_t region = region_bytes(options);
-  const std::size_t threads =
-      choose_threads(options.threads, processors_or_all(options.processors), options.memory, 0, domain, region);
-  plan_memory(options.memory, 0, threads, domain, region);
-}
-
 }  // namespace
 }  // namespace weir::c
 
@@ -82,7 +73,8 @@ weir_status weir_mpi_push_begin(MPI_Comm comm, const weir_volume* volume, const 
     });
     require_alike(made->team, info.path, said_by_all(info, conversion));
     conversion.processors = made->team.own_cores();
-    made->team.run([&] { require_memory(conversion, info.domain()); });
+    // At the end it would be said too late: all boxes would have been taken.
+    made->team.run([&] { check_memory(conversion, info.domain(), 0); });
     made->boxes = std::make_unique<PushedBoxes>(std::move(info), conversion, made->control, made->team);
     *push = made.release();
   });

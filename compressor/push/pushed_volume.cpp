@@ -115,16 +115,13 @@ class PushedVolume::State {
   }
 
   void check_slab(std::int64_t z0, std::int64_t nz, const std::array<std::int64_t, 3>& stride) const {
-    if (z0 < 0 || nz < 1 || z0 >= info_.extent.z || nz > info_.extent.z - z0) {
-      throw Error(ErrorKind::usage, cat(info_.path, ": a slab of ", nz, nz == 1 ? " plane" : " planes", " from ", z0,
-                                        " on is not in the volume, whose planes are 0 to ", info_.extent.z - 1));
-    }
+    check_planes(z0, nz);
     check_strides(info_.path, {info_.extent.x, info_.extent.y, nz}, stride);
   }
 
   void expect(std::int64_t z0, std::int64_t nz) {
     check_going_on();
-    check_slab(z0, nz, packed_stride(info_.extent, info_.type));
+    check_planes(z0, nz);
     const std::lock_guard lock(mutex_);
     take_planes(z0, nz);
     expected_planes_ += nz;
@@ -156,10 +153,7 @@ class PushedVolume::State {
 
   bool has_room_for(std::uint64_t working_bytes) const {
     try {
-      const std::size_t threads =
-          choose_threads(options_.threads, processors_or_all(options_.processors), options_.memory, working_bytes,
-                         info_.domain(), region_bytes(options_));
-      plan_memory(options_.memory, working_bytes, threads, info_.domain(), region_bytes(options_));
+      check_memory(options_, info_.domain(), working_bytes);
       return true;
     } catch (const Error&) {
       return false;
@@ -262,6 +256,13 @@ class PushedVolume::State {
     const Box domain = info_.domain();
     const Box box{{domain.lo.x, domain.lo.y, domain.lo.z + z0}, {domain.hi.x, domain.hi.y, domain.lo.z + z0 + nz}};
     intake_->add({box, static_cast<const std::byte*>(data), stride, scalar_bytes(info_.type)});
+  }
+
+  void check_planes(std::int64_t z0, std::int64_t nz) const {
+    if (z0 < 0 || nz < 1 || z0 >= info_.extent.z || nz > info_.extent.z - z0) {
+      throw Error(ErrorKind::usage, cat(info_.path, ": a slab of ", nz, nz == 1 ? " plane" : " planes", " from ", z0,
+                                        " on is not in the volume, whose planes are 0 to ", info_.extent.z - 1));
+    }
   }
 
   void take_planes(std::int64_t z0, std::int64_t nz) {

@@ -24,9 +24,9 @@ void remove_if_empty(FileSystem& files, const std::string& path) noexcept {
 }
 
 void check_work_directory(FileSystem& files, const std::string& chosen) {
+  std::error_code why;
+  const std::filesystem::file_status status = std::filesystem::status(chosen, why);
   if (!files.exists(chosen)) {
-    std::error_code why;
-    static_cast<void>(std::filesystem::status(chosen, why));
     // Below a file, or behind a circle of links, none can be made.
     if (why && why != std::errc::no_such_file_or_directory) {
       throw io_error(chosen, compose("be ", option("work-dir")), why.value());
@@ -34,8 +34,6 @@ void check_work_directory(FileSystem& files, const std::string& chosen) {
     throw Error(ErrorKind::io, compose(option("work-dir", chosen), ": does not exist; make it or choose another"),
                 SystemFailure{ENOENT, chosen});
   }
-  std::error_code ignored;
-  const std::filesystem::file_status status = std::filesystem::status(chosen, ignored);
   if (std::filesystem::exists(status) && !std::filesystem::is_directory(status))
     throw Error(ErrorKind::usage, compose(option("work-dir", chosen), ": is a file; choose a directory"));
   if (files.is_memory(chosen)) {

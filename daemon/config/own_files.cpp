@@ -84,11 +84,10 @@ void exclude_own_files(DaemonConfig& config) {
   if (!service.log_file.empty()) numbered.push_back(rotated_logs(service.log_file));
   std::erase(own, "");
   // Each is looked up once: there may be as many as watches.
-  const auto looked_up = [](const std::string& path) { return real_path(path); };
   std::vector<fs::path> real(own.size());
-  std::ranges::transform(own, real.begin(), looked_up);
+  std::ranges::transform(own, real.begin(), real_path);
   std::vector<fs::path> real_numbered(numbered.size());
-  std::ranges::transform(numbered, real_numbered.begin(), looked_up, &NumberedFiles::before);
+  std::ranges::transform(numbered, real_numbered.begin(), real_path, &NumberedFiles::before);
   for (WatchConfig& watch : config.watches) {
     const fs::path directory = real_path(watch.directory);
     for (std::size_t i = 0; i < own.size(); ++i) {

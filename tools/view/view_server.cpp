@@ -71,7 +71,7 @@ ViewServer::ViewServer(boost::asio::io_context& io, ViewSettings settings, Viewe
                       {"series", files_.key},
                       {"version", settings_.version},
                       {"grows", files_.grow},
-                      {"against", step_names(files_.against)},
+                      {"against", against_names_},
                       {"preview_of", settings_.preview_of.empty() ? Json() : Json(settings_.preview_of)},
                       {"render_input", settings_.render_input.empty() ? Json() : Json(settings_.render_input)},
                       {"allow_convert", settings_.allow_convert},
@@ -219,7 +219,7 @@ std::string ViewServer::file_of(std::size_t step, int side) const {
 
 std::string ViewServer::name_of(std::size_t step, int side) const {
   if (side == 0) return steps_.name(step);
-  return step_names(files_.against).at(files_.against.size() == 1 ? 0 : step);
+  return against_names_.at(files_.against.size() == 1 ? 0 : step);
 }
 
 // What the facts of a step are of: they say its name, too, which changes when a step comes from another folder.

@@ -112,7 +112,8 @@ class ViewServer {
   boost::asio::io_context& io_;
   const ViewSettings settings_;
   const ViewedFiles files_;  // of the beginning
-  SeriesSummary summary_;    // of all steps that were seen since
+  const std::vector<std::string> against_names_ = step_names(files_.against);
+  SeriesSummary summary_;  // of all steps that were seen since
   StepList steps_;
   const AccessRules rules_;
   std::string state_text_;  // of /api/state, but for what changes
