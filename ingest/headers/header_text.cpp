@@ -23,8 +23,8 @@ std::optional<std::vector<T>> parse_all(std::string_view text, std::optional<T> 
 
 }  // namespace
 
-std::string read_head(InputFile& file) {
-  std::string head(static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), kHeaderLimit)), '\0');
+std::string read_head(InputFile& file, std::size_t limit) {
+  std::string head(static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), limit)), '\0');
   file.read_buffered(0, std::as_writable_bytes(std::span(head)), ReadPath::through);
   return head;
 }

@@ -18,11 +18,11 @@ namespace weir {
 inline constexpr std::string_view kNotAsNamed =
     ": the file is of another format than its name says, or its beginning is lost";
 
-/// No header is longer: of a file without line ends, no more than this is read.
+/// No header is longer, but for one of a MetaImage sequence: of a file without line ends, no more than this is read.
 inline constexpr std::size_t kHeaderLimit = std::size_t{1} << 20U;
 
-/// The first kHeaderLimit bytes of a file, or all of a shorter one. Throws what InputFile's reads throw.
-std::string read_head(InputFile& file);
+/// The first `limit` bytes of a file, or all of a shorter one. Throws what InputFile's reads throw.
+std::string read_head(InputFile& file, std::size_t limit = kHeaderLimit);
 
 /// The lines of a text that lies in memory; they end in LF or CRLF, the last one perhaps in nothing.
 class LineReader {

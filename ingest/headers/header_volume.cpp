@@ -81,12 +81,18 @@ Shape checked_shape(const HeaderVolume& volume) {
   return shape;
 }
 
+// Bytes behind a header's own values that may be a filled block.
+constexpr std::uint64_t kMostPadding = 4096;
+
 /// Where plain values begin in the data file.
 std::uint64_t plain_offset(const HeaderVolume& volume, const Shape& shape, std::uint64_t file_bytes) {
   const bool attached = volume.data_path == volume.info.path;
   const std::uint64_t room = file_bytes - std::min(volume.data_offset, file_bytes);
-  // Several headers may share one data file; a file of its own must be what its header says.
-  const bool fits = room == shape.all_bytes || (room > shape.all_bytes && (volume.at_end || !attached));
+  // Several headers may share one data file. Behind a header's own values writers leave a line end or fill up a block,
+  // which the formats' own readers leave unread; more is of a volume that the header describes wrongly.
+  const auto plane_bytes = shape.volume_bytes / static_cast<std::uint64_t>(shape.extent.z);
+  const std::uint64_t most = volume.ends_file ? 0 : std::min(plane_bytes - 1, kMostPadding);
+  const bool fits = room >= shape.all_bytes && (volume.at_end || !attached || room - shape.all_bytes <= most);
   if (!fits) {
     throw Error(ErrorKind::input,
                 cat(volume.data_path, ": has ", room, " bytes from offset ", volume.data_offset, " on, and ",
@@ -97,12 +103,13 @@ std::uint64_t plain_offset(const HeaderVolume& volume, const Shape& shape, std::
   return volume.at_end ? file_bytes - shape.all_bytes : volume.data_offset;
 }
 
-/// That a data file of its own has bytes that the header leaves out: the values may lie elsewhere in it.
+/// That the file of the values has bytes that the header leaves out: the values may lie elsewhere in it.
 std::string data_note(const HeaderVolume& volume, const Shape& shape, std::uint64_t file_bytes) {
   if (volume.packed || volume.at_end || file_bytes - volume.data_offset == shape.all_bytes) return "";
-  return cat("its data file ", volume.data_path, " has ", file_bytes, " bytes, and ", shape.all_bytes,
-             " of them, from byte ", volume.data_offset, " on, are what the header describes; where the values begin ",
-             "elsewhere, correct ", volume.offset_key);
+  const bool attached = volume.data_path == volume.info.path;
+  return cat(attached ? "the file" : cat("its data file ", volume.data_path), " has ", file_bytes, " bytes, and ",
+             shape.all_bytes, " of them, from byte ", volume.data_offset,
+             " on, are what the header describes; where the values begin ", "elsewhere, correct ", volume.offset_key);
 }
 
 /// Where the compressed stream lies in the data file.

@@ -29,6 +29,7 @@ struct HeaderVolume {
   std::uint64_t data_offset = 0;    ///< bytes before the values or, where they are packed, the compressed stream
   std::string offset_key;           ///< what the format calls data_offset, "HeaderSize"
   bool at_end = false;              ///< the values are the file's last bytes, at data_offset or after it
+  bool ends_file = false;           ///< nothing may follow values in the header's own file
   bool packed = false;              ///< one gzip or zlib stream
   std::uint64_t packed_bytes = 0;   ///< of that stream; 0: to the end of the file
   std::uint64_t packed_offset = 0;  ///< unpacked bytes before the values
@@ -41,8 +42,9 @@ std::unique_ptr<InputFile> open_data_file(const HeaderVolume& volume, DirectIo m
 
 /// Opens the volume at options.index. A packed one is unpacked here, once. Throws Error(usage) where the index does
 /// not fit the axes after the third (it may be left out where each of those has one position), Error(input) where
-/// an extent is impossible, the data file missing or too short, or, where it is the header's own, too long; and what
-/// spool_inflated throws. That another file has more bytes is said in details.data_note.
+/// an extent is impossible, the data file missing or too short, or, where it is the header's own, longer by a plane of
+/// the volume or by more than 4096 bytes; and what spool_inflated throws. That the file has more bytes is said in
+/// details.data_note: another file may hold other arrays too, and the header's own may end in a line end or padding.
 std::unique_ptr<VolumeSource> open_header_volume(const HeaderVolume& volume, const SourceOptions& options);
 
 /// The same checks but for options.index and the packed bytes, and what there is.

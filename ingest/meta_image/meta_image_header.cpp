@@ -44,6 +44,9 @@ std::optional<std::pair<std::string_view, std::string_view>> key_and_value(std::
   return std::pair(trimmed(line.substr(0, equals)), trimmed(line.substr(equals + 1)));
 }
 
+/// As many as a header without frames has room for.
+constexpr std::size_t kMostKeys = kHeaderLimit / 8;
+
 /// The entries of a header, up to ElementDataFile, which ends it.
 class Entries {
  public:
@@ -57,6 +60,11 @@ class Entries {
         throw Error(ErrorKind::input, cat(path, ": line ", lines.number(), " of its header is ", in_quotes(*line),
                                           ", not 'Key = Value'"));
       }
+      if (entry->first.starts_with(kFrameKey)) continue;
+      if (entries_.size() == kMostKeys) {
+        throw Error(ErrorKind::input,
+                    cat(path, ": its header has more than ", kMostKeys, " keys besides those of frames"));
+      }
       if (!entries_.emplace(entry->first, Entry{entry->second, lines.number()}).second) {
         throw Error(ErrorKind::input, cat(path, ": line ", lines.number(), " of its header gives ",
                                           in_quotes(entry->first), " a second time"));
@@ -68,7 +76,7 @@ class Entries {
     }
     throw Error(ErrorKind::input,
                 whole ? cat(path, ": its header has no ElementDataFile, with which it must end; the file is cut")
-                      : cat(path, ": its header does not end within ", kHeaderLimit, " bytes"));
+                      : cat(path, ": its header does not end within ", text.size(), " bytes"));
   }
 
   std::size_t header_bytes() const { return header_bytes_; }

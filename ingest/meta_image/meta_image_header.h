@@ -12,6 +12,9 @@
 
 namespace weir {
 
+/// What keys begin with that describe one frame of a sequence, of which weir reads none (PLUS, SlicerIGT).
+inline constexpr std::string_view kFrameKey = "Seq_Frame";
+
 /// What the header says, checked for itself but not against any file. Vectors are empty where the header lacks the
 /// key; x comes first.
 struct MetaImageHeader {

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <string_view>
 
+#include "format/base/text.h"
 #include "ingest/files/input_file.h"
 #include "ingest/headers/header_text.h"
 #include "ingest/headers/header_volume.h"
@@ -37,9 +40,30 @@ void place(const MetaImageHeader& header, HeaderVolume& volume) {
   if (!placement.orientation.empty()) volume.attributes.emplace_back("orientation", placement.orientation);
 }
 
+/// The header of a sequence has some twenty lines for each frame.
+constexpr std::size_t kSequenceHeaderLimit = std::size_t{64} << 20U;
+
+/// Whether `head` describes frames and more lines of them may follow.
+bool ends_among_frames(std::string_view head) {
+  if (head.find(cat('\n', kFrameKey)) == std::string_view::npos) return false;
+  const std::size_t last = head.find("\nElementDataFile");
+  return last == std::string_view::npos || head.find('\n', last + 1) == std::string_view::npos;
+}
+
+/// The first bytes of a file, in which its header ends.
+std::string read_meta_image_head(InputFile& file) {
+  std::string head = read_head(file);
+  while (head.size() < std::min<std::uint64_t>(file.size(), kSequenceHeaderLimit) && ends_among_frames(head)) {
+    const std::size_t more = std::min(8 * head.size(), kSequenceHeaderLimit);
+    head = {};  // not both at a time
+    head = read_head(file, more);
+  }
+  return head;
+}
+
 HeaderVolume describe_meta_image(const std::string& path) {
   InputFile file(path, DirectIo::off);
-  const std::string head = read_head(file);
+  const std::string head = read_meta_image_head(file);
   const MetaImageHeader header = parse_meta_image_header(head, head.size() == file.size(), path);
   HeaderVolume volume;
   volume.info.path = path;

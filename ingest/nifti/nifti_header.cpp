@@ -77,6 +77,8 @@ class FieldReader {
     header.extents = extents();
     header.type = type();
     header.values_offset = values_offset(header.pair);
+    header.has_hidden_extensions = !header.pair && header.values_offset == Layout::kHeader + 4 &&
+                                   bytes_.size() > Layout::kHeader && bytes_[Layout::kHeader] != std::byte{0};
     read_scale(header);
     read_placement(header);
     read_units(header);
@@ -114,6 +116,11 @@ class FieldReader {
     if (dim(0) < 1 || dim(0) > 7) throw wrong("dim[0]", Layout::kDim, dim(0), "it must be 1 to 7");
     std::vector<std::int64_t> extents;
     for (std::int64_t i = 1; i <= dim(0); ++i) {
+      // As the reference library takes it: writers leave 0 for an axis of time or vectors that they do not use.
+      if (i > 3 && dim(i) == 0) {
+        extents.push_back(1);
+        continue;
+      }
       if (dim(i) < 1) {
         throw wrong(cat("dim[", i, ']'), Layout::kDim + static_cast<std::size_t>(i) * sizeof(Small), dim(i),
                     "it must be at least 1");
@@ -177,15 +184,51 @@ class FieldReader {
       header.spacing[a] = std::isfinite(length) && length > 0 ? length : 1.0;
       header.steps[a][a] = header.spacing[a];
     }
-    if (at<typename Layout::Code>(Layout::kSformCode) > 0) {
-      for (std::size_t c = 0; c < 3; ++c) {
-        for (std::size_t a = 0; a < 3; ++a) header.steps[a][c] = real(Layout::kSrow, 4 * c + a);
-        header.first[c] = real(Layout::kSrow, 4 * c + 3);
+    if (coded(Layout::kSformCode)) {
+      if (take(header, sform())) {
+        header.steps_rule = true;
+        return;
       }
-      header.steps_rule = true;
-    } else if (at<typename Layout::Code>(Layout::kQformCode) > 0) {
-      read_qform(header);
+      header.placement_note = "its sform has a column that is zero or not finite; the place is that of ";
     }
+    const bool qform_taken = coded(Layout::kQformCode) && take(header, qform(header.spacing));
+    if (coded(Layout::kQformCode) && !qform_taken) {
+      header.placement_note = header.placement_note.empty()
+                                  ? "its qform is not finite; the place is that of "
+                                  : "neither its sform nor its qform can be used; the place is that of ";
+    }
+    if (!header.placement_note.empty()) header.placement_note += qform_taken ? "the qform" : "pixdim";
+  }
+
+  bool coded(std::size_t code) const { return at<typename Layout::Code>(code) > 0; }
+
+  struct Affine {
+    std::array<Vector3, 3> steps{};
+    Vector3 first{};
+  };
+
+  // Where each axis has a step.
+  static bool take(NiftiHeader& header, const Affine& affine) {
+    const auto finite = [](const Vector3& v) {
+      return std::ranges::all_of(v, [](double part) { return std::isfinite(part); });
+    };
+    const std::size_t axes = std::min<std::size_t>(3, header.extents.size());
+    const bool valid =
+        finite(affine.first) && std::all_of(affine.steps.begin(), affine.steps.begin() + axes,
+                                            [&](const Vector3& step) { return finite(step) && step != Vector3{}; });
+    if (!valid) return false;
+    header.steps = affine.steps;
+    header.first = affine.first;
+    return true;
+  }
+
+  Affine sform() const {
+    Affine affine;
+    for (std::size_t c = 0; c < 3; ++c) {
+      for (std::size_t a = 0; a < 3; ++a) affine.steps[a][c] = real(Layout::kSrow, 4 * c + a);
+      affine.first[c] = real(Layout::kSrow, 4 * c + 3);
+    }
+    return affine;
   }
 
   // xyzt_units: the length in three bits, the time in the next three; 32 and above are frequencies and the like.
@@ -201,7 +244,8 @@ class FieldReader {
   }
 
   // nifti1.h, "METHOD 2"; the left out quaternion component a is not negative.
-  void read_qform(NiftiHeader& header) const {
+  Affine qform(const Vector3& spacing) const {
+    Affine affine;
     const double b = real(Layout::kQuaternion, 0);
     const double c = real(Layout::kQuaternion, 1);
     const double d = real(Layout::kQuaternion, 2);
@@ -211,9 +255,10 @@ class FieldReader {
                                           {2 * (b * d + a * c), 2 * (c * d - a * b), a * a + d * d - b * b - c * c}}};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double side = axis == 2 && real(Layout::kPixdim, 0) < 0 ? -1.0 : 1.0;  // qfac
-      for (std::size_t w = 0; w < 3; ++w) header.steps[axis][w] = columns[axis][w] * header.spacing[axis] * side;
-      header.first[axis] = real(Layout::kQoffset, axis);
+      for (std::size_t w = 0; w < 3; ++w) affine.steps[axis][w] = columns[axis][w] * spacing[axis] * side;
+      affine.first[axis] = real(Layout::kQoffset, axis);
     }
+    return affine;
   }
 
   std::span<const std::byte> bytes_;

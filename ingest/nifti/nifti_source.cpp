@@ -63,6 +63,8 @@ void place(const NiftiHeader& header, HeaderVolume& volume) {
   for (std::size_t a = 0; a < axes; ++a) volume.info.details.axes.at(a).units = header.length_unit;
   if (!header.length_unit.empty()) volume.attributes.emplace_back("length unit", header.length_unit);
   if (!placement.orientation.empty()) volume.attributes.emplace_back("orientation", placement.orientation);
+  volume.info.details.values_note = header.placement_note;
+  if (!header.placement_note.empty()) volume.attributes.emplace_back("placement", header.placement_note);
 }
 
 // Of the volume at `index` on the axes after the third, the slowest first: the fourth axis is the time. None where a
@@ -100,6 +102,7 @@ HeaderVolume describe_nifti(const std::string& path, std::span<const std::int64_
   volume.data_path = header.pair ? image_of(path) : path;
   (volume.packed ? volume.packed_offset : volume.data_offset) = header.values_offset;
   volume.offset_key = "vox_offset";
+  volume.ends_file = header.has_hidden_extensions;  // else bytes of these would count as values
   place(header, volume);
   volume.info.details.time = nifti_time(header, index);
   return volume;

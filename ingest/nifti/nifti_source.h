@@ -23,7 +23,8 @@ inline constexpr std::array<std::string_view, 2> kNiftiEndings{".nii", ".nii.gz"
 bool recognises_nifti(std::string_view path, std::span<const std::byte> head);
 
 /// NIfTI-1 and NIfTI-2. --index chooses along the axes after the third, of which the fourth may be a time; the sform,
-/// else the qform, becomes spacing and origin as place_axes does it. Throws Error(input) for what parse_nifti_header
+/// else the qform, else pixdim becomes spacing and origin as place_axes does it: the first that the header has and that
+/// is a place. details.values_note says which it has and is none. Throws Error(input) for what parse_nifti_header
 /// refuses, and what open_header_volume throws.
 std::unique_ptr<VolumeSource> open_nifti(const std::string& path, const SourceOptions& options);
 std::vector<DatasetInfo> list_nifti(const std::string& path, const SourceOptions& options);

@@ -86,12 +86,15 @@ class Fields {
  private:
   void add(std::string_view line, std::size_t number) {
     if (line.front() == '#') return;
-    const std::size_t colon = line.find(':');
+    // A key, up to the first ":=", and the name of a field, up to the first ": ", may have colons in them.
+    const std::size_t pair = line.find(":=");
+    const std::size_t field = line.find(": ");
+    if (pair != std::string_view::npos && pair < field) return;  // key:=value is for people
+    const std::size_t colon = field != std::string_view::npos ? field : line.find(':');
     if (colon == std::string_view::npos) {
       throw Error(ErrorKind::input, cat(path_, ": line ", number, " of its header is ", in_quotes(line),
                                         ", neither a field nor a comment"));
     }
-    if (line.substr(colon).starts_with(":=")) return;  // key:=value is for people
     std::string name = lower_case(line.substr(0, colon));
     std::erase(name, ' ');
     if (name == "centers") name = "centerings";

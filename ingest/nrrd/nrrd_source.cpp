@@ -20,16 +20,32 @@
 namespace weir {
 namespace {
 
-/// Whether an axis is one of space or time rather than one of vectors or colours; unknown where the header says
+/// Whether an axis is one of space rather than one of vectors or colours or of time; unknown where the header says
 /// nothing.
 enum class AxisRole { domain, range, unknown };
 
+std::string_view nrrd_kind_of(const NrrdHeader& header, std::size_t axis) {
+  return header.kinds.empty() ? std::string_view("???") : header.kinds[axis];
+}
+
 AxisRole role_of(const NrrdHeader& header, std::size_t axis) {
+  const std::string_view kind = nrrd_kind_of(header, axis);
+  if (kind == "time") return AxisRole::range;
   if (!header.directions.empty() && header.directions[axis]) return AxisRole::domain;
-  const std::string kind = header.kinds.empty() ? "???" : header.kinds[axis];
-  if (kind == "domain" || kind == "space" || kind == "time") return AxisRole::domain;
+  if (kind == "domain" || kind == "space") return AxisRole::domain;
   if (kind != "???" && kind != "none") return AxisRole::range;
   return header.directions.empty() ? AxisRole::unknown : AxisRole::range;
+}
+
+/// How to make an axis that is none of space no longer one of x, y and z, which begin with axis `first`.
+std::string nrrd_axis_remedy(const NrrdHeader& header, std::size_t first, std::size_t axis) {
+  const std::string slice = cat(" with `unu slice -a ", axis, " -p 0`");
+  if (nrrd_kind_of(header, axis) != "time") return cat("take one component", slice);
+  std::string remedy = cat("take one time step", slice);
+  if (header.sizes.size() - first <= 3) return remedy;
+  remedy += ", or make it the last axis with `unu permute -p";
+  for (std::size_t a = 0; a < header.sizes.size(); ++a) remedy += a == axis ? "" : cat(' ', a);
+  return cat(remedy, ' ', axis, '`');
 }
 
 /// The axis that is x: the first, or the second where the first holds one value of no axis of space.
@@ -42,7 +58,7 @@ std::size_t first_axis(const NrrdHeader& header, const std::string& path) {
     if (role_of(header, a) != AxisRole::range) continue;
     throw Error(ErrorKind::input, cat(path, ": axis ", a, " of ", header.sizes[a], " values",
                                       header.kinds.empty() ? "" : cat(" and kind ", in_quotes(header.kinds[a])),
-                                      " is no axis of space; take one component with `unu slice -a ", a, " -p 0`"));
+                                      " is no axis of space; ", nrrd_axis_remedy(header, first, a)));
   }
   return first;
 }

@@ -24,7 +24,8 @@ bool recognises_nrrd(std::string_view path, std::span<const std::byte> head);
 
 /// A first axis of one value (NRRD keeps channels there) is dropped, --index chooses along the axes after the next
 /// three. Space directions, or else spacings and ranges of the axes, become spacing and origin as place_axes does it.
-/// Throws Error(input) for what parse_nrrd_header refuses, for vectors and colours, and what open_header_volume throws.
+/// Throws Error(input) for what parse_nrrd_header refuses, for vectors, colours and times among the axes that would be
+/// x, y and z, and what open_header_volume throws.
 std::unique_ptr<VolumeSource> open_nrrd(const std::string& path, const SourceOptions& options);
 std::vector<DatasetInfo> list_nrrd(const std::string& path, const SourceOptions& options);
 

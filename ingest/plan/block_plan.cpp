@@ -133,7 +133,7 @@ BlockPlan plan_blocks(const Box& domain, const AccessShape& access, std::uint64_
 std::uint64_t bytes_for_whole_chunks(const Box& domain, const AccessShape& access) {
   constexpr std::uint64_t kMiB = std::uint64_t{1} << 20U;
   std::uint64_t too_few = 0;
-  std::uint64_t enough = static_cast<std::uint64_t>(domain.voxels()) * sizeof(float) / kMiB + 1;
+  std::uint64_t enough = float32_bytes(domain) / kMiB + 1;
   while (too_few + 1 < enough) {
     const std::uint64_t middle = std::midpoint(too_few, enough);
     (plan_blocks(domain, access, middle * kMiB).amplification > 1 ? too_few : enough) = middle;

@@ -60,18 +60,22 @@ void refuse_packed(InputFile& file) {
   }
 }
 
+// By its name: the bytes of such a file begin with numpy's header.
+void refuse_numpy(const std::string& path) {
+  if (const std::string lower = lower_case(path); !lower.ends_with(".npy") && !lower.ends_with(".npz")) return;
+  throw input_error(
+      path, "is an array of numpy, which weir's module for Python converts: weir.convert(numpy.load(PATH), OUTPUT)");
+}
+
 RawShape resolve_shape(InputFile& file, const SourceOptions& options) {
   const std::string& path = file.path();
   const auto name = parse_raw_name(path);
-  if (const std::string lower = lower_case(path); lower.ends_with(".npy") || lower.ends_with(".npz")) {
-    throw input_error(
-        path, "is an array of numpy, which weir's module for Python converts: weir.convert(numpy.load(PATH), OUTPUT)");
-  }
   RawShape shape;
   if (name && options.extent && *options.extent != name->extent) {
     throw contradiction(path, "dims", dims_text(*options.extent), extent_text(name->extent));
   }
   if (!name && !options.extent) {
+    refuse_numpy(path);
     refuse_foreign_format(file);
     throw usage_error(path, compose("extent unknown; give ", option("dims", "X,Y,Z"), " and ", option("type"),
                                     " or name the file NAME_XxYxZ_TYPE.raw"));

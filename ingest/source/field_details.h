@@ -41,8 +41,9 @@ struct FieldDetails {
   std::string orientation;               ///< AxisPlacement::orientation, where weir does not keep it; else empty
   bool points_down = false;              ///< orientation says that an axis points down: all else is as in the file
   std::string values_note;               ///< what the file says of its values and weir does not apply, and of a
-                                         ///< spacing that an attribute of no one meaning says; else empty
-  std::string data_note;                 ///< which bytes of a header's data file are not read; else empty
+                                         ///< spacing that an attribute of no one meaning says or that is no place;
+                                         ///< else empty
+  std::string data_note;                 ///< which bytes of a header's values' file are not read; else empty
   std::string chunks_note;               ///< how many chunks are not stored, and what they read as; else empty
   std::string units_note;                ///< which axis is in which units, where spacings are in several; else empty
 };

@@ -34,7 +34,7 @@ struct SourceInfo {
   std::optional<double> unit_si;           ///< openPMD unitSI: value * unit_si is in SI units
   Index3 extent;                           ///< voxels, each >= 1 and < 2^31
   Index3 index_origin;  ///< index of the first voxel; not zero for OpenVDB input or a region of interest
-  GridClass grid_class = GridClass::unknown;     ///< as an OpenVDB file says it
+  GridClass grid_class = GridClass::unknown;     ///< as a file of OpenVDB or NanoVDB says it
   std::optional<float> background;               ///< what lies around the domain, where that matters: a level set's
   ScalarType type = ScalarType::float32;         ///< as stored
   bool lengths = false;                          ///< of vectors, whose components are of `type`

@@ -9,6 +9,7 @@
 #include "format/base/text.h"
 #include "format/io/file_mapping.h"
 #include "format/layout/nanovdb_layout.h"
+#include "format/leaf/leaf_decode.h"
 #include "format/nanovdb/nvdb_checksum.h"
 #include "format/nanovdb/nvdb_grid.h"
 #include "ingest/files/input_file.h"
@@ -16,6 +17,7 @@
 #include "ingest/headers/named_choice.h"
 #include "ingest/source/extent.h"
 #include "ingest/values/axis_placement.h"
+#include "ingest/vdb/grid_class.h"
 #include "ingest/vdb/grid_placement.h"
 #include "ingest/vdb/nvdb_leaf_tree.h"
 #include "ingest/vdb/packed_tree.h"
@@ -26,6 +28,10 @@ namespace {
 std::array<Vector3, 3> steps_of(const NvdbGrid& grid) {
   const auto m = grid.matrix();
   return {{{m[0], m[3], m[6]}, {m[1], m[4], m[7]}, {m[2], m[5], m[8]}}};
+}
+
+GridClass stored_class_of(const NvdbGrid& grid) {
+  return grid_class_stored(weir::load<std::uint32_t>(grid.data().data() + nvdb::grid::kGridClass));
 }
 
 /// One of a file's grids; what stands in the way of opening it is in volume.obstacle.
@@ -108,6 +114,8 @@ std::unique_ptr<VolumeSource> open_nvdb(const std::string& path, const SourceOpt
   info.dataset = chosen.volume.name;
   info.extent = domain.extent();
   info.index_origin = domain.lo;
+  info.grid_class = stored_class_of(grid);
+  info.background = background_to_keep(info.grid_class, static_cast<double>(grid.background()));
   options.complete(info.mapping);
   const AxisPlacement placement = place_grid(steps_of(grid), grid.world_origin(), domain);
   info.spacing = placement.spacing;
@@ -133,6 +141,8 @@ std::vector<DatasetInfo> list_nvdb(const std::string& path, const SourceOptions&
     if (candidate.grid) {
       const NvdbGrid& grid = *candidate.grid;
       info.type = cat(grid_type_name(grid.type()), grid.packed() != nullptr ? " packed" : "");
+      const std::string_view grid_class = grid_class_name(stored_class_of(grid));
+      if (!grid_class.empty()) info.attributes.emplace_back("class", grid_class);
       describe_box(grid.index_bbox(), info);
       if (info.obstacle.empty()) {
         describe_placement(place_grid(steps_of(grid), grid.world_origin(), grid.index_bbox()), info);

@@ -1,8 +1,6 @@
 #include "ingest/vdb/vdb_source.h"
 
 #include <algorithm>
-#include <cmath>
-#include <optional>
 
 #include "format/base/error.h"
 #include "format/base/text.h"
@@ -13,6 +11,7 @@
 #include "ingest/source/extent.h"
 #include "ingest/streams/file_stream.h"
 #include "ingest/values/axis_placement.h"
+#include "ingest/vdb/grid_class.h"
 #include "ingest/vdb/grid_placement.h"
 #include "ingest/vdb/openvdb_library.h"
 #include "ingest/vdb/vdb_header.h"
@@ -85,18 +84,10 @@ std::string compression_text(std::uint32_t flags) {
 
 const OpenVdbLibrary& library_for(const std::string& path) { return openvdb_library(path + ": is an OpenVDB file"); }
 
-// What a grid of floats can be called: NanoVDB's validators take no other class. A level set of integers is none.
+// A level set of integers is none, and vectors have no class.
 GridClass class_of(const VdbGrid& grid, const VdbType& type) {
-  if (type.components > 1) return GridClass::unknown;
-  if (grid.grid_class == "fog volume") return GridClass::fog_volume;
-  return grid.grid_class == "level set" && type.real ? GridClass::level_set : GridClass::unknown;
-}
-
-// Beyond the narrow band a level set is its background outside: any other one may read as inside.
-std::optional<float> background_of(GridClass grid_class, double background) {
-  const auto value = static_cast<float>(background);
-  if (grid_class != GridClass::level_set || !std::isfinite(value)) return std::nullopt;
-  return value;
+  const GridClass called = type.components > 1 ? GridClass::unknown : grid_class_called(grid.grid_class);
+  return called == GridClass::level_set && !type.real ? GridClass::unknown : called;
 }
 
 void require_memory(const std::string& where, std::uint64_t tree_bytes, const SourceOptions& options) {
@@ -140,7 +131,7 @@ std::unique_ptr<VolumeSource> open_vdb(const std::string& path, const SourceOpti
   info.extent = topology.active.extent();
   info.index_origin = topology.active.lo;
   info.grid_class = class_of(grid, type);
-  info.background = background_of(info.grid_class, topology.background);
+  info.background = background_to_keep(info.grid_class, topology.background);
   info.type = type.scalar;
   info.lengths = components.count > 1 && components.choice.magnitude;
   if (components.count > 1) info.details.component = component_text(components.choice);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "format/base/error.h"
 #include "format/base/text.h"
@@ -12,13 +13,15 @@ namespace {
 AxisPlacement placement(const VtkImage& image, bool cells, const std::string& path) {
   std::array<Vector3, 3> steps{};
   Vector3 zero = image.origin;
+  const std::array<std::int64_t, 3> points{image.points.x, image.points.y, image.points.z};
   bool valid = true;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     double square = 0;
     for (std::size_t c = 0; c < 3; ++c) {
       steps[axis][c] = image.direction[3 * c + axis] * image.spacing[axis];
       square += steps[axis][c] * steps[axis][c];
-      if (cells) zero[c] += 0.5 * steps[axis][c];
+      // The cells of a flat image lie in its plane.
+      if (cells && points[axis] > 1) zero[c] += 0.5 * steps[axis][c];
     }
     valid = valid && std::isfinite(square) && square > 0;
   }

@@ -23,8 +23,9 @@ struct VtkImage {
 /// Values per axis: points, or the cells between them (one where there is one point).
 Index3 vtk_extent(const VtkImage& image, bool cells);
 
-/// Sets extent, index_origin, spacing and origin; a cell's value lies in its middle, half a step from its lowest point.
-/// Throws Error(input), beginning with `info.path`, where numbers are not finite or a spacing is 0.
+/// Sets extent, index_origin, spacing and origin; a cell's value lies in its middle, half a step from its lowest point
+/// along each axis of several points. Throws Error(input), beginning with `info.path`, where numbers are not finite or
+/// a spacing is 0.
 void place_vtk_image(const VtkImage& image, bool cells, SourceInfo& info);
 /// The same as attributes of a listing.
 void describe_vtk_image(const VtkImage& image, bool cells, const std::string& path, DatasetInfo& info);

@@ -27,7 +27,7 @@ constexpr std::uint64_t kMaxComponents = 1024;
 struct LegacyType {
   std::string_view name;
   std::optional<ScalarType> scalar;  ///< nothing where weir does not read it
-  std::uint64_t bits;
+  std::uint64_t bits;                ///< of a value; 0: of text, of which each value has its own length
 };
 
 // As a 64-bit Linux writes them; vtkIdType is written as int (vtkDataWriter, WriteArray).
@@ -46,6 +46,7 @@ constexpr std::array<LegacyType, 14> kLegacyTypes{{{"unsigned_char", ScalarType:
                                                    {"float", ScalarType::float32, 32},
                                                    {"double", ScalarType::float64, 64}}};
 constexpr LegacyType kBit{"bit", std::nullopt, 1};
+constexpr std::array<LegacyType, 2> kStrings{{{"string", std::nullopt, 0}, {"utf8_string", std::nullopt, 0}}};
 
 class LegacyParser {
  public:
@@ -230,6 +231,9 @@ class LegacyParser {
   static const LegacyType* type_of(std::string_view name) {
     const std::string lower = lower_case(name);
     if (lower == kBit.name) return &kBit;
+    for (const LegacyType& string : kStrings) {
+      if (lower == string.name) return &string;
+    }
     const auto* const found = std::find_if(kLegacyTypes.begin(), kLegacyTypes.end(),
                                            [&](const LegacyType& type) { return type.name == lower; });
     return found == kLegacyTypes.end() ? nullptr : found;
@@ -264,6 +268,7 @@ class LegacyParser {
         __builtin_mul_overflow(values, type.bits, &bits)) {
       wrong(cat(tuples, " tuples of ", components, " values are impossible"));
     }
+    if (type.bits == 0) return header_.binary ? text_.skip_strings(values) : text_.skip_lines(values);
     if (header_.binary) {
       text_.skip_bytes(bits / 8 + (bits % 8 != 0 ? 1 : 0));
     } else {

@@ -1,5 +1,7 @@
 #include "ingest/vtk/vtk_legacy_text.h"
 
+#include <array>
+
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "ingest/headers/header_text.h"
@@ -52,9 +54,45 @@ void VtkLegacyText::skip_words(std::uint64_t count) {
   for (std::uint64_t i = 0; i < count; ++i) {
     int c = next();
     while (is_space(c)) c = next();
-    if (c < 0) fail(cat(count, " values belong before it, and there are ", i, "; is the file complete?"));
+    if (c < 0) lacks_values(count, i);
     while (c >= 0 && !is_space(c)) c = next();
   }
+}
+
+void VtkLegacyText::skip_lines(std::uint64_t count) {
+  for (std::uint64_t i = 0; i < count; ++i) {
+    int c = next();
+    if (c < 0) lacks_values(count, i);
+    while (c >= 0 && c != '\n') c = next();
+  }
+}
+
+void VtkLegacyText::skip_strings(std::uint64_t count) {
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const std::uint64_t length = string_length(i, count);
+    if (length > kMaxLineBytes) {
+      skip_bytes(length);
+      continue;
+    }
+    require_bytes(length);
+    for (std::uint64_t at = 0; at < length; ++at) next();
+  }
+}
+
+std::uint64_t VtkLegacyText::string_length(std::uint64_t index, std::uint64_t count) {
+  const int first = next();
+  if (first < 0) lacks_values(count, index);
+  constexpr std::array<std::uint64_t, 4> kMoreBytes{7, 3, 1, 0};
+  const auto bits = static_cast<unsigned>(first);
+  const std::uint64_t more = kMoreBytes[bits >> 6U];
+  require_bytes(more);
+  std::uint64_t length = bits & 0x3FU;
+  for (std::uint64_t i = 0; i < more; ++i) length = length << 8U | static_cast<std::uint64_t>(next());
+  return length;
+}
+
+void VtkLegacyText::lacks_values(std::uint64_t count, std::uint64_t found) const {
+  fail(cat(count, " values belong before it, and there are ", found, "; is the file complete?"));
 }
 
 void VtkLegacyText::read_bytes(std::span<std::byte> into) {

@@ -32,6 +32,12 @@ class VtkLegacyText {
   void skip_paragraph();
   void skip_bytes(std::uint64_t count);
   void skip_words(std::uint64_t count);
+  /// Skips lines of any length, empty ones too. Throws as skip_words.
+  void skip_lines(std::uint64_t count);
+  /// Skips binary strings, each behind its length: the first byte's upper two bits say of how many big-endian bytes
+  /// that is, 3 of one, 2 of two, 1 of four, 0 of eight, and all other bits are the length (vtkDataWriter::WriteArray).
+  /// Throws as skip_words and skip_bytes.
+  void skip_strings(std::uint64_t count);
   /// The next bytes. Throws as skip_bytes.
   void read_bytes(std::span<std::byte> into);
   /// The next word, of which kMaxLineBytes are kept. Throws as skip_words.
@@ -42,6 +48,8 @@ class VtkLegacyText {
 
  private:
   int next();
+  std::uint64_t string_length(std::uint64_t index, std::uint64_t count);
+  [[noreturn]] void lacks_values(std::uint64_t count, std::uint64_t found) const;
   void require_bytes(std::uint64_t count) const;
 
   std::streambuf& bytes_;

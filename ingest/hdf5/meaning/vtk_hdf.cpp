@@ -84,9 +84,11 @@ void place_by_vtk_hdf(const Hdf5Object& object, std::span<const Hdf5Handle> grou
   std::array<Vector3, 3> steps{};
   Vector3 first{origin[0], origin[1], origin[2]};
   for (std::size_t axis = 0; axis < 3; ++axis) {
+    // The cells of a flat image lie in its plane.
+    const double middle = cells && extent[2 * axis + 1] > extent[2 * axis] ? 0.5 : 0.0;
     for (std::size_t c = 0; c < 3; ++c) {
       steps[axis][c] = direction[3 * c + axis] * spacing[axis];
-      first[c] += (extent[2 * axis] + (cells ? 0.5 : 0.0)) * steps[axis][c];
+      first[c] += (extent[2 * axis] + middle) * steps[axis][c];
     }
   }
   const AxisPlacement placement = place_axes(steps, first);

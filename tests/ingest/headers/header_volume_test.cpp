@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "format/base/text.h"
 #include "tests/ingest/support/header_file.h"
 #include "tests/ingest/support/packed.h"
 
@@ -97,6 +98,72 @@ TEST_F(HeaderVolumeTest, TheFileMustBeAsLongAsItsHeaderSays) {
             volume_.info.path +
                 ": has 0 bytes from offset 9223372036854775808 on, and its header asks for 4x3x2 "
                 "uint16, 48 bytes; the file is cut or the header wrong");
+}
+
+TEST_F(HeaderVolumeTest, BytesBehindTheValues_AreSaid_AndRefusedFromAPlaneOn) {
+  volume_.extents = {4, 3, 2};
+  volume_.offset_key = "vox_offset";
+  const auto longer = [&](std::size_t more) {
+    auto bytes = stored(ramp(24), true);
+    bytes.resize(bytes.size() + more, std::byte{'\n'});
+    use(write_headed(scratch_, "array.hv", "header", bytes));
+  };
+  for (const std::size_t more : {1U, 23U}) {
+    longer(more);
+    const std::string note = cat("the file has ", 54 + more,
+                                 " bytes, and 48 of them, from byte 6 on, are what the header describes; where the "
+                                 "values begin elsewhere, correct vox_offset");
+    const auto source = open_header_volume(volume_, {});
+    EXPECT_EQ(read_volume(*source), as_floats(ramp(24)));
+    EXPECT_EQ(source->info().details.data_note, note);
+    EXPECT_EQ(list_header_volume(volume_)[0].attributes.back(), (std::pair<std::string, std::string>{"note", note}));
+  }
+  longer(0);
+  EXPECT_EQ(open_header_volume(volume_, {})->info().details.data_note, "");
+  longer(24);
+  const std::string message = volume_.info.path +
+                              ": has 72 bytes from offset 6 on, and its header asks for 4x3x2 uint16, 48 bytes; the "
+                              "header is wrong";
+  EXPECT_EQ(refusal(ErrorKind::input), message);
+  EXPECT_EQ(message_of_error(ErrorKind::input, [&] { list_header_volume(volume_); }), message);
+}
+
+TEST_F(HeaderVolumeTest, MoreBytesBehindTheValuesThanFillABlock_AreRefused) {
+  volume_.extents = {64, 64, 1};
+  use(write_headed(scratch_, "array.hv", "header", std::vector<std::byte>(2 * 64 * 64 + 4096)));
+  EXPECT_EQ(read_volume(*open_header_volume(volume_, {})).size(), std::size_t{64 * 64});
+  use(write_headed(scratch_, "array.hv", "header", std::vector<std::byte>(2 * 64 * 64 + 4097)));
+  EXPECT_EQ(refusal(ErrorKind::input), volume_.info.path +
+                                           ": has 12289 bytes from offset 6 on, and its header asks for 64x64x1 "
+                                           "uint16, 8192 bytes; the header is wrong");
+}
+
+// Values of another kind before the volume's own would be taken for it.
+TEST_F(HeaderVolumeTest, BytesBehindTheValues_AreRefusedWhereNoneMayFollow) {
+  volume_.extents = {4, 3, 2};
+  volume_.ends_file = true;
+  auto bytes = stored(ramp(24), true);
+  bytes.resize(bytes.size() + 1);
+  use(write_headed(scratch_, "array.hv", "header", bytes));
+  EXPECT_EQ(refusal(ErrorKind::input), volume_.info.path +
+                                           ": has 49 bytes from offset 6 on, and its header asks for 4x3x2 uint16, 48 "
+                                           "bytes; the header is wrong");
+}
+
+// Each of two volumes of 24 bytes: as much as one of them is one too many.
+TEST_F(HeaderVolumeTest, BytesBehindSeveralValues_AreRefusedFromOneVolumeOn) {
+  volume_.extents = {4, 3, 1, 2};
+  SourceOptions second;
+  second.index = {1};
+  auto bytes = stored(ramp(24), true);
+  bytes.resize(48 + 23);
+  use(write_headed(scratch_, "array.hv", "header", bytes));
+  EXPECT_EQ(values(second).back(), 23.0F);
+  bytes.resize(48 + 24);
+  use(write_headed(scratch_, "array.hv", "header", bytes));
+  EXPECT_EQ(refusal(ErrorKind::input, second), volume_.info.path +
+                                                   ": has 72 bytes from offset 6 on, and its header asks for 4x3x1x2 "
+                                                   "uint16, 48 bytes; the header is wrong");
 }
 
 TEST_F(HeaderVolumeTest, SeveralHeadersMayShareADataFile) {

@@ -113,7 +113,8 @@ TEST(MetaImageHeader, RefusesInvalidHeaders) {
 }
 
 TEST(MetaImageHeader, HeaderBeyondTheSizeLimitIsRefused) {
-  EXPECT_EQ(refusal("Comment = " + std::string(kHeaderLimit, 'x'), false),
+  const std::string comment = "Comment = ";
+  EXPECT_EQ(refusal(comment + std::string(kHeaderLimit - comment.size(), 'x'), false),
             "a.mha: its header does not end within 1048576 bytes");
 }
 

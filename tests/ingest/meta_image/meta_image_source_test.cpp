@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "format/base/text.h"
 #include "ingest/source_registry.h"
 #include "tests/ingest/support/header_file.h"
 #include "tests/ingest/support/packed.h"
@@ -131,6 +132,24 @@ TEST(MetaImageSource, IndexChoosesATimeStep) {
   EXPECT_EQ(source->info().origin, (std::array<double, 3>{4, 5, 6}));
 }
 
+// As PLUS and SlicerIGT describe the frames of a sequence, several lines for each.
+TEST(MetaImageSource, SequenceOfManyFrames_HasALongHeader) {
+  const Scratch scratch;
+  const auto with_frames = [&](int frames, const std::string& key) {
+    std::string lines;
+    for (int i = 0; i < frames; ++i) {
+      lines += cat(key, i, "_ProbeToTrackerTransform = 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n");
+    }
+    return header(lines);
+  };
+  for (const int frames : {1, 20'000, 200'000}) {  // 14 MiB of lines
+    const std::string path = write_headed(scratch, "a.mha", with_frames(frames, "Seq_Frame"), stored(ramp()));
+    EXPECT_EQ(read_volume(*open_source(path, {})), as_floats(ramp())) << frames;
+  }
+  const std::string path = write_headed(scratch, "b.mha", with_frames(20'000, "Other"), stored(ramp()));
+  EXPECT_EQ(refusal(path), path + ": its header does not end within 1048576 bytes");
+}
+
 TEST(MetaImageSource, AFileCutAtAnyByteIsRefused) {
   const Scratch scratch;
   for (const bool compressed : {false, true}) {
@@ -140,8 +159,22 @@ TEST(MetaImageSource, AFileCutAtAnyByteIsRefused) {
     for (std::size_t size = 1; size < whole.size(); ++size) {
       EXPECT_FALSE(refusal(write_headed(scratch, "cut.mha", whole.substr(0, size))).empty()) << size;
     }
-    EXPECT_FALSE(refusal(write_headed(scratch, "long.mha", whole + "x")).empty());
+    // A plain file may have bytes behind its values, but no second volume.
+    const std::size_t more = compressed ? 1 : 24;
+    EXPECT_FALSE(refusal(write_headed(scratch, "long.mha", whole + std::string(more, 'x'))).empty());
   }
+}
+
+TEST(MetaImageSource, LineEndBehindTheValues_IsSaid) {
+  const Scratch scratch;
+  auto values = stored(ramp());
+  values.push_back(std::byte{'\n'});
+  const std::size_t begin = header("").size();
+  const auto source = open_source(write_headed(scratch, "a.mha", header(""), values), {});
+  EXPECT_EQ(read_volume(*source), as_floats(ramp()));
+  EXPECT_EQ(source->info().details.data_note,
+            cat("the file has ", begin + 25, " bytes, and 24 of them, from byte ", begin,
+                " on, are what the header describes; where the values begin elsewhere, correct HeaderSize"));
 }
 
 TEST(MetaImageSource, GarbageAndBombsAreRefused) {

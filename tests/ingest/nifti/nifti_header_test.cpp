@@ -101,6 +101,58 @@ TEST(NiftiHeader, TheQformTurnsAndFlips) {
   EXPECT_NEAR(parse(bytes).steps[2][2], 4, 1e-6);
 }
 
+TEST(NiftiHeader, SformThatIsNoPlace_GivesWayToTheQform_AndThatToPixdim) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const float infinity = std::numeric_limits<float>::infinity();
+  const std::vector<float> whole{-2, 0, 0, 90, 0, 3, 0.5F, -126, 0, 0, 4, -72};
+  std::vector<std::vector<float>> wrong(4, whole);
+  wrong[0] = std::vector<float>(12, 0);
+  wrong[1][5] = 0;         // no step along y
+  wrong[2][10] = nan;      // of z
+  wrong[3][3] = infinity;  // of the first voxel
+  for (const std::vector<float>& sform : wrong) {
+    NiftiBytes bytes(1);
+    bytes.set<std::int16_t>(252, 1).set<std::int16_t>(254, 2).set_all<float>(76, {1, 2, 3, 4});
+    bytes.set_all<float>(256, {0, 1, 0}).set_all<float>(268, {7, 8, 9}).set_all<float>(280, sform);
+    const NiftiHeader turned = parse(bytes);  // half a turn about y
+    EXPECT_FALSE(turned.steps_rule);
+    EXPECT_EQ(turned.steps, (std::array<Vector3, 3>{{{-2, 0, 0}, {0, 3, 0}, {0, 0, -4}}}));
+    EXPECT_EQ(turned.first, (Vector3{7, 8, 9}));
+    EXPECT_EQ(turned.placement_note,
+              "its sform has a column that is zero or not finite; the place is that of the qform");
+    bytes.set<float>(260, nan);
+    const NiftiHeader plain = parse(bytes);
+    EXPECT_FALSE(plain.steps_rule);
+    EXPECT_EQ(plain.steps, (std::array<Vector3, 3>{{{2, 0, 0}, {0, 3, 0}, {0, 0, 4}}}));
+    EXPECT_EQ(plain.first, (Vector3{0, 0, 0}));
+    EXPECT_EQ(plain.placement_note, "neither its sform nor its qform can be used; the place is that of pixdim");
+    bytes.set<std::int16_t>(252, 0);
+    EXPECT_EQ(parse(bytes).placement_note,
+              "its sform has a column that is zero or not finite; the place is that of pixdim");
+    bytes.set<std::int16_t>(252, 1).set<std::int16_t>(254, 0);
+    EXPECT_EQ(parse(bytes).placement_note, "its qform is not finite; the place is that of pixdim");
+    EXPECT_EQ(parse(bytes).steps, plain.steps);
+    bytes.set_all<float>(280, whole).set<std::int16_t>(254, 1);
+    EXPECT_TRUE(parse(bytes).steps_rule);
+    EXPECT_EQ(parse(bytes).placement_note, "") << "the qform does not count";
+  }
+  // Of an axis that the image does not have, nothing is asked.
+  NiftiBytes flat(2);
+  flat.set_all<std::int64_t>(16, {2, 4, 3}).set<std::int32_t>(348, 1);
+  flat.set_all<double>(400, {1, 0, 0, 5, 0, 2, 0, 6, 0, 0, 0, 7});
+  EXPECT_TRUE(parse(flat).steps_rule);
+  EXPECT_EQ(parse(flat).placement_note, "");
+}
+
+TEST(NiftiHeader, AxisAfterTheThirdOfZeroPositions_HasOne) {
+  EXPECT_EQ(parse(NiftiBytes(1).set_all<std::int16_t>(40, {4, 4, 3, 2, 0})).extents,
+            (std::vector<std::int64_t>{4, 3, 2, 1}));
+  EXPECT_EQ(parse(NiftiBytes(2, true).set_all<std::int64_t>(16, {5, 4, 3, 1, 0, 2})).extents,
+            (std::vector<std::int64_t>{4, 3, 1, 1, 2}));
+  EXPECT_EQ(refusal(NiftiBytes(1).set_all<std::int16_t>(40, {4, 4, 3, 2, -1})),
+            "a.nii: dim[4] at byte 48 is -1; it must be at least 1");
+}
+
 TEST(NiftiHeader, ParsesSupportedTypesAndNamesOthers) {
   const std::vector<std::pair<std::int16_t, ScalarType>> types{
       {2, ScalarType::uint8},    {4, ScalarType::int16},    {8, ScalarType::int32},    {16, ScalarType::float32},

@@ -83,6 +83,20 @@ TEST(NiftiSource, TakesPlaceAndScale) {
   EXPECT_EQ(list_nifti(path, {}).at(0).attributes, attributes);
 }
 
+TEST(NiftiSource, SformThatIsNoPlace_IsSaid) {
+  const Scratch scratch;
+  NiftiBytes header(1);
+  header.set_all<float>(76, {1, 0.5F, 0.25F, 2}).set<std::int16_t>(252, 1).set<std::int16_t>(254, 1);
+  header.set_all<float>(268, {7, 8, 9});
+  const std::string path = scratch.write("a.nii", whole_file(header, stored(ramp())));
+  const SourceInfo info = open_source(path, {})->info();
+  EXPECT_EQ(info.spacing, (std::array<double, 3>{0.5, 0.25, 2}));
+  EXPECT_EQ(info.origin, (std::array<double, 3>{7, 8, 9}));
+  const std::string note = "its sform has a column that is zero or not finite; the place is that of the qform";
+  EXPECT_EQ(info.details.values_note, note);
+  EXPECT_EQ(list_nifti(path, {}).at(0).attributes.back(), (std::pair<std::string, std::string>{"placement", note}));
+}
+
 TEST(NiftiSource, LengthUnit_IsOfAllAxes) {
   const Scratch scratch;
   for (const auto& [code, unit] : {std::pair('\0', ""), {'\1', "m"}, {'\2', "mm"}, {'\3', "um"}, {'\4', ""}}) {
@@ -205,9 +219,33 @@ TEST(NiftiSource, AFileCutAtAnyByteIsRefused) {
     for (std::size_t size = 1; size < bytes.size(); ++size) {
       EXPECT_FALSE(refusal(scratch.write(name, std::span(bytes).first(size))).empty()) << size;
     }
-    bytes.push_back(std::byte{1});
+    // A plain file may have bytes behind its values, but no second volume.
+    bytes.resize(bytes.size() + (name == "a.nii" ? 24 : 1), std::byte{1});
     EXPECT_FALSE(refusal(scratch.write(name, bytes)).empty());
   }
+}
+
+TEST(NiftiSource, PaddingBehindTheValues_IsSaid) {
+  const Scratch scratch;
+  auto bytes = whole_file(NiftiBytes(1), stored(ramp()));
+  bytes.resize(384);
+  const auto source = open_source(scratch.write("a.nii", bytes), {});
+  EXPECT_EQ(read_volume(*source), as_floats(ramp()));
+  EXPECT_EQ(source->info().details.data_note,
+            "the file has 384 bytes, and 24 of them, from byte 352 on, are what the header describes; where the values "
+            "begin elsewhere, correct vox_offset");
+}
+
+TEST(NiftiSource, ExtensionsThatTheOffsetDoesNotPass_AreNotTakenForValues) {
+  const Scratch scratch;
+  auto bytes = whole_file(NiftiBytes(1), stored(ramp()));
+  bytes[348] = std::byte{1};
+  EXPECT_EQ(read_volume(*open_source(scratch.write("a.nii", bytes), {})), as_floats(ramp()));  // there are none
+  bytes.resize(384);
+  const std::string path = scratch.write("b.nii", bytes);
+  EXPECT_EQ(
+      refusal(path),
+      path + ": has 32 bytes from offset 352 on, and its header asks for 4x3x2 uint8, 24 bytes; the header is wrong");
 }
 
 TEST(NiftiSource, GarbageAndBombsAreRefused) {

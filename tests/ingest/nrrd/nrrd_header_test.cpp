@@ -91,6 +91,19 @@ TEST(NrrdHeader, ParsesFieldsOfTheAxes) {
   EXPECT_EQ(header.centerings, (std::vector<std::string>{"cell", "???", "node"}));
 }
 
+TEST(NrrdHeader, KeysWithColons_AreNoFields) {
+  const NrrdHeader header =
+      parse(with("dicom:0008:=a\ndicom:0008:=b\nspacings:orig:=0.5\nsizes:=1\nsizes:=2\nnote:=see: below\n"
+                 "spacings: 1 2 3"));
+  EXPECT_EQ(header.spacings, (std::vector<double>{1, 2, 3}));
+  EXPECT_EQ(header.sizes, (std::vector<std::int64_t>{4, 3, 2}));
+  // A field ends at the first ": ", and its value may have ":=" in it.
+  EXPECT_EQ(parse(with("sample units: m:=1")).sample_units, "m:=1");
+  EXPECT_EQ(parse(with("sample units:m")).sample_units, "m") << "no blank, and no key";
+  EXPECT_EQ(refusal(with("spacings: 1 1 1\nspacings: a:=b")),
+            "a.nrrd: line 7 of its header gives 'spacings' a second time");
+}
+
 TEST(NrrdHeader, ParsesUnits) {
   EXPECT_EQ(parse(with("units: \"mm\" \"\" \"a \\\"b\\\"\"")).units, (std::vector<std::string>{"mm", "", "a \"b\""}));
   EXPECT_EQ(parse(with("space units: \"mm\" \"um\"")).space_units, (std::vector<std::string>{"mm", "um"}));

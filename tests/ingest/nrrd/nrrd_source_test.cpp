@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "format/base/text.h"
 #include "ingest/headers/header_text.h"
 #include "ingest/nrrd/nrrd_header.h"
 #include "ingest/source_registry.h"
@@ -219,6 +220,55 @@ TEST(NrrdSource, RefusesVectorsAndColours) {
             path + ": axis 0 of 3 values is no axis of space; take one component with `unu slice -a 0 -p 0`");
 }
 
+TEST(NrrdSource, TimeAmongTheFirstThreeAxes_IsRefused) {
+  const Scratch scratch;
+  const auto refused = [&](const std::string& fields) {
+    const std::string path =
+        write_headed(scratch, "a.nrrd", "NRRD0004\ntype: uint8\nencoding: raw\n" + fields + "\n\n", stored(ramp()));
+    return refusal(path).substr(path.size());
+  };
+  EXPECT_EQ(refused("dimension: 4\nsizes: 2 4 3 1\nkinds: time domain domain domain"),
+            ": axis 0 of 2 values and kind 'time' is no axis of space; take one time step with `unu slice -a 0 -p 0`, "
+            "or make it the last axis with `unu permute -p 1 2 3 0`");
+  EXPECT_EQ(refused("dimension: 4\nsizes: 4 3 2 1\nkinds: space space time space"),
+            ": axis 2 of 2 values and kind 'time' is no axis of space; take one time step with `unu slice -a 2 -p 0`, "
+            "or make it the last axis with `unu permute -p 0 1 3 2`");
+  // A direction in space does not make the axis one of space.
+  EXPECT_EQ(refused("dimension: 4\nsizes: 2 4 3 1\nkinds: time space space space\nspace dimension: 3\n"
+                    "space directions: (1,0,0) (1,0,0) (0,1,0) (0,0,1)"),
+            ": axis 0 of 2 values and kind 'time' is no axis of space; take one time step with `unu slice -a 0 -p 0`, "
+            "or make it the last axis with `unu permute -p 1 2 3 0`");
+  EXPECT_EQ(refused("dimension: 5\nsizes: 1 4 2 3 1\nkinds: scalar space time space space"),
+            ": axis 2 of 2 values and kind 'time' is no axis of space; take one time step with `unu slice -a 2 -p 0`, "
+            "or make it the last axis with `unu permute -p 0 1 3 4 2`");
+  // Among three axes it would be z wherever it stands.
+  EXPECT_EQ(refused("dimension: 3\nsizes: 4 3 2\nkinds: space space time"),
+            ": axis 2 of 2 values and kind 'time' is no axis of space; take one time step with `unu slice -a 2 -p 0`");
+}
+
+TEST(NrrdSource, TimeAxisOfOneStepInFront_IsDropped) {
+  const Scratch scratch;
+  const std::string path = write_headed(
+      scratch, "a.nrrd",
+      "NRRD0004\ntype: uint8\nencoding: raw\ndimension: 4\nsizes: 1 4 3 2\nkinds: time space space space\n\n",
+      stored(ramp()));
+  const auto source = open_source(path, {});
+  EXPECT_EQ(source->info().extent, (Index3{4, 3, 2}));
+  EXPECT_EQ(read_volume(*source), as_floats(ramp()));
+}
+
+TEST(NrrdSource, TimeAfterTheThirdAxis_IsChosenByIndex) {
+  const Scratch scratch;
+  const std::string path = write_headed(
+      scratch, "a.nrrd",
+      "NRRD0004\ntype: uint8\nencoding: raw\ndimension: 4\nsizes: 4 3 1 2\nkinds: space space space time\n\n",
+      stored(ramp()));
+  SourceOptions options;
+  options.index = {1};
+  EXPECT_EQ(read_volume(*open_source(path, options)),
+            (std::vector<float>{12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23}));
+}
+
 TEST(NrrdSource, ReadsDetachedValues) {
   const Scratch scratch;
   std::filesystem::create_directory(scratch.path("data"));
@@ -258,8 +308,22 @@ TEST(NrrdSource, AFileCutAtAnyByteIsRefused) {
     for (std::size_t size = kNrrdMagic.size(); size < whole.size(); ++size) {
       EXPECT_FALSE(refusal(write_headed(scratch, "cut.nrrd", whole.substr(0, size))).empty()) << size;
     }
-    EXPECT_FALSE(refusal(write_headed(scratch, "long.nrrd", whole + "x")).empty());
+    // A plain file may have bytes behind its values, but no second volume.
+    const std::size_t more = encoding == "raw" ? 24 : 1;
+    EXPECT_FALSE(refusal(write_headed(scratch, "long.nrrd", whole + std::string(more, 'x'))).empty());
   }
+}
+
+TEST(NrrdSource, LineEndBehindTheValues_IsSaid) {
+  const Scratch scratch;
+  auto values = stored(ramp());
+  values.push_back(std::byte{'\n'});
+  const std::size_t begin = header().size();
+  const auto source = open_source(write_headed(scratch, "a.nrrd", header(), values), {});
+  EXPECT_EQ(read_volume(*source), as_floats(ramp()));
+  EXPECT_EQ(source->info().details.data_note,
+            cat("the file has ", begin + 25, " bytes, and 24 of them, from byte ", begin,
+                " on, are what the header describes; where the values begin elsewhere, correct byte skip"));
 }
 
 TEST(NrrdSource, OversizedHeadersAndBombsAreRefused) {

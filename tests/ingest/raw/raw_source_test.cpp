@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "ingest/plan/staging.h"
+#include "ingest/source_registry.h"
 #include "tests/ingest/support/scratch.h"
 
 namespace weir::raw_source_test {
@@ -247,6 +248,25 @@ TEST(RawSource, FileThatIsPackedByXzBzip2OrZstd_IsToBeUnpacked) {
   EXPECT_EQ(refused(".xz", {0xFD, '7', 'z', 'X', 'Z', 0}), ": is packed by xz; unpack it first, with xz -dk");
   EXPECT_EQ(refused(".bz2", {'B', 'Z', 'h', '9'}), ": is packed by bzip2; unpack it first, with bunzip2 -k");
   EXPECT_EQ(refused(".ZST", {0x28, 0xB5, 0x2F, 0xFD, 4}), ": is packed by zstd; unpack it first, with zstd -d");
+}
+
+// numpy's header of version 1 is padded to 128 bytes.
+TEST(RawSource, ArrayOfNumpy_IsRefusedUnlessDimsAreGiven) {
+  const Scratch scratch;
+  const std::string remedy =
+      ": is an array of numpy, which weir's module for Python converts: weir.convert(numpy.load(PATH), OUTPUT)";
+  for (const std::string name : {"v.npy", "V.NPY", "v.npz"}) {
+    const std::string path = scratch.write_values(name, ramp<float>(), 128);
+    SourceOptions options;
+    EXPECT_EQ(refusal(ErrorKind::input, path, options), path + remedy);
+    options.type = ScalarType::float32;
+    options.offset = 128;
+    EXPECT_EQ(refusal(ErrorKind::input, path, options), path + remedy);
+    options.extent = kExtent;
+    const auto source = open_source(path, options);
+    EXPECT_EQ(source->info().format, "raw");
+    EXPECT_EQ(read(*source, source->info().domain()), ramp<float>());
+  }
 }
 
 TEST(RawSource, UnknownExtentOrTypeIsAskedFor) {

@@ -1,7 +1,11 @@
 #include "ingest/vdb/nvdb_source.h"
 
+#include <algorithm>
+#include <cstdint>
 #include <filesystem>
+#include <limits>
 
+#include "format/base/little_endian.h"
 #include "format/layout/nanovdb_layout.h"
 #include "format/nanovdb/nvdb_grid.h"
 #include "format/nanovdb/nvdb_header.h"
@@ -50,6 +54,47 @@ TEST(NvdbSource, ReadsEveryTypeAsTheStockAccessorDoes) {
       EXPECT_EQ(values, expected_values(stock, box));
     }
   }
+}
+
+/// The file of a stock grid, whose head gives `number` as its class and `background`.
+std::vector<std::byte> classed(GridType type, std::uint32_t number, float background) {
+  auto bytes = StockNvdb(type).file();
+  const auto grid = NvdbGrid::open(bytes, "a.nvdb").grid_offset();
+  store(bytes, grid + nvdb::grid::kGridClass, number);
+  store(bytes, grid + nvdb::kRootOffset + nvdb::root::kBackground, background);
+  return bytes;
+}
+
+TEST(NvdbSource, ClassAndBackgroundOfALevelSet_AreKept) {
+  const Scratch scratch;
+  const auto info_of = [&](GridType type, std::uint32_t number, float background = 3.0F) {
+    return open_source(scratch.write("a.nvdb", classed(type, number, background)), {})->info();
+  };
+  for (const GridType type : {GridType::float32, GridType::fp4, GridType::fp8, GridType::fp16, GridType::fpn}) {
+    SCOPED_TRACE(grid_type_name(type));
+    const SourceInfo level_set = info_of(type, 1);
+    EXPECT_EQ(level_set.grid_class, GridClass::level_set);
+    EXPECT_EQ(level_set.background, 3.0F);
+    const SourceInfo fog = info_of(type, 2);
+    EXPECT_EQ(fog.grid_class, GridClass::fog_volume);
+    EXPECT_FALSE(fog.background) << "found as of any other volume";
+  }
+  for (const std::uint32_t number : {0U, 3U, 7U, 0xFFFFFFFFU}) {  // unknown, staggered, voxel volume, no class
+    EXPECT_EQ(info_of(GridType::float32, number).grid_class, GridClass::unknown) << number;
+    EXPECT_FALSE(info_of(GridType::float32, number).background) << number;
+  }
+  EXPECT_FALSE(info_of(GridType::float32, 1, std::numeric_limits<float>::infinity()).background);
+}
+
+TEST(NvdbSource, ClassIsListed) {
+  const Scratch scratch;
+  const auto first_attribute = [&](std::uint32_t number) {
+    const auto bytes = classed(GridType::float32, number, 3.0F);
+    return list_nvdb(scratch.write("a.nvdb", bytes), {}).at(0).attributes.at(0);
+  };
+  EXPECT_EQ(first_attribute(1), (std::pair<std::string, std::string>{"class", "level set"}));
+  EXPECT_EQ(first_attribute(2), (std::pair<std::string, std::string>{"class", "fog volume"}));
+  EXPECT_EQ(first_attribute(0), (std::pair<std::string, std::string>{"index origin", "-8192,-5,-20"}));
 }
 
 TEST(NvdbSource, ChoosesByName) {

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "format/base/little_endian.h"
+#include "format/layout/nanovdb_layout.h"
+#include "format/nanovdb/nvdb_grid.h"
 #include "ingest/source_registry.h"
 #include "ingest/vdb/nvdb_source.h"
 #include "tests/ingest/support/header_file.h"
@@ -49,6 +52,20 @@ TEST(PackedTree, Read_DamagedSince_IsReported) {
   scratch.write("a.nvdb", made.file);
   const std::string message = message_of_error(ErrorKind::input, [&] { source->read(PackedSample::kDomain, values); });
   EXPECT_NE(message.find("group 240 of blocks lies in bytes 4 to"), std::string::npos) << message;
+}
+
+TEST(PackedTree, Open_PackedLevelSet_KeepsClassAndBackground) {
+  const Scratch scratch;
+  std::vector<std::byte> bytes = PackedSample::build().file;
+  const SourceInfo before = open_source(scratch.write("a.nvdb", bytes), {})->info();
+  EXPECT_EQ(before.grid_class, GridClass::unknown);
+  EXPECT_FALSE(before.background);
+  const auto grid = NvdbGrid::open(bytes, "a.nvdb").grid_offset();
+  store(std::span(bytes), grid + nvdb::grid::kGridClass, std::uint32_t{1});
+  store(std::span(bytes), grid + nvdb::kRootOffset + nvdb::root::kBackground, 3.0F);
+  const SourceInfo level_set = open_source(scratch.write("b.nvdb", bytes), {})->info();
+  EXPECT_EQ(level_set.grid_class, GridClass::level_set);
+  EXPECT_EQ(level_set.background, 3.0F);
 }
 
 TEST(PackedTree, List_PackedFile_SaysSo) {

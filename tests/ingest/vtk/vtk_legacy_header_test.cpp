@@ -59,6 +59,76 @@ TEST(VtkLegacyHeader, TimeValue_IsReadFromTheFieldData) {
             "a.vtk: before byte 104: a value belongs before it, and there is none; is the file complete?");
 }
 
+const std::string kHalf("\x3F\xE0\0\0\0\0\0\0", 8);  // 0.5
+const std::string kText = "# vtk DataFile Version 3.0\ntitle\nASCII\nDATASET STRUCTURED_POINTS\n";
+
+/// A string as vtkDataWriter writes it, behind its length in the fewest bytes.
+std::string binary_string(const std::string& value) {
+  const std::size_t n = value.size();
+  const auto byte = [](std::size_t bits) { return static_cast<char>(bits & 0xFFU); };
+  if (n < 64) return byte(3U << 6U | n) + value;
+  return std::string{byte(2U << 6U | n >> 8U), byte(n)} + value;
+}
+
+TEST(VtkLegacyHeader, StringsOfTheFieldData_AreSkipped) {
+  // Line ends and keywords in a string are no lines of the file.
+  const std::string long_one = "a\nPOINT_DATA 9\n" + std::string(5000, 'x');
+  const VtkLegacyHeader binary =
+      parse(kHead + "FIELD FieldData 3\nDate 1 3 string\n" + binary_string("1 May\n") + binary_string("") +
+            binary_string(long_one) + "\nNote 2 1 utf8_string\n" + std::string("\x40\0\0\2hi", 6) +
+            std::string("\0\0\0\0\0\0\0\3abc", 11) + "\nTimeValue 1 1 double\n" + kHalf +
+            "\nDIMENSIONS 2 2 1\nPOINT_DATA 4\nSCALARS a char\nLOOKUP_TABLE default\nabcd\n");
+  EXPECT_EQ(binary.time, 0.5);
+  ASSERT_EQ(binary.arrays.size(), 1U);
+  EXPECT_EQ(binary.arrays[0].name, "a");
+  // In text each value is a line, an empty one too.
+  const VtkLegacyHeader text =
+      parse(kText + "FIELD FieldData 3\nDate 1 3 string\n1%20May%0A\n\n" + std::string(5000, 'x') +
+            "\nMETADATA\nINFORMATION 0\n\nNote 1 1 UTF8_STRING\na b c\nTimeValue 1 1 double\n0.5\n"
+            "DIMENSIONS 2 2 1\nPOINT_DATA 4\nSCALARS a char\nLOOKUP_TABLE default\n1 2 3 4\n");
+  EXPECT_EQ(text.time, 0.5);
+  ASSERT_EQ(text.arrays.size(), 1U);
+  EXPECT_EQ(text.arrays[0].name, "a");
+}
+
+TEST(VtkLegacyHeader, StringsOfPointsAndCells_AreObstacles) {
+  const VtkLegacyHeader header =
+      parse(kImage + "FIELD f 2\nnames 1 4 string\n" + binary_string("a") + binary_string("") + binary_string("b\n") +
+            binary_string("c") + "\nv 1 4 char\nabcd\nCELL_DATA 1\nPEDIGREE_IDS ids string\n" + binary_string("d") +
+            "\nSCALARS w char\nLOOKUP_TABLE default\ne");
+  ASSERT_EQ(header.arrays.size(), 4U);
+  EXPECT_EQ(header.arrays[0].name, "names");
+  EXPECT_EQ(header.arrays[0].obstacle, "its type is 'string', and char to double can be read");
+  EXPECT_EQ(header.arrays[1].name, "v");
+  EXPECT_EQ(header.arrays[1].obstacle, "");
+  EXPECT_EQ(header.arrays[2].name, "ids");
+  EXPECT_TRUE(header.arrays[2].cells);
+  EXPECT_EQ(header.arrays[2].obstacle, "its type is 'string', and char to double can be read");
+  EXPECT_EQ(header.arrays[3].name, "w");
+  EXPECT_EQ(header.arrays[3].obstacle, "");
+}
+
+TEST(VtkLegacyHeader, StringsBeyondTheFilesEnd_AreRefused) {
+  const auto refuse = [](const std::string& head, const std::string& more) {
+    const std::string message = refusal(head + "FIELD f 1\n" + more);
+    return message.substr(message.find(": ", message.find("byte")) + 2);
+  };
+  EXPECT_EQ(refuse(kHead, "s 1 1 string\n\x3F" + std::string(7, '\xFF')),
+            "4611686018427387903 bytes of values belong behind it, and the file ends after 0; is it complete?");
+  EXPECT_EQ(refuse(kHead,
+                   "s 1 1 string\n\xC5"
+                   "abcd"),
+            "5 bytes of values belong behind it, and the file ends after 4; is it complete?");
+  EXPECT_EQ(refuse(kHead, std::string("s 1 1 string\n\x40\0", 15)),
+            "3 bytes of values belong behind it, and the file ends after 1; is it complete?");
+  EXPECT_EQ(refuse(kHead, "s 1 9223372036854775807 string\n\xC0\xC0"),
+            "9223372036854775807 values belong before it, and there are 2; is the file complete?");
+  EXPECT_EQ(refuse(kText, "s 1 9223372036854775807 string\na\n\nb"),
+            "9223372036854775807 values belong before it, and there are 3; is the file complete?");
+  EXPECT_EQ(refuse(kHead, "s 1024 9223372036854775807 string\n"),
+            "'s 1024 9223372036854775807 string'; 9223372036854775807 tuples of 1024 values are impossible");
+}
+
 TEST(VtkLegacyHeader, RefusesUnsupportedFiles) {
   EXPECT_EQ(refusal("x"), "a.vtk: before byte 1: the file does not begin with '# vtk DataFile Version'");
   EXPECT_EQ(refusal("# vtk DataFile Version 2.0\n\nHEX\n"),
@@ -81,8 +151,8 @@ TEST(VtkLegacyHeader, RefusesInconsistentHeaders) {
   EXPECT_EQ(refuse("SCALARS a float\nLOOKUP_TABLE default\n0123456789"),
             "16 bytes of values belong behind it, and the file ends after 10; is it complete?");
   EXPECT_EQ(refuse("SCALARS a float\nabcd"), "'abcd'; LOOKUP_TABLE belongs behind SCALARS");
-  EXPECT_EQ(refuse("SCALARS a string\nLOOKUP_TABLE default\n"),
-            "'lookup_table default'; the type 'string' is not known, nor how long its values are");
+  EXPECT_EQ(refuse("SCALARS a variant\nLOOKUP_TABLE default\n"),
+            "'lookup_table default'; the type 'variant' is not known, nor how long its values are");
   EXPECT_EQ(refuse("LOOKUP_TABLE l 9223372036854775807\n"),
             "'lookup_table l 9223372036854775807'; 9223372036854775807 tuples of 4 values are impossible");
   EXPECT_EQ(refuse("FIELD f 1\na 1 5 float\n"), "'a 1 5 float'; DIMENSIONS make 4 tuples");

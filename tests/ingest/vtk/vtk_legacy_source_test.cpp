@@ -84,6 +84,17 @@ TEST(VtkLegacySource, ReadsTextAndPlace) {
   EXPECT_EQ(read_volume(*source), ramp());
 }
 
+TEST(VtkLegacySource, CellsOfAFlatImage_LieInItsPlane) {
+  const Scratch scratch;
+  const std::string place =
+      "# vtk DataFile Version 3.0\na\nBINARY\nDATASET STRUCTURED_POINTS\nDIMENSIONS 9 9 1\n"
+      "ORIGIN 0 0 5\nSPACING 1 1 2\nCELL_DATA 64\n";
+  const std::string path = write_headed(scratch, "a.vtk", place + scalars("a", "unsigned_char", std::string(64, '\3')));
+  const SourceInfo info = open_source(path, {})->info();
+  EXPECT_EQ(info.extent, (Index3{8, 8, 1}));
+  EXPECT_EQ(info.origin, (std::array<double, 3>{0.5, 0.5, 5}));
+}
+
 TEST(VtkLegacySource, FindsArraysAfterEveryOtherSection) {
   const Scratch scratch;
   const auto bytes = [](std::size_t count) { return std::string(count, '\n'); };  // lines that are none

@@ -161,6 +161,24 @@ TEST(VtkXmlSource, CellValuesArePlacedAtCellCentres) {
   EXPECT_EQ(read_volume(*source), (std::vector<float>{1, 2, 3, 4, 5, 6}));
 }
 
+TEST(VtkXmlSource, CellsOfAFlatImage_LieInItsPlane) {
+  const Scratch scratch;
+  std::string values;
+  for (int i = 0; i < 64; ++i) values += cat(i, ' ');
+  std::string text = vti({}, "<CellData><DataArray type=\"UInt8\" Name=\"a\">" + values + "</DataArray></CellData>", "",
+                         " Origin=\"0 0 5\" Spacing=\"1 1 2\"");
+  const std::string extent = "0 3 0 2 0 1";
+  for (std::size_t at = text.find(extent); at != std::string::npos; at = text.find(extent)) {
+    text.replace(at, extent.size(), "0 8 0 8 0 0");
+  }
+  const std::string path = write_headed(scratch, "a.vti", text);
+  const SourceInfo info = open_source(path, {})->info();
+  EXPECT_EQ(info.extent, (Index3{8, 8, 1}));
+  EXPECT_EQ(info.origin, (std::array<double, 3>{0.5, 0.5, 5}));
+  EXPECT_EQ(list_vtk_xml(path, {}).at(0).attributes.at(1),
+            (std::pair<std::string, std::string>{"origin", "0.5,0.5,5"}));
+}
+
 TEST(VtkXmlSource, ChoosesByNameOrByTheFilesMark) {
   const Scratch scratch;
   const auto array = [](const std::string& name, const std::string& value, const std::string& more = "") {

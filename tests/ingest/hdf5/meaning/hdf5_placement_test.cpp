@@ -274,6 +274,7 @@ with h5py.File("a.vtkhdf", "w") as f:
     image("VTKHDF", WholeExtent=[0, 3, 0, 2, 0, 1])
     image("later", WholeExtent=[5, 8, 0, 2, -1, 0])
     image("turned", WholeExtent=[0, 3, 0, 2, 0, 1], Direction=[0.0, -1, 0, 1, 0, 0, 0, 0, 1])
+    image("flat", WholeExtent=[0, 3, 0, 2, 5, 5])
 )");
   const auto origin = [&](const std::string& name) { return info_of("a.vtkhdf", name).origin; };
   EXPECT_EQ(info_of("a.vtkhdf", "VTKHDF/CellData/c").spacing, (Triple{2, 4, 8}));
@@ -282,6 +283,7 @@ with h5py.File("a.vtkhdf", "w") as f:
   EXPECT_EQ(origin("later/PointData/p"), (Triple{20, 20, 22}));
   EXPECT_EQ(origin("later/CellData/c"), (Triple{21, 22, 26}));
   EXPECT_EQ(origin("turned/CellData/c"), (Triple{21, 8, 34}));
+  EXPECT_EQ(origin("flat/CellData/c"), (Triple{11, 22, 70})) << "cells of one layer of points lie in it";
 }
 
 // CF conventions, 4: a coordinate variable gives the locations of the values themselves; cells around them are in
