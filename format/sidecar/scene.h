@@ -62,7 +62,7 @@ struct SceneVolume {
   double emission = 0;                         ///< source radiance, times the colour
   double shading = 0.7;                        ///< dvr: 0 flat to 1 lit like a surface
   std::optional<double> iso;                   ///< value of the surface; default: from the range
-  int max_bounces = 256;                       ///< path: collisions at most
+  int max_bounces = 256;                       ///< path: scatterings at most
   std::optional<Box> region;                   ///< voxels of index space that are shown; default: all
 };
 

@@ -52,6 +52,7 @@ PlaybackReport play(Backend& backend, std::span<const std::string> files, const 
     if (step == files.size()) return;
     loading = std::async(std::launch::async, load, std::cref(files[step]), std::move(done));
   };
+  RenderOptions alike = options;
   start_load(0);
   for (std::size_t step = 0; step < files.size(); ++step) {
     std::unique_ptr<LoadedVolume> volume;
@@ -64,7 +65,8 @@ PlaybackReport play(Backend& backend, std::span<const std::string> files, const 
       volume = load(files[step], nullptr);
     }
     start_load(step + 1);
-    const auto rendered = [&] { return backend.render(*volume, scene, options, sampling); };
+    if (!alike.density_frame) alike.density_frame = volume->info().frame;
+    const auto rendered = [&] { return backend.render(*volume, scene, alike, sampling); };
     Picture picture = timed(report.render_s, [&] { return naming_volume(files[step], rendered); });
     report.load = volume->load_summary();
     done = std::move(volume);

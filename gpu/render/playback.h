@@ -29,10 +29,10 @@ struct PlaybackReport {
 /// Called with rising frame numbers, from a thread of its own, one at a time.
 using FrameWriter = std::function<void(std::size_t frame, const Picture& picture)>;
 
-/// Renders one frame of each of `files`, in order. A step that fails to load beside the one that is rendered, by an
-/// Error of kind io, for want of device memory say, is loaded once more when that is done, and no volume held. Where a
-/// step cannot be loaded or rendered, all frames before it are written, then its error is thrown; an error of `write`
-/// is thrown one frame later.
+/// Renders one frame of each of `files`, in order. Where `options` has no density_frame, it is the first step's. A step
+/// that fails to load beside the one that is rendered, by an Error of kind io, for want of device memory say, is loaded
+/// once more when that is done, and no volume held. Where a step cannot be loaded or rendered, all frames before it are
+/// written, then its error is thrown; an error of `write` is thrown one frame later.
 PlaybackReport play(Backend& backend, std::span<const std::string> files, const Scene& scene,
                     const RenderOptions& options, const SampleOptions& sampling, const FrameWriter& write);
 

@@ -1,6 +1,7 @@
 #include "gpu/render/render_setup.h"
 
 #include <algorithm>
+#include <cfloat>
 
 #include "format/base/error.h"
 #include "format/base/text.h"
@@ -49,6 +50,17 @@ Float3 unit_vector(const Double3& v) {
   const double largest = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
   if (!(largest > 0)) return {0, 0, 1};
   return normalised(narrow(Double3{v[0] / largest, v[1] / largest, v[2] / largest}), {0, 0, 1});
+}
+
+// Of the domain, in shortest voxel edges.
+double longest_edge(const GridFrame& frame) {
+  const Double3 size = frame.size();
+  return *std::max_element(size.begin(), size.end());
+}
+
+// In the world.
+double shortest_voxel_edge(const GridFrame& frame) {
+  return *std::min_element(frame.voxel_size.begin(), frame.voxel_size.end());
 }
 
 Lighting make_lighting(const Scene& scene, const ModeDefaults& defaults, const Environment* environment) {
@@ -107,10 +119,13 @@ float picture_iso(const SceneVolume& volume, const TransferFunction& transfer, f
   return static_cast<float>(from + 0.35 * (farthest - from));
 }
 
-float picture_density(const Scene& scene, const GridFrame& frame) {
-  const Double3 size = frame.size();
-  return static_cast<float>(scene.volume.density.value_or(defaults_of(scene.mode).density) /
-                            *std::max_element(size.begin(), size.end()));
+float picture_density(const Scene& scene, const GridFrame& frame) { return picture_density(scene, frame, frame); }
+
+float picture_density(const Scene& scene, const GridFrame& frame, const GridFrame& along) {
+  // In shortest edges of `frame`; a frame along itself has a ratio of exactly 1.
+  const double longest = longest_edge(along) * (shortest_voxel_edge(along) / shortest_voxel_edge(frame));
+  const double density = scene.volume.density.value_or(defaults_of(scene.mode).density) / longest;
+  return static_cast<float>(std::min(density, static_cast<double>(FLT_MAX)));  // infinity times no opacity is no number
 }
 
 RenderSetup::RenderSetup(const VolumeInfo& volume, const MacrocellGrid& cells, const Scene& scene,
@@ -120,8 +135,6 @@ RenderSetup::RenderSetup(const VolumeInfo& volume, const MacrocellGrid& cells, c
       transfer_(picture_transfer(volume, scene, options)),
       environment_(options.environment ? options.environment : load_environment(scene)) {
   const ModeDefaults defaults = defaults_of(scene.mode);
-  const Double3 size = volume.frame.size();
-  const double longest = *std::max_element(size.begin(), size.end());
 
   // From the domain's lowest corner.
   const auto local = [&](const Index3& i) {
@@ -134,7 +147,7 @@ RenderSetup::RenderSetup(const VolumeInfo& volume, const MacrocellGrid& cells, c
   medium_.shown = {local(seen.lo), local(seen.hi)};
   medium_.cell_values = cells_.bounds().data();
   medium_.stretch = narrow(volume.frame.stretch());
-  medium_.density = picture_density(scene, volume.frame);
+  medium_.density = picture_density(scene, volume.frame, options.density_frame.value_or(volume.frame));
   medium_.albedo = static_cast<float>(scene.volume.albedo);
   medium_.emission = static_cast<float>(scene.volume.emission);
   medium_.g = static_cast<float>(scene.volume.anisotropy);
@@ -149,7 +162,7 @@ RenderSetup::RenderSetup(const VolumeInfo& volume, const MacrocellGrid& cells, c
   frame_.height = options.height;
   frame_.seed = options.seed;
   // Sample positions are counted in floats: at most 2^22 along the longest way through.
-  frame_.step = static_cast<float>(std::max(0.5, 2 * longest / (1 << 22)));
+  frame_.step = static_cast<float>(std::max(0.5, 2 * longest_edge(volume.frame) / (1 << 22)));
   frame_.shading = static_cast<float>(scene.volume.shading);
   frame_.max_bounces = scene.volume.max_bounces;
   if (options.levels) levels_ = levels_for(*options.levels);

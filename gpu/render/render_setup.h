@@ -40,6 +40,9 @@ struct RenderOptions {
   std::optional<LevelOfDetail> levels = std::nullopt;
   /// The scene's; null: loaded from where the scene says. Give it to render the scene again without loading it.
   std::shared_ptr<const Environment> environment = nullptr;
+  /// Whose longest edge the scene's density counts along instead of the volume's own, so that an opacity has one
+  /// extinction in the world in all steps of a series, whatever their boxes and voxels.
+  std::optional<GridFrame> density_frame = std::nullopt;
 };
 
 /// What a picture depends on besides the voxels.
@@ -72,8 +75,10 @@ TransferFunction picture_transfer(const VolumeInfo& volume, const Scene& scene, 
 /// that is farthest from it.
 float picture_iso(const SceneVolume& volume, const TransferFunction& transfer, float background);
 
-/// Optical depth of one voxel at opacity 1, along the frame's longest edge: the scene's, or that of its mode.
+/// Extinction at opacity 1, per shortest voxel edge of `frame`: the scene's density, or that of its mode, over the
+/// frame's longest edge, or the longest edge of `along`.
 float picture_density(const Scene& scene, const GridFrame& frame);
+float picture_density(const Scene& scene, const GridFrame& frame, const GridFrame& along);
 
 class RenderSetup {
  public:

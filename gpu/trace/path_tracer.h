@@ -51,7 +51,7 @@ WEIR_HOST_DEVICE Float3 direct_light(const Medium<Volume>& medium, const Lightin
 }  // namespace detail
 
 /// Radiance that arrives at `origin` (index space) from unit `direction` (physical space), at most
-/// `max_bounces` collisions.
+/// `max_bounces` scatterings. The collision behind the last one emits and scatters nothing.
 template <class Volume>
 WEIR_HOST_DEVICE Float3 trace_path(const Medium<Volume>& medium, const Lighting& lighting, const Float3& origin,
                                    Float3 direction, int max_bounces, Random& random) {

@@ -11,9 +11,11 @@
 
 namespace weir {
 
-/// Transmittance below which a ray ends: an eighth of a step of 8-bit output.
+/// Transmittance below which the medium ends, an eighth of a step of 8-bit output: what the rest of it would emit, and
+/// absorb of what is behind, is left out, at most that share of either.
 inline constexpr float kOpaque = 1.0F / 2048.0F;
-/// Contribution to a pixel below which a sample is not worth the six lookups of a gradient.
+/// Opacity of a ray so far up to which its samples are not worth the six lookups of a gradient: they stay unlit. Their
+/// weights sum to that opacity, so the ray is off by at most that share of the difference between lit and unlit colour.
 inline constexpr float kUnshaded = 1.0F / 4096.0F;
 
 /// Radiance from unit `direction`. `voxel_step` is the distance between samples, in the shortest voxel edges, or in
@@ -31,7 +33,7 @@ WEIR_HOST_DEVICE Float3 march(const Medium<Volume>& medium, const Lighting& ligh
   const float jitter = random.uniform();
   CellWalk walk(medium.cells, ray, 0.0F, length);
   CellSpan span;
-  while (walk.next(medium.cells, ray, span)) {
+  while (!(transmittance < kOpaque) && walk.next(medium.cells, ray, span)) {
     if (!(medium.majorant(span.cell) > 0.0F)) continue;
     const float step = medium.sample_step(voxel_step, ray.at(span.t0), length);
     float k = std::ceil(span.t0 / step - jitter);
@@ -42,16 +44,16 @@ WEIR_HOST_DEVICE Float3 march(const Medium<Volume>& medium, const Lighting& ligh
       if (!(sigma > 0.0F)) continue;
       const float through = std::exp(-sigma * step);
       const float weight = transmittance * (1.0F - through);
+      transmittance *= through;
       Float3 emitted = rgb(colour);
-      if (shading > 0.0F && weight > kUnshaded) {
+      if (shading > 0.0F && transmittance < 1.0F - kUnshaded) {
         const Float3 slope = gradient(medium.volume, p) / medium.stretch;
         const Float3 normal = normalised(slope, direction);
         const Float3 facing = dot(normal, direction) > 0.0F ? -normal : normal;
         emitted = mix(emitted, emitted * lighting.on_surface(facing), shading);
       }
       radiance += emitted * weight;
-      transmittance *= through;
-      if (transmittance < kOpaque) return radiance;
+      if (transmittance < kOpaque) break;
     }
   }
   return radiance + lighting.behind(direction) * transmittance;

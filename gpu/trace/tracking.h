@@ -8,9 +8,11 @@
 
 namespace weir {
 
-/// Tentative collisions of one flight. A flight that needs more runs where the majorant is far above
-/// the extinction over thousands of mean free paths: it counts as absorbed.
-inline constexpr int kMaxTentative = 1 << 16;
+/// Tentative collisions of one flight. There are kMaxExtinction of them to a shortest voxel edge at most, in the mean,
+/// so that the diagonal of 8192^3 cubes, 14189 edges, takes 908,000, give or take a thousand. A flight that needs more
+/// leads through more than 16384 edges of clear cells that a wall touches: it counts as absorbed, so that it ends. Not
+/// all would end by themselves: from some 2^18 edges on, floats tell such collisions no longer apart.
+inline constexpr int kMaxTentative = 1 << 20;
 
 /// The tentative collisions along a ray: where it would collide if the extinction were the majorant everywhere. Where
 /// majorants are given by cells, the optical depth that remains at a border carries over, since it is memoryless.

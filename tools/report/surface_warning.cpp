@@ -18,10 +18,14 @@ std::string with_digits(double value, int digits) {
 }  // namespace
 
 std::string surface_warning(const Scene& scene, const MinMax& values) {
-  if (scene.mode != RenderMode::iso || !scene.volume.iso) return {};
-  const double iso = *scene.volume.iso;
+  if (scene.mode != RenderMode::iso) return {};
   const auto low = static_cast<double>(values.min);
   const auto high = static_cast<double>(values.max);
+  if (!scene.volume.iso) {
+    if (low < high) return {};
+    return cat("every voxel has the value ", with_digits(low, 4), ": the picture shows no surface");
+  }
+  const double iso = *scene.volume.iso;
   if (iso >= low && iso <= high) {
     if (static_cast<float>(iso) > values.min) return {};
     return cat("the iso value ", with_digits(low, 4), " is the lowest of the values, up to ", with_digits(high, 4),

@@ -113,6 +113,17 @@ TEST(RenderCpu, StochasticAndTrilinearAgree) {
   EXPECT_NEAR(trilinear, stochastic, 5 * std::sqrt(spread * 2 / 6) + 1e-5);
 }
 
+// Surfaces and maxima are functions of the position: a stochastic filter is trilinear there.
+TEST(RenderCpu, StochasticSurfacesAndMaxima_AreTheTrilinearOnes) {
+  const TestGrid grid({{0, 0, 0}, {25, 25, 25}}, ball);
+  for (const RenderMode mode : kModes) {
+    Scene scene;
+    scene.mode = mode;
+    const bool same = picture(grid.grid(), scene, Filter::stochastic).pixels == picture(grid.grid(), scene).pixels;
+    EXPECT_EQ(same, mode == RenderMode::iso || mode == RenderMode::mip) << render_mode_name(mode);
+  }
+}
+
 TEST(RenderCpu, HardVolumesGiveFinitePictures) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   TestGridOptions tiles;
@@ -147,6 +158,30 @@ TEST(RenderCpu, NotANumberRendersAsNothing) {
     scene.mode = mode;
     EXPECT_EQ(shown(picture(grid.grid(), scene)), 0) << render_mode_name(mode);
   }
+}
+
+// A wall with a channel along its 2048 shortest edges: all cells hold some of the wall.
+TEST(RenderCpu, ClearChannelThroughAWall_ShowsTheBackground) {
+  TestGridOptions options;
+  options.voxel_size = {1, 1, 64};
+  const TestGrid grid(
+      {{0, 0, 0}, {32, 32, 32}}, [](const Index3& i) { return i.x >= 13 && i.x < 19 ? 0.0F : 1.0F; }, options);
+  Scene scene;
+  scene.camera.position = {15.5, 16, -500};
+  scene.camera.look_at = {15.5, 16, 0};
+  scene.camera.up = {0, 1, 0};
+  scene.camera.fov = 0.01;
+  scene.volume.range = {0, 1};
+  scene.volume.opacity = {{0, 0}, {1, 1}};
+  scene.volume.density = 1e6;
+  scene.volume.albedo = 0;
+  scene.lighting.background = {1, 1, 1};
+  RenderOptions one_pixel;
+  one_pixel.width = one_pixel.height = 1;
+  const RenderScene prepared(grid.grid(), scene, one_pixel);
+  CpuRenderOptions cpu;
+  cpu.samples = 2;
+  EXPECT_EQ(render_cpu(prepared.task(), cpu).pixels[0], (Float3{1, 1, 1}));
 }
 
 TEST(RenderCpu, ProgressReachesTheTotalAndNeverPassesIt) {

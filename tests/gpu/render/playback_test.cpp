@@ -4,7 +4,9 @@
 
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <fstream>
+#include <memory>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -73,17 +75,21 @@ class FakeBackend : public Backend {
 
 class Playback : public ::testing::Test {
  protected:
+  /// A file of a box of 0.5.
+  void make_step(const Box& box, const test::TestGridOptions& options) {
+    const test::TestGrid grid(
+        box, [](const Index3&) { return 0.5F; }, options);
+    files_.push_back(directory_ / std::to_string(files_.size()));
+    const std::span<const std::byte> bytes = grid.file();
+    std::ofstream(files_.back(), std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  }
   /// A file of each background in order.
   void make(int steps) {
     for (int step = 0; step < steps; ++step) {
       test::TestGridOptions options;
       options.background = static_cast<float>(step);
-      const test::TestGrid grid(
-          {{0, 0, 0}, {1, 1, 1}}, [](const Index3&) { return 0.5F; }, options);
-      files_.push_back(directory_ / std::to_string(step));
-      const std::span<const std::byte> bytes = grid.file();
-      std::ofstream(files_.back(), std::ios::binary)
-          .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+      make_step({{0, 0, 0}, {1, 1, 1}}, options);
     }
   }
   PlaybackReport run() {
@@ -120,6 +126,38 @@ TEST_F(Playback, FramesInOrderFromTwoVolumes) {
   EXPECT_LE(backend_.most, 2);
   EXPECT_EQ(backend_.reused, 5) << "all but the first two";
   EXPECT_EQ(backend_.alive, 0);
+}
+
+// Fog of one value looks alike through 16 units of the world, whatever else there is of it.
+TEST_F(Playback, StepsOfDifferentBoxes_HaveOneExtinction) {
+  make_step({{0, 0, 0}, {16, 16, 16}}, {});
+  make_step({{0, 0, 0}, {16, 16, 64}}, {});
+  test::TestGridOptions fine;
+  fine.voxel_size = {0.5, 0.5, 0.5};
+  make_step({{0, 0, 0}, {32, 32, 64}}, fine);
+  Scene scene;
+  scene.mode = RenderMode::dvr;
+  scene.camera.position = {-30, 8, 8};
+  scene.camera.look_at = {8, 8, 8};
+  scene.camera.fov = 1;
+  scene.volume.range = {0, 1};
+  scene.volume.opacity = {{0, 0}, {1, 1}};
+  scene.volume.colormap = "white";
+  scene.volume.density = 2;
+  scene.volume.shading = 0;
+  scene.lighting.background = {0, 0, 0};
+  RenderOptions options;
+  options.width = options.height = 1;
+  const std::unique_ptr<Backend> cpu = make_cpu_backend(1);
+  std::vector<float> centres;
+  play(*cpu, files_, scene, options, {},
+       [&](std::size_t, const Picture& picture) { centres.push_back(picture.image.pixels[0].x); });
+  ASSERT_EQ(centres.size(), 3U);
+  // A density of 2 by an opacity of a half is 1 along 16 units; the fog is thinner within a voxel of its border.
+  EXPECT_GT(centres[0], 1 - std::exp(-14.5F / 16));
+  EXPECT_LT(centres[0], 1 - std::exp(-1.0F));
+  EXPECT_EQ(centres[1], centres[0]);
+  EXPECT_NEAR(centres[2], centres[0], 0.02F) << "samples lie elsewhere";
 }
 
 TEST_F(Playback, PlaysNoFileAndOneFile) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cfloat>
+
 #include "format/base/error.h"
 #include "tests/stock/test_grid.h"
 
@@ -22,6 +24,22 @@ TEST(RenderScene, LengthsAreInShortestVoxelEdges) {
   const RenderScene prepared(grid.grid(), scene, {});
   EXPECT_EQ(prepared.task().medium.stretch, (Float3{2, 1, 4}));
   EXPECT_EQ(prepared.task().medium.density, 2.0F) << "over the longest edge, 41 voxels of 2";
+}
+
+TEST(RenderScene, DensityAlongAnotherFrame_IsTheSameExtinctionInTheWorld) {
+  TestGridOptions options;
+  options.voxel_size = {0.5, 0.25, 1};
+  const TestGrid grid({{0, 0, 0}, {41, 20, 10}}, ramp, options);
+  Scene scene;
+  scene.volume.density = 164;
+  RenderOptions along;
+  along.density_frame = frame_of(grid.grid());
+  EXPECT_EQ(RenderScene(grid.grid(), scene, along).task().medium.density, 2.0F) << "its own";
+  // 8 a unit of the world over an edge of 20.5, 2 over one of 82; a shortest edge is a quarter of a unit.
+  along.density_frame = GridFrame{{{0, 0, 0}, {1, 41, 1}}, {2, 2, 2}, {0, 0, 0}};
+  EXPECT_EQ(RenderScene(grid.grid(), scene, along).task().medium.density, 0.5F);
+  along.density_frame = GridFrame{{{0, 0, 0}, {1, 41, 1}}, {1e-300, 1e-300, 1e-300}, {0, 0, 0}};
+  EXPECT_EQ(RenderScene(grid.grid(), scene, along).task().medium.density, FLT_MAX);
 }
 
 TEST(RenderScene, DefaultIsoLiesBetweenBackgroundAndFarthestValue) {

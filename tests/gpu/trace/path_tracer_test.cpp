@@ -120,6 +120,20 @@ TEST(TracePath, NoBouncesIsBackgroundAndBlack) {
   EXPECT_EQ(trace_path(*medium, ambient, {-1, 8, 8}, {-1, 0, 0}, 0, random), (Float3{1, 1, 1}));
 }
 
+// A path of no scattering has one collision, which emits; every scattering leads to one more.
+TEST(TracePath, EveryCollisionEmits_AlsoBehindTheLastScattering) {
+  TestMedium medium({32, 32, 32}, 16, 1e6F, 1.0F, [](const Float3&) { return 1.0F; });
+  medium->emission = 2;
+  Lighting lighting;
+  lighting.zenith = lighting.horizon = lighting.ground = {0, 0, 0};
+  for (int scatterings = 0; scatterings <= 6; ++scatterings) {
+    Random random(1, 2, 3);
+    const auto emitted = static_cast<float>(2 * (scatterings + 1));
+    EXPECT_EQ(trace_path(*medium, lighting, {16, 16, 16}, {1, 0, 0}, scatterings, random),
+              (Float3{emitted, emitted, emitted}));
+  }
+}
+
 TEST(TracePath, CameraInsideAndOnBorders) {
   TestMedium medium({32, 32, 32}, 16, 0.1F, 1.0F, kHalf);
   const Lighting ambient;

@@ -80,5 +80,59 @@ TEST(March, SurfaceFacingTheCameraReflectsTheAmbientLight) {
   EXPECT_NEAR(march(*medium, lighting, {0, 8, 8}, {1, 0, 0}, 0.5F, 0.5F, random).x, 0.75F, 1e-6F);
 }
 
+// What is not worth a gradient is bounded for the whole ray: without light, a thin fog is as black as a dense one.
+TEST(March, FogWithoutLight_IsBlackHoweverThinItIs) {
+  Lighting lighting = dark();
+  lighting.zenith = lighting.horizon = lighting.ground = {0, 0, 0};
+  lighting.lights[0] = {{0, 0, 1}, {0, 0, 0}};
+  lighting.light_count = 1;
+  for (const float opacity : {2e-5F, 2e-4F, 2e-3F, 2e-2F}) {
+    TestMedium medium({1024, 16, 16}, 16, 200.0F / 1024, opacity, [=](const Float3&) { return opacity; });
+    for (std::uint32_t i = 0; i < 20; ++i) {
+      Random random(1, i, 0);
+      const float lit = march(*medium, lighting, {-9, 8, 8}, {1, 0, 0}, 0.5F, 1, random).x;
+      EXPECT_GE(lit, 0.0F) << opacity;
+      EXPECT_LE(lit, kUnshaded + 1e-6F) << opacity;
+    }
+  }
+}
+
+// Light of the surroundings, which all of a constant fog reflects half of: the colour is off by kUnshaded at most.
+TEST(March, ThinFogReflectsTheAmbientLight) {
+  Lighting lighting = dark();
+  lighting.zenith = lighting.horizon = lighting.ground = {0.5F, 0.5F, 0.5F};
+  TestMedium medium({1024, 16, 16}, 16, 200.0F / 1024, 0.002F, [](const Float3&) { return 0.002F; });
+  Random random(1, 2, 3);
+  EXPECT_NEAR(march(*medium, lighting, {-9, 8, 8}, {1, 0, 0}, 0.5F, 1, random).x, 0.5F * (1 - std::exp(-0.4F)),
+              kUnshaded + 1e-4F);
+}
+
+// White of radiance 1 before a background of 1000: T = exp(-7.7) of it is seen, though the ray ends there.
+TEST(March, RayThatEndsEarly_StillSeesTheBackground) {
+  Lighting lighting = dark();
+  lighting.background = {1000, 1000, 1000};
+  for (const float depth : {7.4F, 7.6F, 7.62F, 7.63F, 7.7F}) {
+    TestMedium medium({32, 32, 32}, 16, depth / 32, 1.0F, [](const Float3&) { return 1.0F; });
+    for (std::uint32_t i = 0; i < 20; ++i) {
+      Random random(1, i, 0);
+      const float seen = march(*medium, lighting, {-9, 16, 16}, {1, 0, 0}, 0.5F, 0, random).x;
+      EXPECT_NEAR(seen, 1 + 999 * std::exp(-depth), 1e-3F) << depth;
+    }
+  }
+}
+
+// What is behind a medium of any depth counts at most kOpaque of itself too much.
+TEST(March, BackgroundBehindAWall_IsLeftOutButForAShare) {
+  Lighting lighting = dark();
+  lighting.background = {1000, 1000, 1000};
+  for (const float depth : {8.0F, 20.0F, 200.0F, 1e6F}) {
+    TestMedium medium({32, 32, 32}, 16, depth / 32, 1.0F, [](const Float3&) { return 1.0F; });
+    Random random(1, 2, 3);
+    const float seen = march(*medium, lighting, {-9, 16, 16}, {1, 0, 0}, 0.5F, 0, random).x;
+    EXPECT_GE(seen, 1 - kOpaque) << depth;
+    EXPECT_LE(seen, 1 + 1000 * kOpaque) << depth;
+  }
+}
+
 }  // namespace
 }  // namespace weir::ray_march_test

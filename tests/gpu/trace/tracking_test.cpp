@@ -119,12 +119,38 @@ TEST(DeltaTrack, HugeMajorantOverVacuum_LetsEverythingPass) {
   }
 }
 
+// The longest flight of any honest volume, along the diagonal of 8192^3 voxels.
+TEST(DeltaTrack, HugeMajorantOverALongWay_LetsEverythingPass) {
+  for (const float length : {2048.0F, 14189.0F}) {
+    TestMedium medium({14192, 16, 16}, 16, 1e30F, 1.0F, [](const Float3&) { return 0.0F; });
+    const Ray ray = medium->ray({0, 8, 8}, {1, 0, 0});
+    Random random(1, 2, 3);
+    EXPECT_EQ(delta_track(*medium, ray, length, RayKind::camera, random).end, FlightEnd::escaped) << length;
+    EXPECT_EQ(ratio_track(*medium, ray, length, RayKind::camera, random), 1.0F) << length;
+  }
+}
+
 TEST(DeltaTrack, TentativeCollisionsWithoutEnd_EndTheFlight) {
-  TestMedium medium({4096, 16, 16}, 16, 1e30F, 1.0F, [](const Float3&) { return 0.0F; });
+  TestMedium medium({32768, 16, 16}, 16, 1e30F, 1.0F, [](const Float3&) { return 0.0F; });
   const Ray ray = medium->ray({0, 8, 8}, {1, 0, 0});
   Random random(1, 2, 3);
-  EXPECT_EQ(delta_track(*medium, ray, 4096, RayKind::camera, random).end, FlightEnd::absorbed);
-  EXPECT_EQ(ratio_track(*medium, ray, 4096, RayKind::camera, random), 0.0F);
+  const Flight flight = delta_track(*medium, ray, 32768, RayKind::camera, random);
+  EXPECT_EQ(flight.end, FlightEnd::absorbed);
+  EXPECT_NEAR(flight.t, 16384, 100) << "of a voxel each 64";
+  EXPECT_EQ(ratio_track(*medium, ray, 32768, RayKind::camera, random), 0.0F);
+}
+
+// Floats do not tell t from t plus a free path.
+TEST(DeltaTrack, TentativeCollisionsThatDoNotMove_EndTheFlight) {
+  constexpr std::int32_t kCell = 1 << 24;
+  TestMedium medium({2 * kCell, kCell, kCell}, kCell, 1e30F, 1.0F, [](const Float3&) { return 0.0F; });
+  medium.opacity()[0] = 0;
+  const Ray ray = medium->ray({0, 8, 8}, {1, 0, 0});
+  Random random(1, 2, 3);
+  const Flight flight = delta_track(*medium, ray, 2.0F * kCell, RayKind::camera, random);
+  EXPECT_EQ(flight.end, FlightEnd::absorbed);
+  EXPECT_EQ(flight.t, static_cast<float>(kCell));
+  EXPECT_EQ(ratio_track(*medium, ray, 2.0F * kCell, RayKind::camera, random), 0.0F);
 }
 
 TEST(DeltaTrack, NotANumberIsVacuum) {

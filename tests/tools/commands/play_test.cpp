@@ -122,6 +122,25 @@ TEST_F(Play, StepsOfDifferentSizes_GiveAWarning) {
   EXPECT_EQ(list_directory(out_).size(), 2U);
 }
 
+// Both are looked at across 16 voxels; the first is no longer in any direction, the second 64.
+TEST_F(Play, StepsOfDifferentSizes_HaveOneExtinction) {
+  const std::string first = make("a.nvdb", "constant", 1, "16x16x16");
+  const std::string second = make("b.nvdb", "constant", 1, "16x16x64");
+  write_file(directory_ / "s.toml",
+             "mode = \"dvr\"\n"
+             "[camera]\nposition = [-30, 8, 8]\nlook_at = [8, 8, 8]\nfov = 2\n"
+             "[volume]\nrange = [0, 1]\nopacity = [[0, 0], [1, 1]]\ndensity = 2\nshading = 0\ncolormap = \"white\"\n"
+             "[lighting]\nbackground = [0, 0, 0]\nexposure = 1\n");
+  const CommandResult result = run_weir({"play", first, second, "--raw", "-", "--size", "8x8", "--spp", "4", "--scene",
+                                         directory_ / "s.toml", "--log-level", "error"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const std::size_t frame = std::size_t{8} * 8 * 3;
+  ASSERT_EQ(result.out.size(), 2 * frame);
+  EXPECT_EQ(result.out.substr(0, frame), result.out.substr(frame));
+  // 1 - exp(-1) in sRGB, but for where the samples begin.
+  EXPECT_NEAR(static_cast<unsigned char>(result.out[(4 * 8 + 4) * 3]), 207, 4);
+}
+
 TEST_F(Play, StepThatNamesNoRange_GivesAWarning) {
   const std::string half = make("a.nvdb", "constant", 1, "9x8x7");
   const std::string raw = directory_ / "holes_9x8x7_float32.raw";

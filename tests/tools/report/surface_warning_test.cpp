@@ -30,6 +30,15 @@ TEST(SurfaceWarning, LowestValue_IsToldSinceNoneIsBelow) {
   EXPECT_EQ(warning(7, {7, 7}), "the iso value 7 is the lowest of the values, up to 7: the picture shows no surface");
 }
 
+TEST(SurfaceWarning, DefaultValue_IsMentionedWhereAllValuesAreOne) {
+  Scene scene;
+  scene.mode = RenderMode::iso;
+  EXPECT_EQ(surface_warning(scene, {0.5F, 0.5F}), "every voxel has the value 0.5: the picture shows no surface");
+  EXPECT_EQ(surface_warning(scene, {0.5F, 0.75F}), "");
+  scene.mode = RenderMode::dvr;
+  EXPECT_EQ(surface_warning(scene, {0.5F, 0.5F}), "");
+}
+
 TEST(SurfaceWarning, ValueInside_IsNotMentioned) {
   EXPECT_EQ(warning(0.75, {0, 0.75F}), "");
   EXPECT_EQ(warning(0.1, {0, 0.75F}), "");
