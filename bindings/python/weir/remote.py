@@ -8,9 +8,11 @@ from typing import Any, Mapping, Optional, Union
 
 from . import _core
 from .errors import UsageError
+from .fsspec_file import FsspecFile
 from .grid import Grid
+from .http_file import HttpFile
 from .options import shown_url, text_of
-from .remote_file import FsspecFile, HttpFile, RemoteFile, sidecar_url
+from .remote_file import RemoteFile, sidecar_url
 
 
 def open_remote_file(url: str, storage_options: Optional[dict[str, Any]]) -> RemoteFile:
