@@ -145,14 +145,14 @@ converted() {
   sed -nE 's/.*"survey_s": *([0-9.]+).*"total_s": *([0-9.]+).*/\1 \2/p' "$work/c.json" | tr '\n' ' '
   sed -nE 's/.*"name":"select".*"dur":([0-9.]+).*/\1/p' "$work/t.json" | awk '{ sum += $1 } END { print sum / 1e6 }'
 }
-# Whole conversions by 1, 2, 4 ... threads, the best of three (of one by one thread), and one read of the file.
+# Whole conversions by 1, 2, 4 ... threads, the best of three, and one read of the file.
 threads() {
   local name=$work/cloud1024.raw
   quiet "$bin/weir" sample cloud --dims 1024,1024,1024 -o "$name"
   printf '== conversions of cloud 1024 to a twentieth; reading it once: %s\n' "$(seconds dd if="$name" of=/dev/null bs=8M)"
   for encoding in float fpn packed; do
     for ((n = 1; n <= $(nproc); n *= 2)); do
-      for ((run = 0; run < (n == 1 ? 1 : 3); ++run)); do
+      for ((run = 0; run < 3; ++run)); do
         converted --encoding "$encoding" --threads "$n"
       done | awk -v what="$encoding, $n threads" 'NR == 1 || $2 < best { best = $2; survey = $1; select = $3 }
           END { printf "%-20s %6.2f s, survey %5.2f, rest %5.2f, of that selection %5.3f\n", what, best, survey, best - survey, select }'

@@ -14,7 +14,8 @@ LARGE_EDGE = 512  # as LARGE_BYTES, where the file is read at the speed of memor
 
 
 def behind_text(measured):
-    finders = (_peers_bytes, _peers_error, _peers_time, _rates, _accuracy, _plateau, _above_lossless, _bounds, _lossless, _pictures, _noise, _reading, _time)
+    finders = (_peers_bytes, _peers_error, _peers_time, _rates, _accuracy, _plateau, _above_lossless, _bounds, _lossless,
+               _derived, _pictures, _noise, _reading, _time, _commands)
     lines = [line for find in finders for line in find(measured)]
     return table(["ours", "is behind", "at its worst", "where"], lines) + "\n\n" + command("bench/evaluate.sh --report")
 
@@ -24,8 +25,8 @@ def _pairs(rivals):
 
 
 def _gap_line(ours, title, gaps):
-    """The worst of (dB behind, ours, theirs, where), if any is behind."""
-    behind = [gap for gap in gaps if gap[0] > 0]
+    """The worst of (dB behind, ours, theirs, where), if any is behind; those without a file of ours are told by title."""
+    behind = [gap for gap in gaps if gap[0] > 0 and gap[1]["bytes"]]
     if not behind:
         return []
     gap, own, theirs, where = max(behind, key=lambda found: found[0])
@@ -46,7 +47,7 @@ def _peers_bytes(measured):
     found = {}
     for ours, own, peer, theirs in _peers_pairs(measured):
         for mine, other in zip(own["targets"], theirs["targets"]):
-            if mine["bytes"] and other["bytes"]:
+            if mine["bytes"] and other["bytes"]:  # weir has a file for each of these errors
                 where = (f"{own['volume']} at {mine['target_db']} dB, {percent(mine['bytes'], own['dense_bytes'])} of dense "
                          f"against {percent(other['bytes'], own['dense_bytes'])}")
                 found.setdefault((ours, peer), []).append((mine["bytes"] / other["bytes"], where))
@@ -58,12 +59,12 @@ def _peers_error(measured):
     found = {}
     for ours, own, peer, theirs in _peers_pairs(measured):
         for mine, other in zip(own["shares"], theirs["shares"]):
-            if mine["bytes"] and other["bytes"]:
+            if other["bytes"]:
                 gap = -gap_db(mine, other)
                 found.setdefault((ours, peer), []).append((gap, mine, other,
                                                            f"{own['volume']} at {mine['share']} % of dense"))
     return [line for (ours, peer), gaps in found.items()
-            for line in _gap_line(ours, f"{peer}, PSNR at equal bytes{_how_often(gaps, 0)}", gaps)]
+            for line in _gap_line(ours, f"{peer}, PSNR at equal bytes{_how_often(gaps, 0)}{_without(gaps)}", gaps)]
 
 
 def _peers_time(measured):
@@ -83,13 +84,19 @@ def _how_often(found, even):
     return f", in {sum(first[0] > even for first in found)} of {len(found)}"
 
 
+def _without(gaps):
+    """Of how many of (dB behind, ours, theirs, where) there is no file of ours, as the smallest tree is larger."""
+    missing = sum(1 for _, own, _, _ in gaps if not own["bytes"])
+    return f" (in {missing} there is no file so small)" if missing else ""
+
+
 def _rates(measured):
-    """At equal bytes, where both have a file."""
+    """At equal bytes, where the other one has a file."""
     lines = []
     for ours, rival in _pairs(RIVALS):
         gaps = [(-gap_db(own, theirs), own, theirs, where)
-                for where, own, theirs in _equal_bytes(measured, ours, rival) if own["bytes"] and theirs["bytes"]]
-        lines += _gap_line(ours, f"{_rate_title(rival)}, PSNR at equal bytes", gaps)
+                for where, own, theirs in _equal_bytes(measured, ours, rival) if theirs["bytes"]]
+        lines += _gap_line(ours, f"{_rate_title(rival)}, PSNR at equal bytes{_without(gaps)}", gaps)
     return lines
 
 
@@ -154,7 +161,10 @@ def _above_lossless(measured):
 def _times_line(ours, title, found):
     """The largest of (ratio, where) that is above 1."""
     ratio, where = max(found, default=(0, ""))
-    return [[ours, title, f"{ratio:.1f} times" if ratio >= 1.05 else f"{ratio:.3f} times", where]] if ratio > 1 else []
+    if ratio <= 1:
+        return []
+    how = "the other has none" if math.isinf(ratio) else f"{ratio:.1f} times" if ratio >= 1.05 else f"{ratio:.3f} times"
+    return [[ours, title, how, where]]
 
 
 def _bounds(measured):
@@ -179,18 +189,46 @@ def _lossless(measured):
     return lines
 
 
+def _derived(measured):
+    """Of equal bytes: each error of what people derive, as a multiple of the other's."""
+    kinds = {"median of the error": lambda row: row["quantile_0.5"],
+             "99.9 % quantile of the error": lambda row: row["quantile_0.999"],
+             "largest error": lambda row: row["max_abs"],
+             "error of the gradient": lambda row: row["gradient_relative_rms"],
+             "1 - SSIM": lambda row: 1 - row["ssim"],
+             "shortest wavelength that is right": lambda row: row["wavelength"] or 0}
+    lines = []
+    for ours, rival in _pairs(RIVALS):
+        for title, of in kinds.items():
+            found = []
+            for result in measured.results("derived"):
+                rows = {(row["method"], row["share"]): row for row in result.get("rows", [])}
+                for (method, share), own in rows.items():
+                    theirs = rows.get((rival, share))
+                    if method == ours and theirs and of(own) > of(theirs):
+                        ratio = of(own) / of(theirs) if of(theirs) > 0 else math.inf
+                        found.append((ratio, f"{result['volume']} at {share} % of dense"))
+            lines += _times_line(ours, f"{_rate_title(rival)}, {title} at equal bytes", found)
+    return lines
+
+
 def _pictures(measured):
     rows = {(row["scene"], row["method"], row["rate"]): row for row in measured.results("pictures")}
     lines = []
     for ours, rival in _pairs(RIVALS):
-        gaps = []
+        gaps, missing = [], 0
         for (scene, method, rate), own in rows.items():
             theirs = rows.get((scene, rival, rate))
-            if method == ours and theirs and own["flip_mean"] is not None and theirs["flip_mean"] is not None:
-                gaps.append((own["flip_mean"] - theirs["flip_mean"],
-                             f"{own['flip_mean']:.4f} against {theirs['flip_mean']:.4f}", f"{scene} at 1:{rate}"))
+            if method != ours or not theirs or theirs["flip_mean"] is None:
+                continue
+            if own["flip_mean"] is None:
+                missing += 1
+                continue
+            gaps.append((own["flip_mean"] - theirs["flip_mean"],
+                         f"{own['flip_mean']:.4f} against {theirs['flip_mean']:.4f}", f"{scene} at 1:{rate}"))
         worst = max(gaps, default=(0,))
-        lines += [[ours, f"{_rate_title(rival)}, mean FLIP at equal bytes", *worst[1:]]] if worst[0] > 0 else []
+        title = f"{_rate_title(rival)}, mean FLIP at equal bytes" + (f" (in {missing} there is no file so small)" if missing else "")
+        lines += [[ours, title, *worst[1:]]] if worst[0] > 0 else []
     return lines
 
 
@@ -237,4 +275,17 @@ def _time(measured):
         found = [(packed / seconds[(where, leaves)], f"{where}, {packed:.2f} s against {seconds[(where, leaves)]:.2f} s")
                  for (where, encoding), packed in seconds.items() if encoding == "packed" and (where, leaves) in seconds]
         lines += _times_line("packed", f"{leaves}, seconds of a conversion", found)
+    return lines
+
+
+def _commands(measured):
+    """What follows the large conversion, of the packed file against the leaves."""
+    lines = []
+    for name in ("verify", "compare", "render"):
+        by = {}
+        for row in measured.results("headline"):
+            by.setdefault(size_text(row["extent"]), {})[row["encoding"]] = row[f"{name}_s"]
+        found = [(rows["packed"] / rows["auto"], f"{extent}, {rows['packed']:.1f} s against {rows['auto']:.1f} s")
+                 for extent, rows in by.items() if {"packed", "auto"} <= rows.keys()]
+        lines += _times_line("packed", f"auto, seconds of weir {name}", found)
     return lines

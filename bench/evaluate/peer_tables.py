@@ -17,10 +17,13 @@ TITLES = {"auto": "auto", "packed": "packed", "sperr": "SPERR", "sz3": "SZ3", "z
 
 
 def by_volume(measured):
-    """Volume's name -> method -> result, in the order of METHODS."""
-    by = {}
-    for result in sorted(measured.results("peers"), key=lambda r: METHODS.index(r["method"])):
-        by.setdefault(result["volume"], {})[result["method"]] = result
+    """Volume's name -> method -> result, in the order of METHODS. Without seconds of another version's run than weir's."""
+    by, versions = {}, {}
+    for record in sorted(measured.records("peers"), key=lambda r: METHODS.index(r["result"]["method"])):
+        result = record["result"]
+        version = versions.setdefault(result["volume"], record["weir"])
+        by.setdefault(result["volume"], {})[result["method"]] = (
+            result if record["weir"] == version else {**result, "speeds": []})
     return by
 
 
@@ -87,6 +90,25 @@ def speed_table(measured):
     header = [f"seconds at {SPEED_DB} dB", "method", *(f"{count} thread{'s' if count > 1 else ''}, {way}"
                                                        for count in counts for way in ("compression", "decompression"))]
     return table(header, [line + ["-"] * (len(header) - len(line)) for line in lines])
+
+
+def search_text(measured):
+    """How far from its target each peer's search ended at worst."""
+    parts = []
+    for method in ("sperr", "sz3", "zfp_rate"):
+        above, below = [], []
+        for volume, results in by_volume(measured).items():
+            if method not in results:
+                continue
+            above += [(row["psnr_db"] - row["target_db"], f"{volume} at {row['target_db']} dB")
+                      for row in results[method]["targets"] if row["bytes"] and row["psnr_db"] is not None]
+            below += [(1 - row["bytes"] / (row["share"] * results[method]["dense_bytes"] / 100),
+                       f"{volume} at {row['share']} %") for row in results[method]["shares"] if row["bytes"]
+                      and not row["lossless"]]
+        if above and below:
+            parts.append(f"{TITLES[method]} {max(above)[0]:.2f} dB ({max(above)[1]}) and {100 * max(below)[0]:.1f} % of the "
+                         f"bytes ({max(below)[1]})")
+    return f"Farthest from what is compared: {'; '.join(parts)}." if parts else ""
 
 
 def versions_text(measured):

@@ -16,6 +16,7 @@ from programs import ProgramFailed, run
 FLOAT_BITS = 32
 CHUNK_EDGE = 256  # of SPERR's default
 HEADER_BYTES = 64  # of a chunk, at most: what SPERR's files are longer than they are asked to be
+WORD_BYTES = 8  # zfp's streams end with a whole one
 
 
 @dataclasses.dataclass(frozen=True)
@@ -129,7 +130,7 @@ class Zfp(Peer):
         return [self.command, "-i", source, "-z", stream, "-f", "-3", *volume.extent, *options, *parallel]
 
     def decode(self, volume, stream, output, options, threads):
-        del threads  # zfp 1.0 decompresses by one
+        del threads  # zfp 1.0 decompresses by one, as report.md says
         return [self.command, "-z", stream, "-f", "-3", *volume.extent, *options, "-o", output]
 
     def version(self):
@@ -154,7 +155,7 @@ class ZfpRate(Zfp):
 
     def options_for_size(self, volume, size):
         blocks = math.prod(-(-n // 4) for n in volume.extent)
-        return ["-r", repr(max(1, 8 * size // blocks - 1) / 64)]  # the stream ends with a whole word
+        return ["-r", repr(max(1, 8 * (size - WORD_BYTES) // blocks) / 64)]
 
 
 class ZfpAccuracy(Zfp):

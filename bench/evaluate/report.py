@@ -7,6 +7,7 @@ import shutil
 
 from behind import behind_text
 from experiments.peers import Peers
+from peer_tables import OTHERS
 
 IMAGES = "images/evaluation"  # relative to the report
 NOT_MEASURED = "*Not measured yet.*"
@@ -39,7 +40,14 @@ def write_report(experiments, measured, directory):
 def broken_promises(experiments, measured):
     """A line for each thing that must hold and does not."""
     return [f"{experiment.name}: {line}" for experiment in experiments if measured.records(experiment.name)
-            for line in experiment.broken_promises(measured)]
+            for line in (*several_versions(experiment, measured), *experiment.broken_promises(measured))]
+
+
+def several_versions(experiment, measured):
+    """Figures of one table are those of one version of weir; what is kept of peers may be older."""
+    versions = sorted({record["weir"] for record in measured.records(experiment.name)
+                       if record["result"].get("method") not in OTHERS})
+    return [f"measured by {' and by '.join(versions)}; measure it with --again"] if len(versions) > 1 else []
 
 
 def promises_text(broken):

@@ -2,7 +2,7 @@
 
 import math
 
-MOST_STEPS = 9
+MOST_STEPS = 12
 
 
 def smallest_that_reaches(measure, target, start, slope, grain, tolerance, most_steps=MOST_STEPS):

@@ -7,8 +7,10 @@ import math
 import shutil
 
 from experiment import Experiment, describe, method_options, remove_volume, size_text
+from experiments.sizes import cells
 from experiments.zfp import zfp_statistics
 from markdown import command, decibel, scientific, table
+from peers import WORD_BYTES
 from programs import BUDGET_EXIT_CODE, ProgramFailed
 
 SHARES = (5, 10)  # percent of dense float32
@@ -51,10 +53,12 @@ class Derived(Experiment):
                     if method == "zfp" and shutil.which("zfp") is None:
                         continue
                     output = bench.scratch(f"{volume.name}.nvdb")
-                    certified = self._convert(bench, volume, path, method, share, output)
-                    if certified is None:
+                    made = self._convert(bench, volume, path, method, share, output)
+                    if made is None:
                         continue
-                    rows.append({"share": share, "method": method, **self._errors(bench, path, output, certified)})
+                    size, certified = made
+                    rows.append({"share": share, "method": method, "bytes_asked": share * volume.dense_bytes // 100,
+                                 "bytes": size, **self._errors(bench, path, output, certified)})
                     if volume.name == CHARTED and share == SHARES[0] and method == "packed":
                         chart = bench.directory / "derived" / f"{volume.name}_spectrum.png"
                         chart.parent.mkdir(parents=True, exist_ok=True)
@@ -63,22 +67,24 @@ class Derived(Experiment):
         return {**describe(volume), "rows": rows}
 
     def _convert(self, bench, volume, path, method, share, output):
-        """What certifies the gradient of `output`, {} where nothing does; None: there is no file of that size."""
+        """Bytes, and what certifies the gradient of `output`, {} where nothing does; None: there is no file of that size."""
+        size = share * volume.dense_bytes // 100
         if method == "zfp":
             decoded = bench.scratch(f"decoded_{volume.size_text}_float32.raw")
+            block_bits = 8 * (size - WORD_BYTES) // cells(volume.extent, 4)  # the most whole bits a block
             with bench.files.float32_file(volume) as wide:
-                zfp_statistics(["-i", wide, "-f", "-3", *volume.extent, "-r", repr(32 * share / 100), "-o", decoded])
+                theirs = zfp_statistics(["-i", wide, "-f", "-3", *volume.extent, "-r", repr(block_bits / 64), "-o", decoded])
             bench.weir.run("convert", decoded, "-o", output, "--overwrite", "--encoding", "packed", "--lossless")
             decoded.unlink()
-            return {}
+            return int(theirs["zfp"]), {}
         try:
-            made = bench.weir.report("convert", path, "-o", output, "--overwrite", "--rate", repr(100 / share), "--certify",
-                                     "gradient", *method_options(method))
+            made = bench.weir.report("convert", path, "-o", output, "--overwrite", "--size", size, "--certify", "gradient",
+                                     *method_options(method))
         except ProgramFailed as failure:
             if failure.code != BUDGET_EXIT_CODE:
                 raise
             return None
-        return made["error"].get("gradient", {})
+        return made["file"]["bytes"], made["error"].get("gradient", {})
 
     @staticmethod
     def _errors(bench, path, output, certified):
@@ -148,6 +154,9 @@ class Derived(Experiment):
     def broken_promises(self, measured):
         broken = []
         for row in self.rows(measured):
+            if row.get("bytes", 0) > row.get("bytes_asked", 0):
+                broken.append(f"{row['volume']} at {row['share']} %, {row['method']}: {row['bytes']} bytes, "
+                              f"{row['bytes_asked']} were asked for")
             certified = row["gradient_rms_certified"]
             if certified is not None and not math.isclose(certified, row["gradient_rms"], rel_tol=EQUAL, abs_tol=0):
                 broken.append(f"{row['volume']} at {row['share']} %, {row['method']}: the certificate has a gradient's error of "

@@ -12,8 +12,8 @@ import volumes
 from experiment import Experiment, describe, method_options, remove_volume, size_text
 from experiments.speed import read_twice, threads_here
 from markdown import command
-from peer_tables import (OURS, SHARES, SPEED_DB, TARGETS_DB, chart, shares_table, speed_table, targets_table,
-                         versions_text)
+from peer_tables import (OURS, SHARES, SPEED_DB, TARGETS_DB, chart, search_text, shares_table, speed_table,
+                         targets_table, versions_text)
 from png import write_png
 from programs import BUDGET_EXIT_CODE, ProgramFailed, run
 from search import smallest_that_reaches
@@ -37,8 +37,8 @@ class Peers(Experiment):
                 kept = [record for record in kept_records(bench.kept) if record["name"] in names]
                 print(f"peers: {peer.title} skipped, the command {peer.program} is not found"
                       + ("; its figures are those that are kept" if kept else ""), file=sys.stderr)
-                for record in kept:
-                    bench.store.adopt(record)
+                for record in kept:  # its seconds are of another day than weir's
+                    bench.store.adopt({**record, "result": {**record["result"], "speeds": []}})
         for volume in wanted:
             if bench.files.available(volume):
                 for encoding in OURS:
@@ -77,7 +77,7 @@ class Peers(Experiment):
             "zfp -i VOLUME_float32.raw -z OUT -f -3 X Y Z -r BITS        # or -a BOUND")))
 
     def text(self, measured):
-        return "\n\n".join((shares_table(measured), speed_table(measured), versions_text(measured),
+        return "\n\n".join((shares_table(measured), speed_table(measured), search_text(measured), versions_text(measured),
                             command("bench/evaluate.sh --only peers --sperr SPERR3D --sz3 SZ3")))
 
     def pictures(self, measured, directory):

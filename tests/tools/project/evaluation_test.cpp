@@ -189,8 +189,13 @@ TEST_F(Evaluation, APeerIsMeasuredWhereItIsFoundAndKeptWhereNot) {
   Json theirs = Json::array();
   const Json first = figures();
   for (const Json& row : first["peers"]) {
+    if (row["method"] == "zfp_rate" && !row["share"].is_null()) {  // as many whole bits for each block of 4^3 as fit
+      const double asked = row["share"].get<double>() / 100 * 4 * 48 * 48 * 48;
+      EXPECT_LE(row["bytes"], asked) << row;
+      EXPECT_GT(row["bytes"], asked - (12 * 12 * 12 / 8 + 16)) << row;
+    }
     if (row["method"] != "sz3") continue;
-    theirs.push_back(row);
+    if (row["threads"].is_null()) theirs.push_back(row);
     EXPECT_EQ(row["version"], "SZ3 9.9.9 of 0123456789ab");
     if (row["target_db"].is_null()) continue;
     EXPECT_GE(row["psnr_db"], row["target_db"]) << row;
@@ -229,7 +234,7 @@ TEST_F(Evaluation, APeerIsMeasuredWhereItIsFoundAndKeptWhereNot) {
   for (const Json& row : second["peers"]) {
     if (row["method"] == "sz3") again.push_back(row);
   }
-  EXPECT_EQ(again, theirs);
+  EXPECT_EQ(again, theirs);  // without seconds, which are not comparable with those of weir in another run
 }
 
 TEST_F(Evaluation, UnknownExperiment_IsRefusedWithTheKnownNames) {
