@@ -81,7 +81,7 @@ void reserve_ahead(OutputFiles& output, const ConversionOptions& options, const 
   constexpr std::uint64_t kLeastBytes = std::uint64_t{16} << 20U;
   const Budget::Kind kind = options.budget.kind;
   if (control.planned || !control.pads_file || (kind != Budget::Kind::size && kind != Budget::Kind::rate)) return;
-  const auto dense = static_cast<std::uint64_t>(source.info().domain().voxels()) * sizeof(float);
+  const std::uint64_t dense = float32_bytes(source.info().domain());
   const std::uint64_t bytes = asked_bytes(options.budget, dense);
   if (bytes < kLeastBytes || bytes >= dense) return;
   using Pages = OutputFiles::Pages;  // files of volumes on a device are mapped
@@ -129,6 +129,25 @@ struct Conversion {
   BlockCoder* coder() const { return source.resident() == nullptr ? control.coder : nullptr; }
 };
 
+// What of packed blocks the survey looks for: no more than the file will need, where a look ahead tells that.
+void aim_ladders(const Conversion& conversion, const ReadingPlan& reading, SurveyStores& stores,
+                 const StreamOptions& stream, LadderAim& aim) {
+  Journal* const journal = conversion.journal;
+  LadderState& state = journal == nullptr ? stores.ladders : journal->state.ladders;
+  const bool begun = journal != nullptr && !journal->state.survey.done.empty();
+  if (!state.decided && !begun) {
+    if (const auto outlook = look_ahead(conversion.source, reading, stores.rows, conversion.options, aim, stream)) {
+      state = decided_by(*outlook);
+      state.built = true;
+    }
+  }
+  if (state.decided && state.built) {
+    aim.near = state.near;
+    aim.window = state.window();
+  }
+  aim.coder = conversion.coder();
+}
+
 // Surveys and writes, on `threads` of the `workers` that there were to be.
 Sidecar convert_on(std::size_t threads, const Workers& workers, const Conversion& conversion,
                    std::chrono::steady_clock::time_point started) {
@@ -140,15 +159,11 @@ Sidecar convert_on(std::size_t threads, const Workers& workers, const Conversion
   Team& team = conversion.team;
   const SourceInfo& info = source.info();
   const Box domain = info.domain();
-  MemoryPlan memory;
-  ReadingPlan reading;
-  std::uint64_t cache_bytes = 0;
-  team.run([&] {
-    MemoryShares shares = share_memory(source, options, workers.resident, threads, journal == nullptr && team.alone());
-    memory = shares.memory;
-    reading = std::move(shares.reading);
-    cache_bytes = shares.cache_bytes;
-  });
+  MemoryShares shares;
+  team.run(
+      [&] { shares = share_memory(source, options, workers.resident, threads, journal == nullptr && team.alone()); });
+  const MemoryPlan& memory = shares.memory;
+  const ReadingPlan& reading = shares.reading;
   if (memory.record_bytes > 0) {
     using PagesOf = MemoryFileSystem::PagesOf;
     work.hold_records(reuses_pages(source, options) ? PagesOf::earlier_files : PagesOf::the_system);
@@ -173,9 +188,8 @@ Sidecar convert_on(std::size_t threads, const Workers& workers, const Conversion
     return work.spill_records();
   };
   std::optional<LadderAim> ladders = surveyed_ladders(options, info);
-  SurveyStores stores{RowStore(spill("rows"), leaves, memory.selection, team), {}, {}};
-  if (visibility) stores.faces.emplace(spill("faces"), leaves);
-  if (ladders) stores.rows.set_ladders(std::make_unique<LeafStore<PackedLadder>>(spill("ladders"), leaves));
+  SurveyStores stores =
+      make_survey_stores(spill, leaves, memory.selection, visibility.has_value(), ladders.has_value(), team);
   if (journal != nullptr) forget_damaged(*journal, stores, ladders);
   SurveyState from_nothing;
   SurveyState& surveyed = journal == nullptr ? from_nothing : journal->state.survey;
@@ -187,22 +201,9 @@ Sidecar convert_on(std::size_t threads, const Workers& workers, const Conversion
     }
   }
   team.run([&] { start_pass(control, "survey", voxels - voxels_of(surveyed.done, reading.survey)); });
-  if (ladders) {
-    LadderState& state = journal == nullptr ? stores.ladders : journal->state.ladders;
-    if (!state.decided && surveyed.done.empty()) {
-      if (const auto outlook = look_ahead(source, reading, stores.rows, options, *ladders, stream)) {
-        state = decided_by(*outlook);
-        state.built = true;
-      }
-    }
-    if (state.decided && state.built) {
-      ladders->near = state.near;
-      ladders->window = state.window();
-    }
-    ladders->coder = conversion.coder();
-  }
-  if (cache_bytes > 0 && voxels_of(surveyed.done, reading.survey) < voxels) {
-    stores.rows.set_cache(LeafCache::where_there_is_room(leaves, cache_bytes));
+  if (ladders) aim_ladders(conversion, reading, stores, stream, *ladders);
+  if (shares.cache_bytes > 0 && voxels_of(surveyed.done, reading.survey) < voxels) {
+    stores.rows.set_cache(LeafCache::where_there_is_room(leaves, shares.cache_bytes));
   }
   const Survey survey = [&] {
     const TraceSpan span(control.trace, "survey pass", voxels * sizeof(float));
@@ -258,7 +259,8 @@ Sidecar convert_volume(VolumeSource& source, const ConversionOptions& options, c
   OutputFiles output(files, options.output, options.overwrite);
   WorkDirectory work(files, options.output, options.work_dir);
   std::unique_ptr<Journal> journal;
-  // Several processes have none: what one left to be continued is removed, as for any conversion without it.
+  // A team has no journal. With Resume::off, which the MPI program sets, open_journal() gives none and removes what was
+  // left to be continued.
   if (team.alone() || options.resume == Resume::off) {
     journal = open_journal(source.info(), options, control, output, files);
   }

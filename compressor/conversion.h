@@ -18,7 +18,8 @@ class WorkDirectory;
 /// the new one is left, except, where it can be continued (journal.h), the hidden directory beside it: the same call
 /// continues from there and gives the same bytes. Where `team` has other ranks, each calls this with a source of the
 /// same volume, the same options and a file system in which they find each other's files; an interrupted conversion is
-/// lost then, and options.memory and options.threads are those of each process.
+/// lost then, and options.memory and options.threads are those of each process. A team's options.resume is Resume::off;
+/// with another, what an earlier conversion left stays.
 Sidecar convert_volume(VolumeSource& source, const ConversionOptions& options, const ConversionControl& control,
                        FileSystem& files, Team& team = no_team());
 

@@ -20,7 +20,7 @@ namespace {
 std::uint64_t bytes_to_cache(std::uint64_t ceiling, std::uint64_t resident, const Box& domain) {
   constexpr std::uint64_t kLeastEnough = std::uint64_t{64} << 20U;
   constexpr std::uint64_t kEnough = std::uint64_t{512} << 20U;
-  const std::uint64_t dense = static_cast<std::uint64_t>(domain.voxels()) * sizeof(float);
+  const std::uint64_t dense = float32_bytes(domain);
   const std::uint64_t needed = resident + std::clamp(dense / 2, kLeastEnough, kEnough);
   const NodeLattice leaves = make_lattice(domain, kLeafDim);
   return std::min(LeafCache::whole_bytes(leaves), ceiling > needed ? (ceiling - needed) / 4 * 3 : 0);

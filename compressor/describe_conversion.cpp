@@ -108,7 +108,7 @@ void describe_file(Sidecar& sidecar, const SourceInfo& info, const Survey& surve
                    const Background& background, const GridHead& head, const EncodedFile& encoded, const Shown& shown) {
   const FilePlan& file = encoded.file;
   const FileSize& size = file.size;
-  const std::uint64_t dense_bytes = static_cast<std::uint64_t>(info.domain().voxels()) * sizeof(float);
+  const std::uint64_t dense_bytes = float32_bytes(info.domain());
   sidecar.grid = {head.name, grid_type_name(head.type), info.extent, info.spacing, info.origin, info.domain()};
   sidecar.background = {static_cast<double>(background.value), background.method, background.share};
   sidecar.budget.kind = size.kind;

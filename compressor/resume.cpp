@@ -21,7 +21,7 @@ bool is_final(const Error& error) {
 }  // namespace
 
 bool is_resumable(const SourceInfo& info, const ConversionOptions& options, bool in_memory) {
-  const bool large = static_cast<std::uint64_t>(info.domain().voxels()) * sizeof(float) >= kResumableBytes;
+  const bool large = float32_bytes(info.domain()) >= kResumableBytes;
   return !in_memory && (options.resume == Resume::on || (options.resume == Resume::automatic && large));
 }
 

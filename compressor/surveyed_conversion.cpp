@@ -187,14 +187,14 @@ class SurveyedConversion {
   // All that selection needs.
   FileRequest prepare() {
     const TraceSpan span(parts_.control.trace, "background");
-    find_background();
+    prepare_source();
     FileRequest request = make_request();
     finish_ladders(request);
     return request;
   }
 
-  // The background and the source's digest, at the same time.
-  void find_background() {
+  // Refuses values that the options do; finds the background and the source's digest at the same time, and saves.
+  void prepare_source() {
     refuse_values(options_, survey_, info_);
     Journal* const journal = parts_.journal;
     const bool known = journal != nullptr && journal->state.background;

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
+#include <memory>
 #include <optional>
 
 #include "compressor/conversion_control.h"
@@ -54,6 +56,17 @@ struct SurveyStores {
   std::optional<LeafStore<LeafFaces>> faces;  ///< with a scene; given back once it is used
   LadderState ladders;                        ///< of packed blocks, as the survey built them
 };
+
+/// Empty ones of those leaves, in the files that `spill` gives for "rows", where a scene weighs "faces", and where
+/// blocks are packed "ladders".
+inline SurveyStores make_survey_stores(const std::function<std::shared_ptr<File>(const char* name)>& spill,
+                                       const NodeLattice& leaves, const SelectionRoom& room, bool faces, bool ladders,
+                                       Team& team = no_team()) {
+  SurveyStores stores{RowStore(spill("rows"), leaves, room, team), {}, {}};
+  if (faces) stores.faces.emplace(spill("faces"), leaves);
+  if (ladders) stores.rows.set_ladders(std::make_unique<LeafStore<PackedLadder>>(spill("ladders"), leaves));
+  return stores;
+}
 
 /// Writes the volume that `survey` and `stores` tell of, and its sidecar, which it returns. `started` is when the
 /// survey was: for Sidecar::Timing.

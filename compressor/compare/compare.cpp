@@ -32,7 +32,8 @@ class DifferenceTally {
     const Box inside = leaves.voxels(leaf);
     gather_leaf(block.values, block.voxels, node, inside, 0.0F, source_);
     grid.decode_block(grid.block_at(node.lo), decoded_);
-    if (inside != node) hide_outside(node, inside);
+    // Voxels outside the domain become equal, so that they add nothing.
+    if (inside != node) decoded_ = inside_only(decoded_, source_, node, inside);
     const LeafDifference difference = difference_of(source_, decoded_);
     squared_error_.add(difference.squared_error);
     nonfinite_ += difference.nonfinite;
@@ -88,32 +89,15 @@ class DifferenceTally {
     return static_cast<std::size_t>(offset.x << 6 | offset.y << 3 | offset.z);
   }
 
-  // Makes the voxels outside the domain equal, so that they add nothing.
-  void hide_outside(const Box& node, const Box& inside) {
-    for (std::int64_t i = 0; i < kLeafVoxels; ++i) {
-      const Index3 offset{i >> 6, i >> 3 & 7, i & 7};
-      if (!inside.contains(node.lo + offset)) decoded_[position(offset)] = source_[position(offset)];
-    }
-  }
-
-  template <typename Visit>
-  static void for_each_inside(const Box& inside, const Visit& visit) {
-    for (std::int64_t z = inside.lo.z; z < inside.hi.z; ++z) {
-      for (std::int64_t y = inside.lo.y; y < inside.hi.y; ++y) {
-        for (std::int64_t x = inside.lo.x; x < inside.hi.x; ++x) visit(Index3{x, y, z});
-      }
-    }
-  }
-
   std::uint64_t zeros_inside(const Box& node, const Box& inside) const {
     if (inside == node) return static_cast<std::uint64_t>(std::count(source_.begin(), source_.end(), 0.0F));
     std::uint64_t zeros = 0;
-    for_each_inside(inside, [&](const Index3& i) { zeros += source_[position(i - node.lo)] == 0.0F ? 1 : 0; });
+    for_each_index(inside, [&](const Index3& i) { zeros += source_[position(i - node.lo)] == 0.0F ? 1 : 0; });
     return zeros;
   }
 
   void count_missing(const Box& node, const Box& inside) {
-    for_each_inside(inside, [&](const Index3& i) {
+    for_each_index(inside, [&](const Index3& i) {
       const std::size_t at = position(i - node.lo);
       if (!is_missing(source_[at])) return;
       ++missing_;
@@ -123,7 +107,7 @@ class DifferenceTally {
 
   MinMax range_inside(const Box& node, const Box& inside) const {
     MinMax range{std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()};
-    for_each_inside(inside, [&](const Index3& i) {
+    for_each_index(inside, [&](const Index3& i) {
       const float value = source_[position(i - node.lo)];
       if (value - value != 0.0F) return;
       range.min = std::min(range.min, value);
@@ -134,7 +118,7 @@ class DifferenceTally {
 
   Index3 first_maximum(const Box& node, const Box& inside, double max_abs) const {
     Index3 first = inside.hi;
-    for_each_inside(inside, [&](const Index3& i) {
+    for_each_index(inside, [&](const Index3& i) {
       const std::size_t at = position(i - node.lo);
       if (first == inside.hi && abs_difference(source_[at], decoded_[at]) == max_abs) first = i;
     });

@@ -3,7 +3,6 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
-#include <algorithm>
 #include <memory>
 #include <span>
 #include <utility>
@@ -29,23 +28,14 @@ Box regions_under(const TreeRegions& tree, const Box& leaf_box) {
   return {lo, last + Index3{1, 1, 1}};
 }
 
-template <typename Visit>
-void for_each_in(const Box& box, Visit&& visit) {
-  for (std::int64_t z = box.lo.z; z < box.hi.z; ++z) {
-    for (std::int64_t y = box.lo.y; y < box.hi.y; ++y) {
-      for (std::int64_t x = box.lo.x; x < box.hi.x; ++x) visit(Index3{x, y, z});
-    }
-  }
-}
-
 // The rows of `block` (lattice positions) that hold kept leaves.
 Box trim_to_kept(const TreeRegions& tree, const ChoiceStore& store, const Box& block) {
   RowsToRead kept(block);
-  for_each_in(regions_under(tree, block), [&](const Index3& at) {
+  for_each_index(regions_under(tree, block), [&](const Index3& at) {
     const std::int64_t region = tree.region_lattice.linear(at);
     if (tree.regions[static_cast<std::size_t>(region)].leaves == 0) return;
     const LeafChoices choices = store.read(region);
-    for_each_in(intersect(tree.leaf_box(region), block), [&](const Index3& leaf) {
+    for_each_index(intersect(tree.leaf_box(region), block), [&](const Index3& leaf) {
       if (choices.kept(tree.mask_position(leaf))) kept.add(leaf);
     });
   });
@@ -68,7 +58,7 @@ void for_each_coded_layer(const EncodeTarget& target, const SourceInfo& info, co
                           const ForEach& for_each, const Visit& visit) {
   const TreeRegions& tree = target.tree;
   std::vector<std::int64_t> regions;
-  for_each_in(regions_under(tree, leaf_box), [&](const Index3& at) {
+  for_each_index(regions_under(tree, leaf_box), [&](const Index3& at) {
     const std::int64_t region = tree.region_lattice.linear(at);
     if (tree.regions[static_cast<std::size_t>(region)].leaves > 0) regions.push_back(region);
   });
@@ -114,6 +104,82 @@ void for_each_layer(const EncodeTarget& target, const SourceInfo& info, const Bl
   });
 }
 
+// The leaves of a block, by the calling thread.
+void encode_alone(const EncodeTarget& target, const SourceInfo& info, const Block& block, const Box& leaf_box,
+                  LayerEncoder& encoder) {
+  const auto in_turn = [](std::int64_t begin, std::int64_t end, const auto& action) {
+    for (std::int64_t i = begin; i < end; ++i) action(i);
+  };
+  for_each_layer(target, info, block, leaf_box, in_turn,
+                 [&](std::int64_t region, const RegionPlaces& places, const SurveyedLeaves& surveyed, std::int64_t x,
+                     const CodedRegion* coded) {
+                   const TraceSpan span(target.trace, "encode");
+                   encoder.add_layer(block, leaf_box, region, places, surveyed, x, coded);
+                 });
+  encoder.finish();
+}
+
+using LayerEncoders = tbb::enumerable_thread_specific<std::unique_ptr<LayerEncoder>>;
+
+// The same by TBB's workers, too.
+void encode_shared(const EncodeTarget& target, const SourceInfo& info, const Block& block, const Box& leaf_box,
+                   LayerEncoders& encoders) {
+  const auto in_parallel = [](std::int64_t begin, std::int64_t end, const auto& action) {
+    tbb::parallel_for(begin, end, action);
+  };
+  for_each_layer(target, info, block, leaf_box, in_parallel,
+                 [&](std::int64_t region, const RegionPlaces& places, const SurveyedLeaves& surveyed, std::int64_t x,
+                     const CodedRegion* coded) {
+                   const TraceSpan span(target.trace, "encode");
+                   LayerEncoder& encoder = *encoders.local();
+                   encoder.add_layer(block, leaf_box, region, places, surveyed, x, coded);
+                   encoder.finish();
+                 });
+}
+
+// What is left to be encoded. Boxes are of leaf-lattice positions, but for voxel_boxes.
+struct EncodeWork {
+  std::vector<Box> parts;            // what is not done
+  std::vector<Box> leaf_boxes;       // what of that holds kept leaves
+  std::vector<Box> voxel_boxes;      // its voxels
+  std::vector<std::size_t> part_of;  // by leaf box
+
+  // Parts that are done once the first `boxes` boxes are.
+  std::size_t parts_done(std::size_t boxes) const { return boxes == part_of.size() ? parts.size() : part_of[boxes]; }
+};
+
+EncodeWork work_left(const BlockPlan& plan, const EncodeTarget& target, const EncodedState& known) {
+  EncodeWork work;
+  const OwnLeaves own(plan.lattice, target.rows.team());
+  for (std::int64_t i = 0; i < plan.size(); ++i) {
+    for (const Box& missing : known.done.missing_from(plan.leaf_box(i))) {
+      for (const Box& part : own.of(missing)) {
+        work.parts.push_back(part);
+        const Box kept = trim_to_kept(target.tree, target.choices, part);
+        if (kept.empty()) continue;
+        work.leaf_boxes.push_back(kept);
+        work.voxel_boxes.push_back(plan.voxel_box(kept));
+        work.part_of.push_back(work.parts.size() - 1);
+      }
+    }
+  }
+  return work;
+}
+
+void encode_boxes(VolumeSource& source, const EncodeWork& work, const EncodeTarget& target,
+                  const StreamOptions& options, Reading reading, LayerEncoders& encoders) {
+  if (reading == Reading::in_place) {
+    work_in_place(source, work.voxel_boxes, options, [&](const Block& block) {
+      encode_alone(target, source.info(), block, work.leaf_boxes[block.index], *encoders.local());
+    });
+    return;
+  }
+  CachedSource cached(source, target.rows.cache());
+  stream_blocks(cached, work.voxel_boxes, options, [&](const Block& block) {
+    encode_shared(target, source.info(), block, work.leaf_boxes[block.index], encoders);
+  });
+}
+
 }  // namespace
 
 bool encodes_by_regions(VolumeSource& source, bool packed, const Team& team, bool resumes) {
@@ -125,32 +191,14 @@ void encode_leaves(VolumeSource& source, const BlockPlan& plan, const EncodeTarg
   if (encodes_by_regions(source, target.packed != nullptr, target.rows.team(), state != nullptr)) {
     return encode_resident(*source.resident(), source, target, options);
   }
-  const TreeRegions& tree = target.tree;
   EncodedState nothing;
   EncodedState& known = state == nullptr ? nothing : *state;
   const EncodedSums before = known.sums;
-  const OwnLeaves own(plan.lattice, target.rows.team());
-  std::vector<Box> parts;  // what is not done
-  std::vector<Box> leaf_boxes;
-  std::vector<Box> voxel_boxes;
-  std::vector<std::size_t> part_of;  // by leaf box
-  for (std::int64_t i = 0; i < plan.size(); ++i) {
-    for (const Box& missing : known.done.missing_from(plan.leaf_box(i))) {
-      for (const Box& part : own.of(missing)) {
-        parts.push_back(part);
-        const Box kept = trim_to_kept(tree, target.choices, part);
-        if (kept.empty()) continue;
-        leaf_boxes.push_back(kept);
-        voxel_boxes.push_back(plan.voxel_box(kept));
-        part_of.push_back(parts.size() - 1);
-      }
-    }
-  }
-  tbb::enumerable_thread_specific<std::unique_ptr<LayerEncoder>> encoders([&] { return make_encoder(target); });
+  const EncodeWork work = work_left(plan, target, known);
+  LayerEncoders encoders([&] { return make_encoder(target); });
   std::size_t told = 0;
   const auto tell = [&](std::size_t boxes_done) {
-    const std::size_t end = boxes_done == part_of.size() ? parts.size() : part_of[boxes_done];
-    for (; told < end; ++told) known.done.add(parts[told]);
+    for (const std::size_t end = work.parts_done(boxes_done); told < end; ++told) known.done.add(work.parts[told]);
     known.sums = before;
     for (const std::unique_ptr<LayerEncoder>& encoder : encoders) known.sums.add(encoder->sums());
   };
@@ -163,40 +211,8 @@ void encode_leaves(VolumeSource& source, const BlockPlan& plan, const EncodeTarg
       pauses.save();
     };
   }
-  if (reading == Reading::in_place) {
-    const auto in_turn = [](std::int64_t begin, std::int64_t end, const auto& action) {
-      for (std::int64_t i = begin; i < end; ++i) action(i);
-    };
-    work_in_place(source, voxel_boxes, stream, [&](const Block& block) {
-      const Box& leaf_box = leaf_boxes[block.index];
-      LayerEncoder& encoder = *encoders.local();
-      for_each_layer(target, source.info(), block, leaf_box, in_turn,
-                     [&](std::int64_t region, const RegionPlaces& places, const SurveyedLeaves& surveyed,
-                         std::int64_t x, const CodedRegion* coded) {
-                       const TraceSpan span(target.trace, "encode");
-                       encoder.add_layer(block, leaf_box, region, places, surveyed, x, coded);
-                     });
-      encoder.finish();
-    });
-    tell(voxel_boxes.size());
-    return;
-  }
-  const auto in_parallel = [](std::int64_t begin, std::int64_t end, const auto& action) {
-    tbb::parallel_for(begin, end, action);
-  };
-  CachedSource cached(source, target.rows.cache());
-  stream_blocks(cached, voxel_boxes, stream, [&](const Block& block) {
-    const Box& leaf_box = leaf_boxes[block.index];
-    for_each_layer(target, source.info(), block, leaf_box, in_parallel,
-                   [&](std::int64_t region, const RegionPlaces& places, const SurveyedLeaves& surveyed, std::int64_t x,
-                       const CodedRegion* coded) {
-                     const TraceSpan span(target.trace, "encode");
-                     LayerEncoder& encoder = *encoders.local();
-                     encoder.add_layer(block, leaf_box, region, places, surveyed, x, coded);
-                     encoder.finish();
-                   });
-  });
-  tell(voxel_boxes.size());
+  encode_boxes(source, work, target, stream, reading, encoders);
+  tell(work.voxel_boxes.size());
 }
 
 }  // namespace weir

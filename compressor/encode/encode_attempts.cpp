@@ -286,7 +286,7 @@ struct Attempts {
   // Of a volume that the default rate would destroy more is kept, from the first attempt on again.
   void raise_quality() {
     begin_again();
-    const auto dense = static_cast<std::uint64_t>(request.domain.voxels()) * sizeof(float);
+    const std::uint64_t dense = float32_bytes(request.domain);
     if (request.encoding == Encoding::automatic || request.encoding == Encoding::float32) {
       request.budget.kind = Budget::Kind::lossless;
       if (plan_file(request, rows, work).size.bytes < dense) return;

@@ -1,5 +1,5 @@
-// Of a volume whose regions are encoded one after the other, each as a whole: their errors, and their part of the tree,
-// while their records are there.
+// Takes the regions of a volume that are encoded one after the other, each as a whole: sums their errors and writes
+// their part of the tree while their records are in memory.
 #pragma once
 
 #include <cstdint>

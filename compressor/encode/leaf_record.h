@@ -13,7 +13,6 @@
 #include "format/io/file_system.h"
 #include "format/leaf/leaf_codec.h"
 #include "format/leaf/leaf_record.h"
-#include "format/nanovdb/nvdb_grid.h"
 
 namespace weir {
 

@@ -8,7 +8,7 @@
 
 #include "compressor/encode/leaf_record.h"
 #include "format/base/index.h"
-#include "format/nanovdb/nvdb_grid.h"
+#include "format/leaf/bounds.h"
 
 namespace weir {
 

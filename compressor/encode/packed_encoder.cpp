@@ -22,6 +22,7 @@
 #include "format/packed/block_decode.h"
 #include "format/packed/block_encode.h"
 #include "format/packed/rounded_block.h"
+#include "format/packed/stream_length.h"
 
 namespace weir {
 namespace {
@@ -30,7 +31,7 @@ class PackedEncoder final : public PackedLayerEncoder {
  public:
   explicit PackedEncoder(const EncodeTarget& target)
       : target_(target), packed_(*target.packed), records_(target.records, target.sums) {
-    stream_.resize(4096);
+    stream_.resize(kStreamRoom);
   }
 
   void add_layer(const Block& block, const Box& leaf_box, std::int64_t region_index, const RegionPlaces& of_region,
@@ -61,7 +62,7 @@ class PackedEncoder final : public PackedLayerEncoder {
     const Box box = target_.tree.leaf_box(region_index);
     const StreamPlaces& places = *of_region.streams;
     chunk_ = {coded.chunk(), chunk_offset(target_, region_index) + places.base(0)};
-    surveyed.expect_layer(x);
+    surveyed.prefetch_layer(x);
     for_each_kept(region_index, places, box, x, [&](const Index3& leaf, const KeptPlace& place) {
       if (const std::optional<CodedStream> known = coded.find(leaf)) {
         surveyed.check(leaf, *known->source);
@@ -134,7 +135,7 @@ class PackedEncoder final : public PackedLayerEncoder {
     }
     std::uint32_t bytes = 0;
     std::vector<std::byte>& scratch = exact_;
-    scratch.resize(4096);
+    scratch.resize(kStreamRoom);
     if (step == PlannedStreams::kBoundedStep) {
       bytes = exact_block_.write_bounded(values_, *packed_.max_error, scratch);
     } else if (stream.size() == kRawStreamBytes) {
@@ -193,9 +194,7 @@ class PackedEncoder final : public PackedLayerEncoder {
   // Of the in-domain voxels.
   LeafDifference difference_from(const LeafValues& before) const {
     if (inside_ == node_) return difference_of(before, decoded_);
-    LeafValues seen = decoded_;
-    for_each_inside(node_, inside_, [&](std::size_t i) { seen[i] = before[i]; });
-    return difference_of(seen, decoded_);
+    return difference_of(inside_only(before, decoded_, node_, inside_), decoded_);
   }
 
   // The chunk that a coder has left its streams in, at `offset` of the file, and the pieces of it that are to be

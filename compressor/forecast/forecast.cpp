@@ -106,9 +106,7 @@ class Forecaster {
     return budget.by_size() || (budget.kind == Budget::Kind::automatic && !plan_.whole());
   }
 
-  std::uint64_t bytes_asked() const {
-    return asked_bytes(options_.budget, static_cast<std::uint64_t>(domain_.voxels()) * sizeof(float));
-  }
+  std::uint64_t bytes_asked() const { return asked_bytes(options_.budget, float32_bytes(domain_)); }
 
   void expect_asked_bytes() {
     if (!asks_bytes() || options_.budget.at_most) return;

@@ -6,7 +6,7 @@
 
 #include "compressor/forecast/sample_plan.h"
 #include "format/base/index.h"
-#include "format/nanovdb/nvdb_grid.h"
+#include "format/leaf/bounds.h"
 #include "ingest/source/volume_source.h"
 
 namespace weir {

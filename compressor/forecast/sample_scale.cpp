@@ -28,7 +28,7 @@ double SampleScale::fixed_of_sample(Encoding encoding, Preview preview, std::uin
 Budget SampleScale::budget() const {
   const bool by_size = options_.budget.by_size() || options_.budget.kind == Budget::Kind::automatic;
   if (!by_size || volume_ == sample_) return options_.budget;
-  const auto dense = static_cast<std::uint64_t>(volume_.voxels()) * sizeof(float);
+  const std::uint64_t dense = float32_bytes(volume_);
   const std::uint64_t asked = asked_bytes(options_.budget, dense);
   const auto in_proportion = static_cast<std::uint64_t>(std::ceil(static_cast<double>(asked) * share_));
   const double left = static_cast<double>(asked) - fixed_of_volume(options_.encoding, options_.preview, asked);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "format/base/index.h"
-#include "format/nanovdb/nvdb_grid.h"
+#include "format/leaf/bounds.h"
 
 namespace weir {
 

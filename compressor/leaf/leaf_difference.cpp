@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 
+#include "compressor/leaf/inside_voxels.h"
 #include "format/base/doubles8.h"
 
 namespace weir {
@@ -129,6 +130,12 @@ LeafDifference difference_of(const LeafValues& source, const LeafValues& decoded
     }
   }
   return result;
+}
+
+LeafValues inside_only(const LeafValues& values, const LeafValues& outside, const Box& node, const Box& inside) {
+  LeafValues all = outside;
+  for_each_inside(node, inside, [&](std::size_t i) { all[i] = values[i]; });
+  return all;
 }
 
 double abs_difference(float source, float decoded) {

@@ -3,8 +3,9 @@
 
 #include <cstdint>
 
+#include "format/base/index.h"
+#include "format/leaf/bounds.h"
 #include "format/leaf/leaf_codec.h"
-#include "format/nanovdb/nvdb_grid.h"
 
 namespace weir {
 
@@ -22,6 +23,10 @@ struct LeafDifference {
 /// Sums run in 16 lanes over the 512 voxels in leaf order, lanes are added pairwise: the same bits on
 /// every instruction set.
 LeafDifference difference_of(const LeafValues& source, const LeafValues& decoded);
+
+/// `values` at the voxels of `inside` in the leaf at `node`, `outside` at the others: these then make no difference
+/// from what has `outside` there.
+LeafValues inside_only(const LeafValues& values, const LeafValues& outside, const Box& node, const Box& inside);
 
 /// |source - decoded| in double where both are finite, else 0: what max_abs is the largest of.
 double abs_difference(float source, float decoded);

@@ -14,18 +14,6 @@
 namespace weir {
 namespace {
 
-// Gives voxels outside the domain the code of the nearest one inside: every layer of the leaf then stays within the
-// bounds of its part inside, which the macrocells that reach into it know.
-void extend_outside(const Box& node, const Box& inside, std::array<std::uint16_t, kLeafVoxels>& codes) {
-  const Index3 lo = inside.lo - node.lo;
-  const Index3 last = inside.hi - node.lo - Index3{1, 1, 1};
-  for_each_inside(node, node, [&](std::size_t i) {
-    const auto at = static_cast<std::int64_t>(i);
-    const Index3 nearest = max(lo, min(last, Index3{at >> 6, at >> 3 & 7, at & 7}));
-    codes[i] = codes[static_cast<std::size_t>(nearest.x << 6 | nearest.y << 3 | nearest.z)];
-  });
-}
-
 // `distinct`: the values without those that repeat others.
 Quantiser choose_quantiser(std::span<const float> values, std::span<const float> distinct, unsigned bits, Fit fit,
                            const LeafRepeats& repeats) {
@@ -79,15 +67,8 @@ void quantise_part(const LeafValues& values, const Box& node, const Box& inside,
   quantise(seen, leaf.quantiser, std::span(codes).first(count));
   count = 0;
   for_each_inside(node, inside, [&](std::size_t i) { leaf.codes[i] = codes[count++]; });
-  extend_outside(node, inside, leaf.codes);
+  extend_outside(node, inside, leaf.codes);  // within bounds that the macrocells that reach into the leaf know
   decode(leaf.codes.data(), kLeafVoxels, leaf.quantiser, leaf.decoded.data());
-}
-
-// `values` inside the domain, and outside it what is decoded there, which is no error.
-LeafValues inside_only(const LeafValues& values, const LeafValues& decoded, const Box& node, const Box& inside) {
-  LeafValues seen = decoded;
-  for_each_inside(node, inside, [&](std::size_t i) { seen[i] = values[i]; });
-  return seen;
 }
 
 // Error and exactness of a leaf of finite values; the squared error is no finite number where one is not. In the

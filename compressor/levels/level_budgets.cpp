@@ -49,7 +49,7 @@ void check_level_budgets(std::span<const SeriesStep> steps, std::span<const std:
   for (std::size_t i = at; i < steps.size() && (i == at || steps[i].from_finest.value_or(0) > 0); ++i) {
     const std::unique_ptr<VolumeSource> source = open(steps[i]);
     const Box domain = source->info().domain();
-    const std::uint64_t dense = static_cast<std::uint64_t>(domain.voxels()) * sizeof(float);
+    const std::uint64_t dense = float32_bytes(domain);
     const std::uint64_t asked = asked_bytes(options.budget, dense);
     const std::uint64_t smallest = smallest_tree(*source, options);
     suitable.add(dense, smallest, asked, domain);

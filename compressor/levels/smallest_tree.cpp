@@ -4,6 +4,7 @@
 
 #include "compressor/select/fixed_bytes.h"
 #include "compressor/select/leaf_choice.h"
+#include "compressor/select/leaf_gain.h"
 #include "compressor/select/tree_regions.h"
 #include "format/layout/tree_layout.h"
 #include "format/nanovdb/macrocells.h"
@@ -14,22 +15,9 @@ namespace {
 constexpr std::uint64_t kOneValueBlockBytes = 8;  // of a packed block's stream of one value, and where it ends; 7
 
 std::uint64_t bytes_of_required_leaf(const ConversionOptions& options) {
-  switch (options.encoding) {
-    case Encoding::fp4:
-      return leaf_bytes(LeafWidth::bits4);
-    case Encoding::fp8:
-      return leaf_bytes(LeafWidth::bits8);
-    case Encoding::fp16:
-      return leaf_bytes(LeafWidth::bits16);
-    case Encoding::automatic:
-    case Encoding::fpn:
-      if (options.metric == Metric::sse) return leaf_bytes(LeafWidth::bits1);
-      break;
-    case Encoding::float32:
-    case Encoding::packed:
-      break;
-  }
-  return leaf_bytes(LeafWidth::float32);
+  Encoding smallest = options.encoding == Encoding::automatic ? Encoding::fpn : options.encoding;
+  if (smallest == Encoding::fpn && options.metric != Metric::sse) smallest = Encoding::float32;
+  return leaf_bytes(widths_of(smallest).front());
 }
 
 // The voxels with a value of each leaf of a region, and what follows.

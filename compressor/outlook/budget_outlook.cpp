@@ -176,7 +176,7 @@ BudgetOutlook judge(const FileRequest& request, const RowStore& rows) {
                                  kLeastOfPreview * preview_bytes(steps, sample, rows.leaves(), bought->least_key);
     }
   } else {
-    const auto dense = static_cast<std::uint64_t>(request.domain.voxels()) * sizeof(float);
+    const std::uint64_t dense = float32_bytes(request.domain);
     const std::uint64_t asked = asked_bytes(budget, dense);
     const std::uint64_t fixed =
         fixed_bytes(request.domain, Encoding::packed, request.packed.preview, asked, region_count(request.domain));

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "compressor/leaf/inside_voxels.h"
 #include "format/base/simd.h"
 
 namespace weir {
@@ -18,17 +19,6 @@ WEIR_SIMD void transpose_block(const float* values, float* block) {
 }
 
 }  // namespace
-
-void extend_outside(const Box& node, const Box& inside, LeafValues& block) {
-  if (inside == node) return;
-  const Index3 lo = inside.lo - node.lo;
-  const Index3 last = inside.hi - node.lo - Index3{1, 1, 1};
-  const LeafValues given = block;
-  for (std::int64_t i = 0; i < kLeafVoxels; ++i) {
-    const Index3 nearest = max(lo, min(last, Index3{i >> 6, i >> 3 & 7, i & 7}));
-    block[static_cast<std::size_t>(i)] = given[static_cast<std::size_t>(nearest.x << 6 | nearest.y << 3 | nearest.z)];
-  }
-}
 
 void block_values(std::span<const float> values, const Box& node, const Box& inside, LeafValues& block) {
   if (inside == node) return transpose_block(values.data(), block.data());

@@ -10,7 +10,7 @@
 namespace weir {
 
 /// From the in-domain values of a block, x fastest, to the order of a leaf (z fastest); the others as by
-/// extend_outside. `inside` lies in the block's box `node`.
+/// extend_outside (inside_voxels.h). `inside` lies in the block's box `node`.
 void block_values(std::span<const float> values, const Box& node, const Box& inside, LeafValues& block);
 
 /// The other way round: the in-domain values of a block, x fastest, in `values`.
@@ -20,8 +20,5 @@ std::span<const float> in_domain_values(const float* block, const Box& node, con
 /// volume as by extend_outside. The box is read once. Throws as VolumeSource::read.
 void read_blocks(VolumeSource& source, const NodeLattice& leaves, const Box& leaf_box, std::span<const Index3> wanted,
                  std::span<float> blocks);
-
-/// Gives voxels outside `inside` the value of the nearest one inside: the smoothest way to go on that needs no bounds.
-void extend_outside(const Box& node, const Box& inside, LeafValues& block);
 
 }  // namespace weir

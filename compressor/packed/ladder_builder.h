@@ -17,6 +17,7 @@
 #include "format/packed/block_encode.h"
 #include "format/packed/lattice_block.h"
 #include "format/packed/rounded_block.h"
+#include "format/packed/stream_length.h"
 #include "ingest/source/volume_source.h"
 
 namespace weir {
@@ -95,7 +96,7 @@ class LadderBuilder {
   TransformBlock transform_;
   RoundedBlock rounded_;
   ExactBlock exact_;
-  std::vector<std::byte> stream_ = std::vector<std::byte>(4096);
+  std::vector<std::byte> stream_ = std::vector<std::byte>(kStreamRoom);
 };
 
 }  // namespace weir

@@ -95,5 +95,7 @@ struct PackedLadder {
   std::int32_t step(std::size_t rung) const { return rung_step(first_step, static_cast<std::int32_t>(rung)); }
 };
 static_assert(sizeof(PackedLadder) == 144, "ladders are spilled as they are");
+static_assert(std::size_t{kFirstNearLevel} == PackedLadder::kMostRungs + 1, "levels of rungs end where others begin");
+static_assert(std::size_t{kFirstNearLevel} + PackedLadder::kMostNear <= kExactLevel, "each near rung has a level");
 
 }  // namespace weir

@@ -20,8 +20,8 @@ ReadingPlan plan_reading(const VolumeSource& source, const MemoryPlan& memory) {
   constexpr std::uint64_t kInPlaceVolumeBytes = std::uint64_t{64} << 30U;
   // In the room of two blocks: three with what is around them, each up to twice as large, and the file's pages.
   const std::uint64_t pair_bytes = memory.block_bytes / 4;
-  const bool in_place = static_cast<std::uint64_t>(domain.voxels()) * sizeof(float) <= kInPlaceVolumeBytes &&
-                        kInPlaceEncodeBytes <= memory.worker_bytes && source.in_memory();
+  const bool in_place =
+      float32_bytes(domain) <= kInPlaceVolumeBytes && kInPlaceEncodeBytes <= memory.worker_bytes && source.in_memory();
   if (!in_place) {
     // Chunks are decoded many at a time, and once each where the blocks may be large enough.
     const bool chunked = access.chunk != Index3{};

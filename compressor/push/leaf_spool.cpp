@@ -1,6 +1,5 @@
 #include "compressor/push/leaf_spool.h"
 
-#include <algorithm>
 #include <cstring>
 #include <utility>
 
@@ -37,9 +36,7 @@ LeafSpool::LeafSpool(std::shared_ptr<File> values, std::shared_ptr<File> states,
     : values_(std::move(values)), states_(std::move(states), leaves), type_(type) {}
 
 void LeafSpool::write(const Box& box, std::span<const std::byte> values) {
-  const NodeLattice& lattice = leaves();
-  const Box leaf_box{floor_div(box.lo, kLeafDim) - lattice.first,
-                     floor_div(box.hi - Index3{1, 1, 1}, kLeafDim) - lattice.first + Index3{1, 1, 1}};
+  const Box leaf_box = leaves().positions(box);
   std::vector<SpooledLeaf> states(static_cast<std::size_t>(leaf_box.voxels()));
   std::vector<std::byte> row(static_cast<std::size_t>(leaf_box.extent().x) * leaf_bytes());
   auto row_states = states.begin();

@@ -66,14 +66,11 @@ struct PushedFiles {
     if (remove_leftovers(files, options.output) && control.notice) control.notice(leftovers_notice(options.output));
     if (memory.record_bytes > 0) work.hold_records(MemoryFileSystem::PagesOf::the_system);
     const NodeLattice leaves = make_lattice(info.domain(), kLeafDim);
-    stores.emplace(SurveyStores{RowStore(work.spill_records(), leaves, memory.selection), {}, {}});
-    if (faces) stores->faces.emplace(work.spill_records(), leaves);
-    spool.emplace(work.spill(), work.spill(), leaves, info.type);
     std::optional<LadderAim> ladders = surveyed_ladders(options, info);
-    if (ladders) {
-      stores->rows.set_ladders(std::make_unique<LeafStore<PackedLadder>>(work.spill_records(), leaves));
-      ladders->coder = control.coder;
-    }
+    if (ladders) ladders->coder = control.coder;
+    stores.emplace(make_survey_stores([this](const char*) { return work.spill_records(); }, leaves, memory.selection,
+                                      faces, ladders.has_value()));
+    spool.emplace(work.spill(), work.spill(), leaves, info.type);
     survey.emplace(info, stores->rows, faces ? &*stores->faces : nullptr, surveys_widths(options), control.trace,
                    ladders);
   }

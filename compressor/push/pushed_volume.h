@@ -1,11 +1,11 @@
 // Converts a volume that a simulation hands over slab by slab, and whose values need not exist once each call returns.
 // The file is the same as that of any other conversion of the volume.
 //
-// A slab is copied into slices (ingest/plan/block_plan.h) of one leaf layer each.
-// Beside the simulation, a thread surveys the slices that are complete and spools
-// their leaves, but for those of one value, in the work directory, so that the
-// end only has to select and encode. The directory needs room for these values as
-// they are stored, and for 80 bytes of each leaf (296 with a scene).
+// A slab is copied into slices (ingest/plan/block_plan.h) of one leaf layer each. Beside the simulation, a thread
+// surveys the slices that are complete and spools their leaves, but for those of one value, in the work directory, so
+// that the end only has to select and encode. Meanwhile the directory needs room for these values as they are stored,
+// for 16 bytes of each leaf and, unless records are held in memory, for 64 more, 216 more with a scene and 144 more of
+// a packed one.
 #pragma once
 
 #include <array>
@@ -27,8 +27,8 @@ class PushedVolume {
   /// `info` says extent, index_origin, type, mapping, spacing, origin, path (for messages and the sidecar), dataset
   /// (the grid's name where not empty) and mtime_ns; format and file_bytes are set here. As convert_volume, but that
   /// options.memory is what weir takes besides what the process holds already, and that nothing can be continued:
-  /// options.resume is not looked at. `control` is looked at in all calls. `files` must outlive the object. `workers`
-  /// is the number of threads beside the simulation's.
+  /// options.resume is not looked at. `control` is looked at in all calls. `files` must outlive the object. `workers`,
+  /// at least 1, is the number of threads beside the simulation's.
   ///
   /// Takes the output's lock and room for what is kept of each leaf; throws Error, the same as convert_volume for the
   /// same reasons.

@@ -1,6 +1,5 @@
 #include "compressor/push/slice_intake.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "format/base/index.h"
@@ -24,6 +23,9 @@ SliceIntake::SliceIntake(const BlockPlan& plan, std::size_t value_bytes, const I
       memory_(room.buffers * buffer_bytes(plan_, value_bytes_)),
       parked_(static_cast<std::size_t>(plan_.size())),
       running_(room.workers) {
+  if (room.buffers == 0 || room.workers == 0) {
+    throw Error(ErrorKind::internal, "a slice intake without buffers or workers");
+  }
   for (std::size_t i = room.buffers; i-- > 0;) {
     free_.push_back(memory_.bytes().data() + i * buffer_bytes(plan_, value_bytes_));
   }

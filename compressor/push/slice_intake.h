@@ -38,8 +38,8 @@ struct SliceSink {
 
 /// How much the intake may use.
 struct IntakeRoom {
-  std::size_t buffers = 1;  ///< each of a slice
-  std::size_t workers = 1;  ///< threads
+  std::size_t buffers = 1;  ///< each of a slice; at least 1
+  std::size_t workers = 1;  ///< threads; at least 1
 };
 
 class SliceIntake {

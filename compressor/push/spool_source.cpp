@@ -43,14 +43,12 @@ class SpoolSource final : public VolumeSource {
       throw Error(ErrorKind::internal, cat(info_.path, ": read of box ", box_text(box), " into ", values.size(),
                                            " values does not fit ", box_text(info_.domain())));
     }
-    const NodeLattice& lattice = spool_.leaves();
-    const Index3 lo = floor_div(box.lo, kLeafDim) - lattice.first;
-    const Index3 hi = floor_div(box.hi - Index3{1, 1, 1}, kLeafDim) - lattice.first + Index3{1, 1, 1};
-    const Index3 rows{1, hi.y - lo.y, hi.z - lo.z};
+    const Box leaves = spool_.leaves().positions(box);
+    const Index3 rows{1, leaves.extent().y, leaves.extent().z};
     std::mutex mutex;
     ConversionLoss total;
     for_pieces(volume(rows), threads, [&](std::int64_t i) {
-      const ConversionLoss loss = read_row(lo + index_at(i, rows), hi.x - lo.x, box, values);
+      const ConversionLoss loss = read_row(leaves.lo + index_at(i, rows), leaves.extent().x, box, values);
       const std::lock_guard lock(mutex);
       total.add(loss);
     });

@@ -3,7 +3,7 @@
 //
 // In the hidden directory beside the output: `journal`, a Checkpoint, and
 // `volume`, the unfinished OUT.nvdb. In the spill directory, which is the same
-// unless the user names another: `rows`, `faces` and `records`. A save is
+// unless the user names another: `rows`, `faces`, `ladders` and `records`. A save is
 //   1. all files flushed                what the checkpoint says of them is durable
 //   2. journal.new written and flushed
 //   3. journal.new renamed to journal   the checkpoint counts: the old or the new one, never half of one

@@ -32,13 +32,13 @@ class Candidate {
   const SelectionBytes& bytes() const { return bytes_; }
   bool lossless() const { return bytes_.lossy_leaves == 0; }
   FileSize size_for(const Budget& budget) const {
-    const auto dense = static_cast<std::uint64_t>(request_.domain.voxels()) * sizeof(float);
+    const std::uint64_t dense = float32_bytes(request_.domain);
     return file_size_for(budget, dense, bytes_, request_.path);
   }
 
   /// Whether the smallest file is as small as the budget, which is a size.
   bool fits(const Budget& budget) const {
-    const auto dense = static_cast<std::uint64_t>(request_.domain.voxels()) * sizeof(float);
+    const std::uint64_t dense = float32_bytes(request_.domain);
     return bytes_.minimum.file_bytes <= asked_bytes(budget, dense);
   }
 
@@ -252,7 +252,7 @@ FilePlan plan_best(const FileRequest& request, const RowStore& rows, WorkDirecto
   FilePlan quantised = candidate.plan(size);
   if (quantised.plan.loses_nothing && countable(quantised)) return quantised;
   // A file of this kind may be shorter than what is allowed, as it has nothing to do with more.
-  const auto dense = static_cast<std::uint64_t>(request.domain.voxels()) * sizeof(float);
+  const std::uint64_t dense = float32_bytes(request.domain);
   const std::uint64_t allowed = request.budget.by_size() ? asked_bytes(request.budget, dense) : size.bytes;
   if (const std::optional<FloatBound> bound = float_bound(request, rows, quantised)) {
     const double least = bound->least_error(allowed);
@@ -308,7 +308,7 @@ Error unmet_target(const FileRequest& request, Encoding encoding, double squared
     const double short_by = 10 * std::log10(squared_error / request.squared_error);
     best = cat(" reaches about ", std::floor((request.budget.target - short_by) * 10) / 10, " dB at most");
   } else {
-    const unsigned bits = encoding == Encoding::fp4 ? 4 : encoding == Encoding::fp8 ? 8 : 16;
+    const unsigned bits = 1U << bits_log2_of(widths_of(encoding).back());
     best = cat(" has leaves whose range ", bits, " bits do not divide that finely");
   }
   return {ErrorKind::budget, compose(request.path, ": ", option(psnr ? "psnr" : "max-error", request.budget.target),

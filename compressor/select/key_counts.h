@@ -10,7 +10,8 @@
 
 namespace weir {
 
-/// In buckets of 1 << shift of the keys' bits; and of what lies outside the range.
+/// Sums of purchases whose keys lie in a range, in buckets of 2^shift consecutive keys (as bits), and the sums of those
+/// outside the range.
 struct KeyCounts {
   // As many as a core's cache holds.
   static constexpr std::uint64_t kMostBuckets = std::uint64_t{1} << 14U;

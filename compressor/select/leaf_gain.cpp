@@ -51,28 +51,6 @@ std::uint32_t brick_of(const Index3& leaf, std::int64_t side) {
   return side == 1 ? brick_of<1>(leaf) : side == 2 ? brick_of<2>(leaf) : brick_of<4>(leaf);
 }
 
-// The widths that an encoding may use for a leaf, narrowest first.
-std::span<const LeafWidth> widths_of(Encoding encoding) {
-  static constexpr std::array kWidths{LeafWidth::bits1, LeafWidth::bits2,  LeafWidth::bits4,
-                                      LeafWidth::bits8, LeafWidth::bits16, LeafWidth::float32};
-  const std::span<const LeafWidth> all = kWidths;
-  switch (encoding) {
-    case Encoding::fpn:
-      return all.first(5);
-    case Encoding::fp4:
-      return all.subspan(2, 1);
-    case Encoding::fp8:
-      return all.subspan(3, 1);
-    case Encoding::fp16:
-      return all.subspan(4, 1);
-    case Encoding::automatic:
-    case Encoding::float32:
-    case Encoding::packed:
-      break;
-  }
-  return all.last(1);
-}
-
 LeafStep step_to(LeafWidth width, LeafWidth from, double gain) {
   const std::uint32_t bytes = leaf_bytes(width) - leaf_bytes(from);
   return {gain, gain / static_cast<double>(bytes), bytes, static_cast<KeptLevel>(width)};
@@ -242,9 +220,7 @@ void GainRule::add_steps(const LeafRow& row, std::int64_t voxels, float tile, co
     case Encoding::fp4:
     case Encoding::fp8:
     case Encoding::fp16: {
-      const LeafWidth width = encoding == Encoding::fp4   ? LeafWidth::bits4
-                              : encoding == Encoding::fp8 ? LeafWidth::bits8
-                                                          : LeafWidth::bits16;
+      const LeafWidth width = widths_of(encoding).front();
       const double gain = std::max(0.0, error - error_at(width));
       if (gain > 0 || leaf.required || keeps_every_bit(row, voxels, fill.background, width)) {
         out.add(leaf, step_to(width, LeafWidth::tile, gain));

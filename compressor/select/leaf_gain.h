@@ -2,6 +2,7 @@
 // so the order in which leaves are bought.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -11,6 +12,7 @@
 #include "compressor/leaf/encoding.h"
 #include "compressor/leaf/fill.h"
 #include "compressor/leaf/metric.h"
+#include "compressor/packed/packed_ladder.h"
 #include "compressor/packed/packed_rule.h"
 #include "compressor/select/leaf_choice.h"
 #include "compressor/select/packed_region.h"
@@ -18,6 +20,31 @@
 #include "compressor/survey/visibility.h"
 
 namespace weir {
+
+/// All of a leaf that is kept, narrowest first.
+inline constexpr std::array kLeafWidths{LeafWidth::bits1, LeafWidth::bits2,  LeafWidth::bits4,
+                                        LeafWidth::bits8, LeafWidth::bits16, LeafWidth::float32};
+
+/// The widths that a decided encoding may use for a leaf, narrowest first; of packed that of the corners of its
+/// preview.
+constexpr std::span<const LeafWidth> widths_of(Encoding encoding) {
+  const std::span<const LeafWidth> all = kLeafWidths;
+  switch (encoding) {
+    case Encoding::fpn:
+      return all.first(5);
+    case Encoding::fp4:
+      return all.subspan(2, 1);
+    case Encoding::fp8:
+      return all.subspan(3, 1);
+    case Encoding::fp16:
+      return all.subspan(4, 1);
+    case Encoding::automatic:
+    case Encoding::float32:
+    case Encoding::packed:
+      break;
+  }
+  return all.last(1);
+}
 
 /// From one way to keep a leaf to the next better one. Without initial values, so that room for many costs nothing.
 struct LeafStep {
@@ -48,6 +75,7 @@ class RegionGains {
  public:
   /// Most steps of one leaf.
   static constexpr std::size_t kMostSteps = 36;
+  static_assert(kMostSteps > PackedLadder::kMostRungs + PackedLadder::kMostNear, "each way of a ladder, the exact one");
   /// Most bytes of a region's.
   static constexpr std::uint64_t kMostBytes = LeafChoices::kLeaves * (sizeof(LeafGain) + kMostSteps * sizeof(LeafStep));
 
@@ -72,7 +100,7 @@ class RegionGains {
   std::size_t size() const { return leaf_count_; }
   const LeafGain& operator[](std::size_t i) const { return leaves_[i]; }
 
-  /// Of packed blocks, which steps are found by.
+  /// Of a packed region: the values by which its steps were found.
   SharedValues shared;
 
  private:

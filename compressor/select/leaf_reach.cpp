@@ -42,7 +42,7 @@ class Reaches {
     MinMax reach = kNoBounds;
     const LeafRow& row = around.rows[around.at(leaf)];
     if (row.finite > 0) widen(reach, {row.min, row.max});
-    replaced(leaf, row, reach);
+    widen_by_background(leaf, row, reach);
     if (const MinMax* const known = places_ == nullptr ? nullptr : places_->reach(leaves_.voxels(leaf).lo)) {
       widen(reach, *known);
       return reach;
@@ -52,24 +52,24 @@ class Reaches {
       if (other == leaf) return;
       const std::size_t i = around.at(other);
       if (places_ != nullptr && !cell.contains(leaves_.voxels(other).lo)) {
-        go_on(around.faces[around.at(leaf)], other - leaf, leaves_.voxels(leaf).extent(), reach);
+        extrapolate(around.faces[around.at(leaf)], other - leaf, leaves_.voxels(leaf).extent(), reach);
         return;
       }
       widen(reach, around.faces[i].touched_from(leaf - other));
-      replaced(other, around.rows[i], reach);
+      widen_by_background(other, around.rows[i], reach);
     });
     return reach;
   }
 
  private:
   // Where in the leaf a value is not finite is not known: the background may be anywhere.
-  void replaced(const Index3& leaf, const LeafRow& row, MinMax& reach) const {
+  void widen_by_background(const Index3& leaf, const LeafRow& row, MinMax& reach) const {
     const bool keeps = fill_.non_finite == NonFinitePolicy::keep;
     if (!keeps && row.finite < leaves_.voxels(leaf).voxels()) widen(reach, {fill_.background, fill_.background});
   }
 
   // By one layer beyond the face toward another cell, as the bounds change from the opposite face to that one.
-  static void go_on(const LeafFaces& faces, const Index3& toward, const Index3& extent, MinMax& reach) {
+  static void extrapolate(const LeafFaces& faces, const Index3& toward, const Index3& extent, MinMax& reach) {
     if (std::abs(toward.x) + std::abs(toward.y) + std::abs(toward.z) != 1) return;
     const MinMax& near = faces.touched_from(toward);
     const MinMax& far = faces.touched_from(Index3{0, 0, 0} - toward);

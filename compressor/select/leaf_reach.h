@@ -20,9 +20,9 @@ struct Shown {
 };
 
 /// Gives `rows` the reach of every leaf: its values, those next to it, and the background where it takes the place of
-/// a value that is not finite; empty outside the scene's region. One pass over rows and faces. Of a sample with
-/// `places`, which may be null, leaves lie where they do in its volume, and what lies next to a cell there, where it is
-/// not known, is taken to go on as the cell does.
+/// a value that is not finite; empty outside the scene's region. One pass over rows and faces. `places`,
+/// which may be null, is that of a sample: leaves then lie where they do in the sampled volume. Where what lies beside
+/// a cell is not known, the cell's values are extrapolated by one layer.
 Shown find_reaches(const LeafStore<LeafFaces>& faces, const Visibility& visibility, const Fill& fill,
                    const CellPlaces* places, WorkDirectory& work, RowStore& rows);
 

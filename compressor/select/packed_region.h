@@ -29,7 +29,7 @@ struct SharedValues {
 /// Of the region with those rows, in their order; `leaves` is the leaf lattice.
 SharedValues shared_values(const RegionRows& rows, const NodeLattice& leaves, const Fill& fill);
 
-/// What the streams of a region take whose means lie in a range.
+/// Bytes of the streams of a region, from its blocks' ladders and the range of its means.
 class StreamLengths {
  public:
   StreamLengths(const MeanRange& means, const PackedRule& rule);

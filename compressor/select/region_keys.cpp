@@ -1,7 +1,6 @@
 #include "compressor/select/region_keys.h"
 
 #include <algorithm>
-#include <vector>
 
 #include "compressor/select/step_keys.h"
 #include "format/layout/nanovdb_layout.h"
@@ -48,11 +47,13 @@ void RegionKeys::summarize_region(std::int64_t index, const RegionRows& rows, co
   const LeafRow& first = rows.at(rows.leaf_box().lo);
   if (first.uniform() && builder.sums.min == builder.sums.max) builder.sums.mean = first.mean;
   // Packed blocks without a stream, and regions without any, read one value.
-  const std::optional<float> packed = rule_.packed ? std::optional(gains.shared.value) : std::nullopt;
-  const float tile = packed ? *packed : tile_value(rule_.fill, builder.sums);
+  const std::optional<float> shared_value = rule_.packed ? std::optional(gains.shared.value) : std::nullopt;
+  const float tile = shared_value ? *shared_value : tile_value(rule_.fill, builder.sums);
   region.packed_value = tile;
-  if (packed) region.packed_means = gains.shared.means;
-  const auto dropped_value = [&](const LeafRow& row) { return packed ? *packed : rule_.fill.leaf_value(row); };
+  if (shared_value) region.packed_means = gains.shared.means;
+  const auto dropped_value = [&](const LeafRow& row) {
+    return shared_value ? *shared_value : rule_.fill.leaf_value(row);
+  };
   const bool whole = are_whole(tree_.leaves, rows.leaf_box());
   bool exact = true;
   bool keeps_values = true;
@@ -67,7 +68,7 @@ void RegionKeys::summarize_region(std::int64_t index, const RegionRows& rows, co
   region.sums.exact = exact;
   region.sums.keeps_values = keeps_values;
   region.tile_error = region.sums.sse_about(tile);
-  if (rule_.visibility != nullptr) dropped_leaves = weigh_region(region, rows, tile, packed);
+  if (rule_.visibility != nullptr) dropped_leaves = weigh_region(region, rows, tile, shared_value);
   region.opening_gain = std::max(0.0, region.tile_error - dropped_leaves);
 
   bool required = !rule_.packed && rule_.fill.splits(region.sums.finite, kLowerDim * kLowerDim * kLowerDim);
@@ -89,14 +90,14 @@ void RegionKeys::summarize_region(std::int64_t index, const RegionRows& rows, co
 
 // The weighted errors of a region: sets that of its one tile, returns that of its leaves' tiles.
 double RegionKeys::weigh_region(Region& region, const RegionRows& rows, float tile,
-                                std::optional<float> dropped) const {
+                                std::optional<float> shared_value) const {
   region.tile_error = 0;
   double dropped_leaves = 0;
   rows.for_each([&](const Index3& leaf, const LeafRow& row) {
     const MinMax& reach = rows.reach(leaf);
     widen(region.reach, reach);
     region.tile_error += rule_.tile_weight(reach, tile) * row.sse_about(tile);
-    const float leaf_tile = dropped ? *dropped : rule_.fill.leaf_value(row);
+    const float leaf_tile = shared_value ? *shared_value : rule_.fill.leaf_value(row);
     dropped_leaves += rule_.tile_weight(reach, leaf_tile) * row.sse_about(leaf_tile);
   });
   return dropped_leaves;
@@ -112,66 +113,76 @@ bool RegionKeys::exceeds(double max_error, const Region& region, float tile) con
 }
 
 void RegionKeys::summarize_uppers() {
-  for (std::int64_t i = 0; i < static_cast<std::int64_t>(tree_.uppers.size()); ++i) {
-    Upper& upper = tree_.uppers[static_cast<std::size_t>(i)];
-    TileSumsBuilder builder;
-    const auto sums_of = [&](std::int64_t r) -> const TileSums& {
-      return tree_.regions[static_cast<std::size_t>(r)].sums;
-    };
-    const TileSums* first = nullptr;
-    tree_.for_each_region_of(i, [&](std::int64_t r) {
-      const TileSums& sums = sums_of(r);
-      first = first == nullptr ? &sums : first;
-      builder.add_mean(sums.finite, static_cast<double>(sums.mean), sums.residual, sums.min, sums.max);
-      builder.sums.zeros += sums.zeros;
-      builder.sums.valued = builder.sums.valued || sums.valued;
-    });
-    builder.close_mean(rule_.fill.background);
-    if (first->exact && builder.sums.min == builder.sums.max) builder.sums.mean = first->mean;
-    const float tile = tile_value(rule_.fill, builder.sums);
-    bool exact = true;
-    bool keeps_values = true;
-    double tiles = 0;     // squared error with one tile per region
-    double weighted = 0;  // and with one for all, where a scene weighs
-    bool seen = false;
-    bool exceeded = false;
-    tree_.for_each_region_of(i, [&](std::int64_t r) {
-      const Region& region = tree_.regions[static_cast<std::size_t>(r)];
-      const TileSums& sums = region.sums;
-      const float region_tile = tile_value(rule_.fill, sums);
-      builder.add_squares(sums.finite, static_cast<double>(sums.mean), sums.residual, sums.sse);
-      exact = exact && sums.exact && Fill::same_bits(region_tile, tile);
-      keeps_values = keeps_values && (sums.finite == 0 || (sums.keeps_values && Fill::same_bits(region_tile, tile)));
-      tiles += rule_.visibility == nullptr && !rule_.packed ? sums.sse_about(region_tile) : region.tile_error;
-      upper.key = std::max(upper.key, region.key);
-      seen = seen || sees(region, tile);
-      exceeded = exceeded || (rule_.max_error && exceeds(*rule_.max_error, region, tile));
-      if (rule_.visibility != nullptr) weighted += rule_.tile_weight(region.reach, tile) * sums.sse_about(tile);
-    });
-    upper.sums = builder.sums;
-    upper.sums.exact = exact;
-    upper.sums.keeps_values = keeps_values;
-    upper.tile_error = rule_.visibility == nullptr ? upper.sums.sse_about(tile) : std::max(weighted, tiles);
-    if (rule_.packed) {
-      upper.tile_error = tiles;
-      upper.key = kRequiredKey;  // costs nothing here: what the tree takes is in every file alike
-      continue;
-    }
-    if (rule_.fill.splits(upper.sums.finite, kUpperDim * kUpperDim * kUpperDim)) {
-      upper.key = kRequiredKey;
-      upper.opening_gain = std::max(0.0, upper.tile_error - tiles);
-      continue;
-    }
-    if (exact || !seen) continue;
-    if (rule_.max_error) {
-      if (exceeded) upper.key = kRequiredKey;
-      continue;
-    }
-    upper.opening_gain = std::max(0.0, upper.tile_error - tiles);
-    upper.key =
-        std::max({upper.key, kLastKey,
-                  rule_.metric == Metric::sse ? upper.opening_gain / static_cast<double>(rule_.upper_bytes()) : 0.0});
+  for (std::int64_t i = 0; i < static_cast<std::int64_t>(tree_.uppers.size()); ++i) summarize_upper(i);
+}
+
+void RegionKeys::summarize_upper(std::int64_t index) {
+  Upper& upper = tree_.uppers[static_cast<std::size_t>(index)];
+  TileSumsBuilder builder = sums_to_mean(index);
+  const float tile = tile_value(rule_.fill, builder.sums);
+  builder.sums.exact = builder.sums.keeps_values = true;
+  double tiles = 0;     // squared error with one tile per region
+  double weighted = 0;  // and with one for all, where a scene weighs
+  bool seen = false;
+  bool exceeded = false;
+  tree_.for_each_region_of(index, [&](std::int64_t r) {
+    const Region& region = tree_.regions[static_cast<std::size_t>(r)];
+    const TileSums& sums = region.sums;
+    const float region_tile = tile_value(rule_.fill, sums);
+    builder.add_squares(sums.finite, static_cast<double>(sums.mean), sums.residual, sums.sse);
+    const bool same = Fill::same_bits(region_tile, tile);
+    builder.sums.exact = builder.sums.exact && sums.exact && same;
+    builder.sums.keeps_values = builder.sums.keeps_values && (sums.finite == 0 || (sums.keeps_values && same));
+    tiles += rule_.visibility == nullptr && !rule_.packed ? sums.sse_about(region_tile) : region.tile_error;
+    upper.key = std::max(upper.key, region.key);
+    seen = seen || sees(region, tile);
+    exceeded = exceeded || (rule_.max_error && exceeds(*rule_.max_error, region, tile));
+    if (rule_.visibility != nullptr) weighted += rule_.tile_weight(region.reach, tile) * sums.sse_about(tile);
+  });
+  upper.sums = builder.sums;
+  if (rule_.packed) {
+    upper.tile_error = tiles;
+    upper.key = kRequiredKey;  // costs nothing here: what the tree takes is in every file alike
+    return;
   }
+  upper.tile_error = rule_.visibility == nullptr ? upper.sums.sse_about(tile) : std::max(weighted, tiles);
+  set_key(upper, tiles, seen, exceeded);
+}
+
+// Counts, bounds and mean of an upper node's regions; their squares can be added.
+TileSumsBuilder RegionKeys::sums_to_mean(std::int64_t upper) const {
+  TileSumsBuilder builder;
+  const TileSums* first = nullptr;
+  tree_.for_each_region_of(upper, [&](std::int64_t r) {
+    const TileSums& sums = tree_.regions[static_cast<std::size_t>(r)].sums;
+    first = first == nullptr ? &sums : first;
+    builder.add_mean(sums.finite, static_cast<double>(sums.mean), sums.residual, sums.min, sums.max);
+    builder.sums.zeros += sums.zeros;
+    builder.sums.valued = builder.sums.valued || sums.valued;
+  });
+  builder.close_mean(rule_.fill.background);
+  if (first->exact && builder.sums.min == builder.sums.max) builder.sums.mean = first->mean;
+  return builder;
+}
+
+// Key and opening gain of an upper node whose key is its regions' highest so far. `tiles`: its squared error with one
+// tile per region; `seen`, `exceeded`: whether its one tile is seen anywhere, and further off than the rule allows.
+void RegionKeys::set_key(Upper& upper, double tiles, bool seen, bool exceeded) const {
+  const double opening_gain = std::max(0.0, upper.tile_error - tiles);
+  if (rule_.fill.splits(upper.sums.finite, kUpperDim * kUpperDim * kUpperDim)) {
+    upper.key = kRequiredKey;
+    upper.opening_gain = opening_gain;
+    return;
+  }
+  if (upper.sums.exact || !seen) return;
+  if (rule_.max_error) {
+    if (exceeded) upper.key = kRequiredKey;
+    return;
+  }
+  upper.opening_gain = opening_gain;
+  upper.key =
+      std::max({upper.key, kLastKey,
+                rule_.metric == Metric::sse ? upper.opening_gain / static_cast<double>(rule_.upper_bytes()) : 0.0});
 }
 
 }  // namespace weir

@@ -16,14 +16,17 @@ class RegionKeys {
  public:
   RegionKeys(const GainRule& rule, TreeRegions& tree) : rule_(rule), tree_(tree) {}
 
-  /// Sums, tile error, opening gain and key of the region, whose leaves have those rows and gains. Thread-safe for
-  /// different regions.
+  /// Sums, tile error, opening gain and key of the region, its reach where a scene weighs, and its packed value and
+  /// means; its leaves have those rows and gains. Thread-safe for different regions.
   void summarize_region(std::int64_t index, const RegionRows& rows, const RegionGains& gains);
   /// The same of all upper nodes, from their regions.
   void summarize_uppers();
 
  private:
-  double weigh_region(Region& region, const RegionRows& rows, float tile, std::optional<float> dropped) const;
+  void summarize_upper(std::int64_t index);
+  TileSumsBuilder sums_to_mean(std::int64_t upper) const;
+  void set_key(Upper& upper, double tiles, bool seen, bool exceeded) const;
+  double weigh_region(Region& region, const RegionRows& rows, float tile, std::optional<float> shared_value) const;
   bool sees(const Region& region, float tile) const;
   bool exceeds(double max_error, const Region& region, float tile) const;
 

@@ -1,18 +1,15 @@
-// Selection under a byte budget: which leaves are kept, which 128^3 regions
-// become lower nodes, which 4096^3 blocks upper nodes.
+// Selection under a byte budget: which leaves are kept, which 128^3 regions become lower nodes, which 4096^3 blocks
+// upper nodes.
 //
-// Everything that can be bought has a key, the error it saves per byte: a leaf's
-// step to its next better width (leaf_gain.h), a lower node (33,856 bytes) and an
-// upper node (270,400). A node's key is at least that of anything below it: a
-// region's is the best ratio over all k of what opening it and taking the k best
-// steps of its leaves saves to what they cost (its step on the convex hull), and no
-// step in it has a higher one. The budget then buys in
-// the order of keys, so that any larger budget buys a superset: error never grows
-// with size. An error to be met instead of a size ends the same way, with the error
-// saved counted in place of the bytes. The steps: region_keys.h gives regions and upper nodes their keys, cut_search.h
-// finds the cut, and of what has the cut's own key as much is bought as fits: by region index, then by key, then by
-// leaf index (step_keys.h). Memory is that of TreeRegions, for any number of leaves, and that of the steps that are
-// held where there is room (held_steps.h).
+// Everything that can be bought has a key, the error it saves per byte: a leaf's step to its next better width
+// (leaf_gain.h), a lower node (33,856 bytes) and an upper node (270,400). A node's key is at least that of anything
+// below it: a region's is the best ratio over all k of what opening it and taking the k best steps of its leaves saves
+// to what they cost (its step on the convex hull), and no step in it has a higher one. The budget then buys in the
+// order of keys, so that any larger budget buys a superset: error never grows with size. An error to be met instead of
+// a size ends the same way, with the error saved counted in place of the bytes. The steps: region_keys.h gives regions
+// and upper nodes their keys, cut_search.h finds the cut, and of what has the cut's own key as much is bought as fits:
+// by region index, then by key, then by leaf index (step_keys.h). Memory is that of TreeRegions, for any number of
+// leaves, and that of the steps that are held where there is room (held_steps.h).
 #pragma once
 
 #include <cstdint>
@@ -79,8 +76,8 @@ class Selection {
   }
   const GainRule& rule() const { return rule_; }
 
-  /// Of a packed file with a preview, after choose() or choose_error(): most bytes it may have, but for a few
-  /// thousandths that roundings of errors cost, and those of the preview; nullopt where the former is not known.
+  /// Of a packed file with a preview, after choose() or choose_error(): a bound of its bytes, which rounding may exceed
+  /// by a few thousandths, and the bytes of its preview. Nullopt where no bound is known.
   struct PreviewedBytes {
     std::uint64_t most_of_file = 0;
     std::uint64_t preview = 0;

@@ -188,8 +188,8 @@ void number_in_file_order(TreeRegions& tree, NodeCounts& counts) {
 }
 
 // The streams of a region: `leaves` and `leaf_bytes` become those of its chunk.
-void plan_packed(const GainRule& rule, TreeRegions& tree, const RegionRows& rows, const LeafChoices& choices,
-                 std::int64_t index, PlannedStreamsStore& streams) {
+void plan_region_streams(const GainRule& rule, TreeRegions& tree, const RegionRows& rows, const LeafChoices& choices,
+                         std::int64_t index, PlannedStreamsStore& streams) {
   Region& region = tree.regions[static_cast<std::size_t>(index)];
   if (!region.open) return;
   const SharedValues shared{region.packed_value, region.packed_means};
@@ -200,58 +200,52 @@ void plan_packed(const GainRule& rule, TreeRegions& tree, const RegionRows& rows
   region.leaf_bytes = places.chunk_bytes();
 }
 
-}  // namespace
+// What plans are made from, and where their parts go.
+struct PlanParts {
+  const Selection& selection;
+  TreeRegions& tree;
+  ChoiceStore& choices;
+  PlannedStreamsStore* streams;
+};
 
-TreePlan plan_tree(const Selection& selection, const RowStore& rows, TreeRegions& tree, ChoiceStore& store,
-                   PlannedStreamsStore* streams) {
-  const GainRule& rule = selection.rule();
-  const RegionPlanner planner(rule, tree);
-  tbb::enumerable_thread_specific<PlanTally> tallies;
-  tbb::enumerable_thread_specific<RegionGains> gains;
-  std::vector<RegionErrors> errors(tree.regions.size());
-  for_each_own_region(tree, rows, [&](std::int64_t index, const RegionRows& region_rows) {
-    Region& region = tree.regions[static_cast<std::size_t>(index)];
-    LeafChoices choices = selection.choices(index, region_rows, gains.local());
-    planner.mark(region_rows, choices);
-    store.write(index, choices);
-    RegionErrors& of_region = errors[static_cast<std::size_t>(index)];
-    if (rule.packed) {
-      plan_packed(rule, tree, region_rows, choices, index, *streams);
-    } else {
-      const LeafPlaces::Place total = LeafPlaces(choices).total();
-      region.leaves = total.leaves;
-      region.leaf_bytes = total.bytes;
-    }
-    if (region.open) {
-      of_region = planner.add_leaves(choices, region_rows, region, tallies.local());
-    } else if (rule.packed) {
-      of_region =
-          planner.add_tile(region_rows, region.packed_value, kept_of_tiles(region.sums), region, tallies.local());
-    } else {
-      // One tile, of this region or of the whole upper node.
-      const Upper& upper = tree.uppers[static_cast<std::size_t>(tree.upper_of(index))];
-      const TileSums& sums = upper.open ? region.sums : upper.sums;
-      of_region =
-          planner.add_tile(region_rows, tile_value(rule.fill, sums), kept_of_tiles(sums), region, tallies.local());
-    }
-    if (rule.packed) {
-      const Upper& upper = tree.uppers[static_cast<std::size_t>(tree.upper_of(index))];
-      const bool nodes = rule.packed->preview;
-      planner.add_preview(region_rows, nodes && region.open, tile_value(rule.fill, nodes ? region.sums : upper.sums),
-                          of_region);
-    }
-  });
+// Plans a region: its choices, how much of it is kept, and what it loses.
+RegionErrors plan_region(const PlanParts& parts, const RegionPlanner& planner, std::int64_t index,
+                         const RegionRows& rows, RegionGains& gains, PlanTally& tally) {
+  const GainRule& rule = parts.selection.rule();
+  TreeRegions& tree = parts.tree;
+  Region& region = tree.regions[static_cast<std::size_t>(index)];
+  LeafChoices choices = parts.selection.choices(index, rows, gains);
+  planner.mark(rows, choices);
+  parts.choices.write(index, choices);
+  if (rule.packed) {
+    plan_region_streams(rule, tree, rows, choices, index, *parts.streams);
+  } else {
+    const LeafPlaces::Place total = LeafPlaces(choices).total();
+    region.leaves = total.leaves;
+    region.leaf_bytes = total.bytes;
+  }
+  const Upper& upper = tree.uppers[static_cast<std::size_t>(tree.upper_of(index))];
+  RegionErrors errors;
+  if (region.open) {
+    errors = planner.add_leaves(choices, rows, region, tally);
+  } else if (rule.packed) {
+    errors = planner.add_tile(rows, region.packed_value, kept_of_tiles(region.sums), region, tally);
+  } else {
+    // One tile, of this region or of the whole upper node.
+    const TileSums& sums = upper.open ? region.sums : upper.sums;
+    errors = planner.add_tile(rows, tile_value(rule.fill, sums), kept_of_tiles(sums), region, tally);
+  }
+  if (rule.packed) {
+    const bool nodes = rule.packed->preview;
+    planner.add_preview(rows, nodes && region.open, tile_value(rule.fill, nodes ? region.sums : upper.sums), errors);
+  }
+  return errors;
+}
 
-  Team& team = rows.team();
-  team.gather(tree.regions);
-  team.gather(errors);
-  store.publish(team);
-  if (streams != nullptr) streams->publish(team);
-  std::vector<PlanTally> parts(tallies.begin(), tallies.end());
-  team.concatenate(parts);
+// The errors of all regions, in their order.
+TreePlan summed(const GainRule& rule, const TreeRegions& tree, const std::vector<RegionErrors>& errors,
+                const PlanTally& total) {
   TreePlan plan;
-  PlanTally total;
-  for (const PlanTally& other : parts) total.add(other);
   CompensatedSum squares;
   for (const Region& region : tree.regions) squares.add(region.squared_error);
   CompensatedSum seen;
@@ -274,7 +268,11 @@ TreePlan plan_tree(const Selection& selection, const RowStore& rows, TreeRegions
   plan.loses_nothing = plan.seen_tiles.kept == Kept::all && total.leaves_exact;
   plan.leaves_by_width = total.leaves_by_width;
   plan.blocks = total.blocks;
+  return plan;
+}
 
+// Gives the nodes and leaves of the tree their places.
+void lay_out(const GainRule& rule, TreeRegions& tree, TreePlan& plan) {
   NodeCounts counts;
   counts.root_tiles = tree.uppers.size();
   counts.macrocells = static_cast<std::uint64_t>(make_lattice(tree.leaves.domain, kMacrocell).size());
@@ -286,6 +284,33 @@ TreePlan plan_tree(const Selection& selection, const RowStore& rows, TreeRegions
     if (!rule.fill.active()) counts.leaf_tiles = 0;
   }
   plan.layout = make_layout(counts);
+}
+
+}  // namespace
+
+TreePlan plan_tree(const Selection& selection, const RowStore& rows, TreeRegions& tree, ChoiceStore& store,
+                   PlannedStreamsStore* streams) {
+  const GainRule& rule = selection.rule();
+  const RegionPlanner planner(rule, tree);
+  tbb::enumerable_thread_specific<PlanTally> tallies;
+  tbb::enumerable_thread_specific<RegionGains> gains;
+  std::vector<RegionErrors> errors(tree.regions.size());
+  for_each_own_region(tree, rows, [&](std::int64_t index, const RegionRows& region_rows) {
+    errors[static_cast<std::size_t>(index)] =
+        plan_region({selection, tree, store, streams}, planner, index, region_rows, gains.local(), tallies.local());
+  });
+
+  Team& team = rows.team();
+  team.gather(tree.regions);
+  team.gather(errors);
+  store.publish(team);
+  if (streams != nullptr) streams->publish(team);
+  std::vector<PlanTally> parts(tallies.begin(), tallies.end());
+  team.concatenate(parts);
+  PlanTally total;
+  for (const PlanTally& other : parts) total.add(other);
+  TreePlan plan = summed(rule, tree, errors, total);
+  lay_out(rule, tree, plan);
   return plan;
 }
 

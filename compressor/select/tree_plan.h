@@ -24,7 +24,7 @@ struct TreePlan {
   /// Kept leaves by log2(bits a voxel), 5 for float32.
   std::array<std::uint64_t, 6> leaves_by_width{};
   std::array<std::uint64_t, kPackedKinds> blocks{};  ///< with a stream, by PackedKind
-  std::uint64_t kept = 0;   ///< kept leaves, or blocks with a stream: as many records does the encode pass write
+  std::uint64_t kept = 0;   ///< kept leaves, or blocks with a stream: the encode pass writes a record of each
   std::uint64_t zeros = 0;  ///< in the source
   DecodedErrors preview;    ///< of a packed file: of what other readers see in the tree
 };

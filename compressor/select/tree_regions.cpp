@@ -23,10 +23,7 @@ TreeRegions::TreeRegions(const Box& domain)
       uppers(static_cast<std::size_t>(upper_lattice.size())) {}
 
 Box TreeRegions::leaf_box(std::int64_t region) const {
-  const Box voxels = region_lattice.voxels(region_lattice.position(region));
-  const Index3 lo = floor_div(voxels.lo, kLeafDim) - leaves.first;
-  const Index3 last = floor_div(voxels.hi - Index3{1, 1, 1}, kLeafDim) - leaves.first;
-  return {lo, last + Index3{1, 1, 1}};
+  return leaves.positions(region_lattice.voxels(region_lattice.position(region)));
 }
 
 std::int64_t TreeRegions::upper_of(std::int64_t region) const {

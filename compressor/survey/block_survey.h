@@ -39,9 +39,9 @@ class BlockSurvey {
   /// Surveys all leaves of `leaf_box` (lattice positions), whose in-domain voxels are those of `block`. Each leaf once.
   void add(const Block& block, const Box& leaf_box, Sharing sharing);
 
-  /// The leaves of a box whose blocks a device has: take() keeps what is found of them where that is enough, and gives
-  /// the others, positions in the box. What is kept of those is anything until each is surveyed by its 512 values in
-  /// the order of a leaf, in any order and by several threads. Values are not counted: add_counts() does that.
+  /// Keeps what a device has found of the blocks of a box, where that is enough. Returns the positions in the box of
+  /// the other leaves: their rows and ladders are undefined until survey_left() was called for each, with its 512
+  /// values in leaf order; in any order, from several threads. Neither counts values: add_counts() does.
   std::vector<std::uint32_t> take(const SurveyedBlocks& found, const Box& leaf_box);
   void survey_left(const Index3& leaf, const float* block);
   /// Takes the counts of all finite values of a volume whose blocks a device has.

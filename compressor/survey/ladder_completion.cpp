@@ -5,8 +5,8 @@
 
 #include <vector>
 
+#include "compressor/leaf/inside_voxels.h"
 #include "compressor/packed/block_sample.h"
-#include "compressor/packed/block_values.h"
 #include "compressor/survey/cached_source.h"
 #include "compressor/survey/rows_to_read.h"
 #include "compressor/survey/spill_sums.h"

@@ -68,14 +68,9 @@ std::span<const float> LeafCache::leaf(const Box& inside, std::array<float, kLea
   return values_.floats().subspan((entry.place - kFirst) * kLeafVoxels, count);
 }
 
-Box LeafCache::leaves_under(const Box& voxels) const {
-  return {floor_div(voxels.lo, kLeafDim) - leaves_.first,
-          floor_div(voxels.hi - Index3{1, 1, 1}, kLeafDim) - leaves_.first + Index3{1, 1, 1}};
-}
-
 bool LeafCache::has(const Box& voxels) const {
   if (entries_.empty()) return false;
-  const Box under = leaves_under(voxels);
+  const Box under = leaves_.positions(voxels);
   for (std::int64_t z = under.lo.z; z < under.hi.z; ++z) {
     for (std::int64_t y = under.lo.y; y < under.hi.y; ++y) {
       const auto row = entries_.begin() + leaves_.linear({under.lo.x, y, z});
@@ -88,7 +83,7 @@ bool LeafCache::has(const Box& voxels) const {
 }
 
 void LeafCache::copy(const Box& voxels, std::span<float> values, std::size_t threads) const {
-  const Box under = leaves_under(voxels);
+  const Box under = leaves_.positions(voxels);
   const Index3 extent = under.extent();
   for_pieces(extent.y * extent.z, threads, [&](std::int64_t i) {
     for (std::int64_t x = under.lo.x; x < under.hi.x; ++x) {

@@ -51,8 +51,6 @@ class LeafCache final : public HeldLeaves {
   static constexpr std::uint32_t kUniform = 1;
   static constexpr std::uint32_t kFirst = 2;
 
-  /// The leaves that `voxels` touches, lattice positions.
-  Box leaves_under(const Box& voxels) const;
   void copy_leaf(const Index3& leaf, const Box& voxels, std::span<float> values) const;
 
   NodeLattice leaves_;

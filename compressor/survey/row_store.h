@@ -12,7 +12,7 @@
 #include "compressor/survey/leaf_cache.h"
 #include "compressor/survey/leaf_store.h"
 #include "compressor/team/team.h"
-#include "format/nanovdb/nvdb_grid.h"
+#include "format/leaf/bounds.h"
 
 namespace weir {
 

@@ -34,7 +34,7 @@ void SurveyedLeaves::check(const Index3& leaf, std::span<const float> values, co
   check(leaf, leaf_digest(copy_leaf(values, voxels, inside, next, own)));
 }
 
-void SurveyedLeaves::expect_layer(std::int64_t x) const {
+void SurveyedLeaves::prefetch_layer(std::int64_t x) const {
   if (held_ == nullptr) return;
   for (std::int64_t y = leaf_box_.lo.y; y < leaf_box_.hi.y; ++y) {
     for (std::int64_t z = leaf_box_.lo.z; z < leaf_box_.hi.z; ++z) {

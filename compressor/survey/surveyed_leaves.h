@@ -25,7 +25,7 @@ class SurveyedLeaves {
   /// The same by the digest of its in-domain values.
   void check(const Index3& leaf, const Digest& digest) const;
   /// Fetches what check() needs of the leaves of layer `x` of the box, whose rows do not lie together.
-  void expect_layer(std::int64_t x) const;
+  void prefetch_layer(std::int64_t x) const;
 
  private:
   bool checks() const { return held_ != nullptr || !digests_.empty(); }

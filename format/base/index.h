@@ -65,6 +65,11 @@ struct Box {
   friend constexpr bool operator==(const Box&, const Box&) = default;
 };
 
+/// Bytes of the voxels of a box as float32.
+constexpr std::uint64_t float32_bytes(const Box& box) {
+  return static_cast<std::uint64_t>(box.voxels()) * sizeof(float);
+}
+
 constexpr Box intersect(const Box& a, const Box& b) { return {max(a.lo, b.lo), min(a.hi, b.hi)}; }
 
 constexpr Box grown(const Box& box, std::int64_t by) {
@@ -102,6 +107,10 @@ struct NodeLattice {
     return {(first + positions.lo) * dim, (first + positions.hi) * dim};
   }
   constexpr Box voxels(const Box& positions) const { return intersect(nodes_box(positions), domain); }
+  /// Positions of the nodes that a non-empty box of voxels touches.
+  constexpr Box positions(const Box& voxels) const {
+    return {floor_div(voxels.lo, dim) - first, floor_div(voxels.hi - Index3{1, 1, 1}, dim) - first + Index3{1, 1, 1}};
+  }
   /// True where the node reaches outside the domain.
   constexpr bool overhangs(const Index3& i) const { return !domain.contains(node_box(i)); }
   constexpr std::int64_t linear(const Index3& i) const { return linear_index(i, count); }

@@ -7,11 +7,12 @@
 #include "format/base/text.h"
 #include "format/nanovdb/node_image.h"
 #include "format/nanovdb/packed_blocks.h"
+#include "format/packed/packed_layout.h"
 
 namespace weir {
 namespace {
 
-constexpr unsigned kLowerBlocks = 4096;
+constexpr unsigned kLowerBlocks = packed::chunk::kGroupCount * packed::chunk::kGroupBlocks;
 
 Box cube(const Index3& lo, std::int64_t dim) { return {lo, lo + Index3{dim, dim, dim}}; }
 

@@ -5,13 +5,14 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "format/base/index.h"
 #include "format/layout/node_statistics.h"
+#include "format/layout/nvdb_type.h"
 #include "format/layout/tree_layout.h"
-#include "format/nanovdb/nvdb_grid.h"
 
 namespace weir {
 
@@ -23,7 +24,7 @@ struct RootTile {
   float value = 0;          ///< value tiles only
 };
 
-/// Of a grid's name in a NanoVDB file.
+/// Most bytes of a grid's name in a NanoVDB file.
 inline constexpr std::size_t kMaxGridNameBytes = 255;
 
 struct GridHead {

@@ -1,7 +1,6 @@
 #include "format/output/commit_leftovers.h"
 
 #include <cerrno>
-#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -11,21 +10,11 @@
 #include "format/io/digest.h"
 #include "format/io/output_names.h"
 #include "format/sidecar/is_of.h"
+#include "format/sidecar/short_text.h"
 #include "format/sidecar/sidecar.h"
 
 namespace weir {
 namespace {
-
-// Throws Error(input) where it is too long for a text of weir.
-std::string text_of(File& file) {
-  const std::uint64_t bytes = file.size();
-  if (bytes > kMostSidecarBytes) throw Error(ErrorKind::input, file.path() + ": is no sidecar");
-  std::string text(bytes, '\0');
-  file.read_at(0, std::as_writable_bytes(std::span(text)));
-  return text;
-}
-
-std::string text_at(FileSystem& files, const std::string& path) { return text_of(*files.open_to_read(path)); }
 
 // Of `check`, which reads files: false where one of them is missing or none of weir's. Where one is there and cannot be
 // read, that is no answer, and the Error(io) goes on.
@@ -44,7 +33,7 @@ bool unless_foreign(const Check& check) {
 std::optional<Sidecar::File> head_described(FileSystem& files, const std::string& sidecar, File& volume) {
   Sidecar::File record;
   const bool agrees = unless_foreign([&] {
-    record = parse_sidecar(text_at(files, sidecar), sidecar).file;
+    record = parse_sidecar(short_text(files, sidecar), sidecar).file;
     return has_head(record, volume);
   });
   return agrees ? std::optional(std::move(record)) : std::nullopt;
@@ -94,8 +83,8 @@ bool belongs_back(FileSystem& files, const std::string& previous, const std::str
 
 bool placed_by_commit(FileSystem& files, const std::string& sidecar, File& partial) {
   return unless_foreign([&] {
-    const std::string record = commit_record(text_at(files, sidecar));
-    if (partial.size() == record.size() && text_of(partial) == record) return true;
+    const std::string record = commit_record(short_text(files, sidecar));
+    if (partial.size() == record.size() && short_text(partial) == record) return true;
     return describes(files, sidecar, partial);
   });
 }
@@ -109,10 +98,10 @@ bool is_committed(FileSystem& files, const std::string& output) {
   const std::string sidecar = sidecar_path(output);
   if (!files.exists(output)) return false;
   try {
-    const std::string record = commit_record(text_at(files, sidecar));
+    const std::string record = commit_record(short_text(files, sidecar));
     // Read before it is locked, which would make it where it is missing.
-    if (text_at(files, partial) != record) return false;
-    return text_of(*files.open(partial)) == record && describes(files, sidecar, output);
+    if (short_text(files, partial) != record) return false;
+    return short_text(*files.open(partial)) == record && describes(files, sidecar, output);
   } catch (const Error&) {
     return false;
   }

@@ -31,14 +31,14 @@ OutputFiles::OutputFiles(FileSystem& files, const std::string& path, bool overwr
   const std::string partial = partial_path(path_);
   const bool left_over = files_.exists(partial);
   if (!overwrite_) {
-    refuse_existing(path_);
-    if (!left_over) refuse_existing(sidecar_);
+    refuse_existing(files_, path_);
+    if (!left_over) refuse_existing(files_, sidecar_);
   }
   // What a process that was killed has left says whose the sidecar is, until create empties it.
   partial_ = left_over ? files_.open(partial) : files_.create(partial);
   require_alone(*partial_);
   try {
-    settle(left_over);
+    undo_killed_commit(left_over);
     if (!left_over) return;
     partial_.reset();
     partial_ = files_.create(partial);
@@ -51,15 +51,15 @@ OutputFiles::OutputFiles(FileSystem& files, const std::string& path, bool overwr
 
 // A commit that was killed between its steps 4 and 5. Under the lock nobody is between them; who was may have come to
 // its end meanwhile.
-void OutputFiles::settle(bool left_over) {
+void OutputFiles::undo_killed_commit(bool left_over) {
   if (const std::string partial = partial_path(sidecar_); files_.exists(partial)) {
     files_.create(partial);  // refuses what is somebody's, now and not when the work is done
     files_.remove(partial);
   }
   if (overwrite_) return restore_previous(left_over);
   if (!files_.exists(sidecar_)) return;
-  refuse_existing(path_);
-  if (!left_over || !placed_by_commit(files_, sidecar_, *partial_)) refuse_existing(sidecar_);
+  refuse_existing(files_, path_);
+  if (!left_over || !placed_by_commit(files_, sidecar_, *partial_)) refuse_existing(files_, sidecar_);
   files_.remove(sidecar_);
 }
 
@@ -94,11 +94,6 @@ void OutputFiles::keep_previous(const std::string& previous) {
 void OutputFiles::require_names() const {
   require_named(*partial_);
   if (volume_) require_named(*volume_);
-}
-
-void OutputFiles::refuse_existing(const std::string& path) {
-  if (!files_.exists(path)) return;
-  throw Error(ErrorKind::usage, compose(path, ": exists; choose another output or pass ", option("overwrite")));
 }
 
 void OutputFiles::write_to(std::shared_ptr<File> file) { volume_ = std::move(file); }

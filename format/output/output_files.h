@@ -60,10 +60,9 @@ class OutputFiles {
   bool committed() const { return committed_; }
 
  private:
-  void refuse_existing(const std::string& path);
   void require_names() const;
   bool holds_lock() const noexcept;
-  void settle(bool left_over);
+  void undo_killed_commit(bool left_over);
   void restore_previous(bool left_over);
   void keep_previous(const std::string& previous);
   void remove_quietly(const std::string& path) noexcept;

@@ -39,6 +39,11 @@ void require_place(FileSystem& files, const std::string& path, std::size_t besid
   }
 }
 
+void refuse_existing(FileSystem& files, const std::string& path) {
+  if (!files.exists(path)) return;
+  throw Error(ErrorKind::usage, compose(path, ": exists; choose another output or pass ", option("overwrite")));
+}
+
 void require_volume_name(const std::string& path) {
   if (path == "-") {
     throw usage_error(

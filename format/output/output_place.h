@@ -13,6 +13,9 @@ namespace weir {
 /// names beside it, the longest of which has `beside` bytes more, or where something else than a regular file is there.
 void require_place(FileSystem& files, const std::string& path, std::size_t beside);
 
+/// Throws Error(usage) where `path` is there: without --overwrite nothing is replaced.
+void refuse_existing(FileSystem& files, const std::string& path);
+
 /// Throws Error(usage) for names that say that no NanoVDB file is wanted: "-", a stream, and those that end as files of
 /// another known format do, NAME.vdb or NAME.PNG. Any other ending will do.
 void require_volume_name(const std::string& path);

@@ -14,9 +14,7 @@ namespace weir {
 PartialFile::PartialFile(FileSystem& files, const std::string& path, bool overwrite)
     : files_(files), owner_(::getpid()), path_(path), overwrite_(overwrite) {
   require_place(files_, path, kPartialEnding.size());
-  if (!overwrite && files_.exists(path)) {
-    throw Error(ErrorKind::usage, compose(path, ": exists; choose another output or pass ", option("overwrite")));
-  }
+  if (!overwrite) refuse_existing(files_, path);
   file_ = files_.create(partial_path(path));
   require_alone(*file_);
 }

@@ -31,7 +31,7 @@ struct NearAsk {
   bool all = true;          ///< else those about `wanted`
   std::int32_t wanted = 0;  ///< exponent of a quantum
 
-  /// Of each block.
+  /// How many near rungs of each block are looked at, at most.
   WEIR_HOST_DEVICE std::uint32_t most() const {
     return blocks == NearBlocks::none ? 0U : all ? static_cast<std::uint32_t>(kNearRungs) : kAbout;
   }
@@ -64,7 +64,7 @@ struct RungAsk {
   NearAsk near{};
   SearchKeys keys{};
 
-  /// Of each block.
+  /// How many rungs of each block are looked at, at most.
   WEIR_HOST_DEVICE std::uint32_t most() const {
     return all ? static_cast<std::uint32_t>(kLadderRungs - kLadderMeanRungs) : kRungsAbout;
   }
@@ -100,7 +100,7 @@ struct NearCost {
   std::uint32_t bytes = 0;  ///< 0: not looked at
   std::uint32_t unused = 0;
 };
-/// Bytes of a near rung that there is not.
+/// NearCost::bytes of a rung that was looked at, but cannot be had.
 inline constexpr std::uint32_t kNoNearBytes = ~0U;
 
 /// What TransformBlock::set() finds of a block.
@@ -144,7 +144,7 @@ struct SurveyedBlock {
   std::span<const NearCost> near;   ///< NearAsk::most(), of near rungs from figures.first_near on
 };
 
-/// Of each.
+/// What a survey finds of all blocks, one after the other.
 struct SurveyedBlocks {
   std::span<const BlockFigures> figures;
   std::span<const RungCost> costs;

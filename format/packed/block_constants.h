@@ -11,11 +11,11 @@ inline constexpr unsigned kPackedLevels = 24;
 inline constexpr unsigned kPackedBands = 4;
 inline constexpr unsigned kPackedTables = kPackedLevels * (kPackedBands + 1);
 inline constexpr unsigned kPackedSymbols = 16;
-/// Of a table's frequencies.
+/// The frequencies of a table add up to 2^kFrequencyBits.
 inline constexpr unsigned kFrequencyBits = 12;
 inline constexpr std::uint32_t kFrequencyTotal = 1U << kFrequencyBits;
 
-/// Of a code on a lattice.
+/// Most bits of a code on a lattice.
 inline constexpr std::uint32_t kMostLatticeBits = 24;
 
 /// How a stream codes its block, as the lowest two bits of its first byte say it.

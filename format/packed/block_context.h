@@ -28,7 +28,7 @@ constexpr void make_levels(std::uint8_t (&levels)[kLevelSums]) {
 
 }  // namespace packed_detail
 
-/// Low bits of a magnitude that are coded as they are.
+/// How many low bits of a magnitude are coded as they are, where `t` is the sum of its neighbours times their weight.
 WEIR_HOST_DEVICE inline unsigned extra_bits(std::uint32_t t) {
   if (t <= 36) return 0;
   const unsigned bits = 31U - static_cast<unsigned>(__builtin_clz(t / 18));

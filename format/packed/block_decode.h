@@ -12,6 +12,7 @@
 #include "format/packed/coefficient_decoder.h"
 #include "format/packed/inverse_transform.h"
 #include "format/packed/lattice_codes.h"
+#include "format/packed/stream_length.h"
 
 namespace weir {
 
@@ -156,11 +157,11 @@ WEIR_HOST_DEVICE inline bool decode_mean_alone(const BlockConstants& constants, 
   return true;
 }
 
-/// Whether a raw block has one value. False where the stream is invalid.
+/// Sets `uniform` to whether a raw block has one value. Returns false where the stream is invalid.
 WEIR_HOST_DEVICE inline bool read_raw_head(const std::byte* stream, std::uint32_t bytes, bool& uniform) {
   const auto head = static_cast<unsigned>(stream[0]);
   uniform = (head >> 2U & 1U) != 0;
-  return head >> 3U == 0 && bytes == (uniform ? 5 : 2049);
+  return head >> 3U == 0 && bytes == (uniform ? kOneValueStreamBytes : kRawStreamBytes);
 }
 
 WEIR_HOST_DEVICE inline bool decode_raw(const std::byte* stream, std::uint32_t bytes, float* values) {

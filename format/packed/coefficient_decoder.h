@@ -21,7 +21,8 @@ inline constexpr unsigned kEscape = kPackedSymbols - 1;
 
 WEIR_HOST_DEVICE inline unsigned states_of(unsigned end) { return end <= kOneStateEnd ? 1 : 2; }
 
-/// Bits of a stream read from the lowest up; zeros beyond its end, which `ok` tells.
+/// Reads bits of a stream, the lowest of each byte first. Beyond its end they are zeros: bytes_used() is then more than
+/// it has.
 class BitReader {
  public:
   WEIR_HOST_DEVICE BitReader(const std::byte* bytes, std::uint32_t count) : bytes_(bytes), count_(count) {}

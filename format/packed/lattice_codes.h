@@ -14,8 +14,9 @@ enum class LatticeKind : std::uint8_t { file = 0, own = 1, ordered = 2 };
 /// Predictors: 3-D Lorenzo, the neighbours' mean, their minimum, the median of three planes.
 inline constexpr unsigned kPredictors = 4;
 
-/// Of the voxel at `at`, from the codes kX, kY and 1 before it along x, y and z, where there are any, and those between
-/// them; it has one of the three at least. `ordered`: codes are signed. Sum has room for three codes' sum.
+/// Predicts the code of the voxel at `at` from the codes of its neighbours before it, which lie kX, kY and 1 back along
+/// x, y and z, and of those at the corners between them. `has_x`, `has_y` and `has_z` say which neighbours there are,
+/// one at least. `ordered`: codes are signed. A Sum must hold what three codes add up to.
 template <class Sum, unsigned kX, unsigned kY>
 WEIR_HOST_DEVICE inline Sum predict_at(unsigned predictor, bool ordered, const std::uint32_t* at, bool has_x,
                                        bool has_y, bool has_z) {
@@ -57,7 +58,8 @@ WEIR_HOST_DEVICE inline Sum predict_at(unsigned predictor, bool ordered, const s
   return has_x ? code(kX) : has_y ? code(kY) : code(1);
 }
 
-/// Of voxel (x, y, z) but (0, 0, 0), from the codes of those before it; `ordered`: codes are signed.
+/// Predicts the code of voxel (x, y, z), which is not (0, 0, 0), from the codes of voxels before it. `ordered`: codes
+/// are signed.
 WEIR_HOST_DEVICE inline std::int64_t predict(unsigned predictor, bool ordered, const std::uint32_t* codes, unsigned x,
                                              unsigned y, unsigned z) {
   return predict_at<std::int64_t, 64, 8>(predictor, ordered, codes + (x << 6U | y << 3U | z), x > 0, y > 0, z > 0);

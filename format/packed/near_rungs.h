@@ -28,7 +28,7 @@ inline constexpr std::int32_t kMostQuantumExponent = 127 - 26;
 
 /// Magnitudes of residuals that are coded are below that.
 inline constexpr std::uint32_t kMostRoundedResidual = 1U << 23U;
-/// Of a stream: bytes of its kind, minimum and quantum, and bits of its first code.
+/// A stream begins with its kind, minimum and quantum, which take so many bytes. Its first code takes so many bits.
 inline constexpr std::uint32_t kRoundedFrontBytes = 9;
 inline constexpr unsigned kRoundedNumberBits = 24;
 

@@ -1,6 +1,7 @@
 // How long the stream of coded values will be, from what its parts take. For host and device.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "format/base/host_device.h"
@@ -8,11 +9,14 @@
 
 namespace weir {
 
-/// Most bytes of a stream: raw values.
+/// Bytes of a stream of raw values. No exact stream has more.
 inline constexpr std::uint32_t kRawStreamBytes = 1 + 4 * 512;
-/// Of one of a block whose voxels all have one value: its kind, and that.
+/// Room to write any stream in. The longest takes 2 bytes more than raw values: a stream of coefficients is chosen
+/// where it is shorter than those without the code of its mean, which has up to 24 bits.
+inline constexpr std::size_t kStreamRoom = 4096;
+/// Bytes of the stream of a block whose voxels all have one value: its kind and that value.
 inline constexpr std::uint32_t kOneValueStreamBytes = 1 + 4;
-/// Of a mean alone, but for its code: the kind and the step.
+/// Bits of the stream of a mean alone, without the mean's code: its kind and its step.
 inline constexpr std::uint32_t kMeanAloneBits = 8;
 
 /// Bits of the end of a stream of kind lattice, and of the first code of floats in order.
@@ -24,8 +28,8 @@ inline constexpr unsigned kOrderedNumberBits = 32;
 WEIR_HOST_DEVICE inline std::uint32_t coded_stream_bits(std::uint32_t symbols, std::uint32_t raw, std::uint32_t nonzero,
                                                         unsigned end, unsigned end_bits, unsigned number_bits) {
   const unsigned states = states_of(end);
-  // Each state begins at 16 bits, which hold signs and the number's low bits, and ends in whole bytes of 3 or more.
-  // A state begins with 16 to 17 bits, and whole numbers in it lose a little of each symbol.
+  // Each state begins with 16 to 17 bits, 16 of which hold signs and the number's low bits, and ends in whole bytes, 3
+  // or more. Whole numbers in it lose a little of each symbol.
   std::uint32_t coded = symbols + 256 * (raw + 17 * states);
   coded += coded / 1024;
   const std::uint32_t words = (coded + 2047) / 2048 + (states - 1);

@@ -25,10 +25,10 @@ struct StreamFront {
   unsigned number_bits = 0;
 };
 
-/// Of the last place of the scan that is not zero, in units of kEndUnit places, rounded up; 0 where all are. Place 0
-/// does not count.
+/// How many units of kEndUnit places hold all values of the scan that are not zero; 0 where all are zero. Place 0 does
+/// not count.
 unsigned end_of(const MagnitudeRows& magnitudes);
-/// The same of that place; 0 where there is none.
+/// The same where `last_place` is the last one that is not zero; it is 0 where there is none.
 constexpr unsigned end_at(unsigned last_place) { return last_place == 0 ? 0 : last_place / kEndUnit + 1; }
 
 /// Bytes of a stream's two parts, between which there may be zeros.

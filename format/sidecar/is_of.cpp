@@ -1,6 +1,5 @@
 #include "format/sidecar/is_of.h"
 
-#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -12,6 +11,7 @@
 #include "format/io/real_path.h"
 #include "format/layout/nanovdb_layout.h"
 #include "format/sidecar/find_sidecar.h"
+#include "format/sidecar/short_text.h"
 
 namespace weir {
 namespace {
@@ -20,21 +20,14 @@ bool have_one_head(const Sidecar::File& a, const Sidecar::File& b) {
   return a.bytes == b.bytes && a.head_checksum == b.head_checksum;
 }
 
-std::string text_at(FileSystem& files, const std::string& path) {
-  const std::unique_ptr<File> file = files.open_to_read(path);
-  std::string text(std::min(file->size(), kMostSidecarBytes), '\0');
-  file->read_at(0, std::as_writable_bytes(std::span(text)));
-  return text;
-}
-
 // Whether OUT.nvdb.partial is a volume with the head that `record` tells, or, as the lock of a volume in another place,
 // holds the digest of the sidecar at `sidecar`. While a conversion runs it is neither.
 bool is_to_follow(FileSystem& files, const std::string& partial, const Sidecar::File& record,
                   const std::string& sidecar) {
   const std::unique_ptr<File> file = files.open_to_read(partial);
   if (file->size() != 2 * sizeof(Digest)) return has_head(record, *file);
-  const std::string text = text_at(files, sidecar);
-  return text_at(files, partial) == piece_digest(std::as_bytes(std::span(text))).hex();
+  const std::string text = short_text(files, sidecar);
+  return short_text(files, partial) == piece_digest(std::as_bytes(std::span(text))).hex();
 }
 
 // Whether a commit that was killed may have put the sidecar beside another volume of the same head. What cannot be read
@@ -51,7 +44,7 @@ bool may_be_of_another(FileSystem& files, const std::string& path, const Sidecar
     }
   };
   return (is_there(previous) &&
-          holds([&] { return have_one_head(parse_sidecar(text_at(files, previous), previous).file, record); })) ||
+          holds([&] { return have_one_head(parse_sidecar(short_text(files, previous), previous).file, record); })) ||
          (is_there(partial) && holds([&] { return is_to_follow(files, partial, record, sidecar); }));
 }
 

@@ -2,7 +2,6 @@
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <filesystem>
 #include <iostream>
@@ -329,9 +328,9 @@ void compare(const CompareArguments& arguments) {
     spectrum_file.emplace(*files, arguments.spectrum);
   }
   const std::vector<ComparedPair> pairs = open_pairs(arguments);
-  const std::unique_ptr<Trace> trace =
-      open_trace(arguments.trace,
-                 std::array{arguments.input, arguments.volume, find_sidecar(arguments.volume), arguments.spectrum});
+  std::vector<std::string> paths = input_paths(arguments);
+  paths.push_back(arguments.spectrum);
+  const std::unique_ptr<Trace> trace = open_trace(arguments.trace, paths);
   ComparePasses passes(arguments, pairs, block_bytes(arguments, run, pairs), trace.get());
   const Comparison comparison = passes.compare();
   const Besides besides = passes.besides(comparison, spectrum_file);

@@ -243,6 +243,37 @@ nlohmann::ordered_json forecast_step(const SeriesStep& step, const SourceOptions
   return json;
 }
 
+// What the steps of one call have come to.
+struct StepResults {
+  std::vector<Sidecar> sidecars;
+  std::vector<nlohmann::ordered_json> forecasts;  // of --dry-run, which makes no sidecars
+};
+
+StepResults convert_steps(std::span<const SeriesStep> steps, std::span<const std::string> outputs,
+                          SourceOptions source_options, ConversionOptions options, const SeriesWork& work) {
+  const auto open = [&](const SeriesStep& step) { return open_step(step, source_options); };
+  StepResults results;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    options.output = outputs[i];
+    source_options.spool_directory = options.work_dir.empty() ? directory_of(options.output) : options.work_dir;
+    check_level_budgets(steps, outputs, i, options, open);
+    if (work.arguments.dry_run) {
+      results.forecasts.push_back(forecast_step(steps[i], source_options, options, work));
+      continue;
+    }
+    try {
+      results.sidecars.push_back(convert_step(steps[i], source_options, options, work));
+    } catch (const std::exception&) {
+      if (steps.size() > 1) {  // by its output: several may be of one file
+        spdlog::warn("{} of {} volumes were converted, and none from {} on; --skip-done leaves out what is done", i,
+                     steps.size(), outputs[i]);
+      }
+      throw;
+    }
+  }
+  return results;
+}
+
 void print_json(std::span<const nlohmann::ordered_json> forecasts) {
   const nlohmann::ordered_json json =
       forecasts.size() == 1 ? forecasts.front() : nlohmann::ordered_json{{"steps", forecasts}};
@@ -275,8 +306,7 @@ void convert(const CLI::App& command, const ConvertArguments& a) {
                  steps.size());
   }
   SeriesExtents extents(options.budget);
-  const auto open = [&of = source_options](const SeriesStep& step) { return open_step(step, of); };
-  extents.check_all(steps, open);
+  extents.check_all(steps, [&of = source_options](const SeriesStep& step) { return open_step(step, of); });
   std::optional<Bandwidth> bandwidth;
   if (const auto bytes_per_s = parse_bandwidth(a.bandwidth)) bandwidth.emplace(*bytes_per_s, &interrupt_flag());
   std::vector<std::string> places;
@@ -286,36 +316,17 @@ void convert(const CLI::App& command, const ConvertArguments& a) {
   const std::unique_ptr<FileSystem> files = make_posix_file_system();
   std::optional<ResultDirectory> directory;
   if (a.output.ends_with('/')) directory.emplace(*files, directory_of(a.output));
-  std::vector<Sidecar> sidecars;
-  std::vector<nlohmann::ordered_json> forecasts;
   const std::unique_ptr<BlockCoder> coder =
       choose_coder(options.backend, options.encoding == Encoding::packed, options.memory, log_notice);
   const SeriesWork work{a, extents, bandwidth ? &*bandwidth : nullptr, coder.get(), trace.get()};
-  for (std::size_t i = 0; i < steps.size(); ++i) {
-    options.output = outputs[i];
-    source_options.spool_directory = options.work_dir.empty() ? directory_of(options.output) : options.work_dir;
-    check_level_budgets(steps, outputs, i, options, open);
-    if (a.dry_run) {
-      forecasts.push_back(forecast_step(steps[i], source_options, options, work));
-      continue;
-    }
-    try {
-      sidecars.push_back(convert_step(steps[i], source_options, options, work));
-    } catch (const std::exception&) {
-      if (steps.size() > 1) {  // by its output: several may be of one file
-        spdlog::warn("{} of {} volumes were converted, and none from {} on; --skip-done leaves out what is done", i,
-                     steps.size(), outputs[i]);
-      }
-      throw;
-    }
-  }
+  const StepResults results = convert_steps(steps, outputs, source_options, options, work);
   if (trace) trace->close();
   if (a.dry_run) {
-    if (a.json) print_json(forecasts);
+    if (a.json) print_json(results.forecasts);
     return;
   }
-  say_sizes(steps, outputs, sidecars, options.budget);
-  if (a.json) print_json(sidecars);
+  say_sizes(steps, outputs, results.sidecars, options.budget);
+  if (a.json) print_json(results.sidecars);
 }
 
 }  // namespace

@@ -180,13 +180,13 @@ std::string certificate_text(const Sidecar& s, const Sidecar::CertifiedError& er
   return cat(error_text(s, error), ", RMSE ", short_number(error.rmse), ", NMSE ", short_number(error.nmse));
 }
 
-std::string unit_text(const std::string& units) { return units.empty() ? "" : cat(" (", units, ')'); }
+std::string in_brackets(const std::string& units) { return units.empty() ? "" : cat(" (", units, ')'); }
 
 void print_sidecar(const Sidecar& s) {
   line("source      ",
        cat(s.source.path, s.source.dataset.empty() ? "" : ":", s.source.dataset, ", ", s.source.format, ' ',
            s.source.type, ", ", shown_text(s.source.extent), ", range ", range_text(s.value_range)));
-  if (!s.source.long_name.empty()) line("quantity    ", cat(s.source.long_name, unit_text(s.source.units)));
+  if (!s.source.long_name.empty()) line("quantity    ", cat(s.source.long_name, in_brackets(s.source.units)));
   if (!s.source.component.empty()) line("component   ", s.source.component);
   if (s.source.time) line("time        ", cat(s.source.time->value, ' ', s.source.time->units));
   line("budget      ",

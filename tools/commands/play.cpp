@@ -73,6 +73,17 @@ void write_stdout(std::span<const std::uint8_t> bytes) {
   }
 }
 
+// A frame must not replace what it, or another one, is made from.
+void refuse_inputs(const PlayArguments& arguments, const PictureRequest& request,
+                   std::span<const std::string> volumes) {
+  std::vector<std::string> inputs = picture_inputs(arguments.picture, request);
+  inputs.insert(inputs.end(), volumes.begin(), volumes.end());
+  const std::vector<FileId> ids = file_ids(inputs);
+  for (std::size_t frame = 0; frame < volumes.size(); ++frame) {
+    require_not_input(ids, frame_path(arguments.output, frame));
+  }
+}
+
 // Where frames go. The directory is tried before the work.
 FrameWriter open_output(const PlayArguments& arguments, FileSystem& files, std::size_t frames) {
   if (!arguments.raw.empty()) {
@@ -147,6 +158,14 @@ nlohmann::json to_json(const PlayArguments& arguments, const PictureRequest& req
           {"write_s", report.write_s}};
 }
 
+void say_report(const PictureRequest& request, const PlaybackReport& report, const std::string& last,
+                std::int32_t bar_width) {
+  if (report.load.way == "cached") spdlog::info("{}: {}", last, report.load.note);
+  spdlog::info("{} frames of {} x {}, {:.2f} steps/s; load {:.2f} s, render {:.2f} s, write {:.2f} s: {} is the limit",
+               report.frames, request.options.width + bar_width, request.options.height, report.sustained,
+               report.load_s, report.render_s, report.write_s, report.limit());
+}
+
 void play_series(const PlayArguments& arguments) {
   check_output(arguments);
   PictureRequest request = read_picture_request(arguments.picture);
@@ -156,14 +175,9 @@ void play_series(const PlayArguments& arguments) {
   const std::unique_ptr<Backend> backend = make_backend(request.backend, warn);
   const std::unique_ptr<FileSystem> files = make_posix_file_system();
   std::optional<ResultDirectory> directory;
-  if (!arguments.output.empty()) directory.emplace(*files, arguments.output);
   if (!arguments.output.empty()) {
-    std::vector<std::string> inputs = picture_inputs(arguments.picture, request);
-    inputs.insert(inputs.end(), volumes.begin(), volumes.end());
-    const std::vector<FileId> ids = file_ids(inputs);
-    for (std::size_t frame = 0; frame < volumes.size(); ++frame) {
-      require_not_input(ids, frame_path(arguments.output, frame));
-    }
+    directory.emplace(*files, arguments.output);
+    refuse_inputs(arguments, request, volumes);
   }
   const FrameWriter write = open_output(arguments, *files, volumes.size());
   fix_look(request, volumes);
@@ -207,11 +221,7 @@ void play_series(const PlayArguments& arguments) {
   if (arguments.json) {
     std::cout << json_text(to_json(arguments, request, report, backend->name(), bar_width), 2) << '\n';
   } else {
-    if (report.load.way == "cached") spdlog::info("{}: {}", volumes.back(), report.load.note);
-    spdlog::info(
-        "{} frames of {} x {}, {:.2f} steps/s; load {:.2f} s, render {:.2f} s, write {:.2f} s: {} is the limit",
-        report.frames, request.options.width + bar_width, request.options.height, report.sustained, report.load_s,
-        report.render_s, report.write_s, report.limit());
+    say_report(request, report, volumes.back(), bar_width);
   }
 }
 

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "format/base/error.h"
@@ -99,6 +100,57 @@ nlohmann::json to_json(const CacheCounts& counts) {
   return {{"lookups", counts.lookups}, {"decoded", counts.decoded}, {"evicted", counts.evicted}};
 }
 
+// Gives a scene without a range that of the values, where it is known, and warns of what cannot be seen in it.
+void fit_scene(Scene& scene, const std::optional<MinMax>& range, const GivenOptions& given) {
+  if (range) {
+    if (const std::string line = surface_warning(scene, *range); !line.empty()) spdlog::warn("{}", line);
+    if (!scene.volume.range) scene.volume.range = {range->min, range->max};
+  }
+  if (const std::string line = opacity_warning(scene); !line.empty()) spdlog::warn("{}: {}", given.at("scene"), line);
+}
+
+// What a report tells of a picture besides the picture itself.
+struct RenderFigures {
+  std::string_view backend;
+  const LoadSummary& loaded;
+  double load_s;
+  std::uint64_t bytes;  // of the image file
+};
+
+// Prints it on stdout with --json, else says the most of it in the log.
+void write_report(const RenderArguments& arguments, const PictureRequest& request, const Picture& picture,
+                  const RenderFigures& figures) {
+  if (!arguments.json) {
+    if (!picture.levels_note.empty()) spdlog::info("{}: {}", arguments.input, picture.levels_note);
+    spdlog::info("{}: {} x {}, {} samples a pixel, {:.2f} s", arguments.output, picture.image.width,
+                 picture.image.height, request.sampling.samples, picture.render_s);
+    return;
+  }
+  const nlohmann::json report{{"image", arguments.output},
+                              {"bytes", figures.bytes},
+                              {"width", picture.image.width},
+                              {"height", picture.image.height},
+                              {"mode", render_mode_name(request.scene.mode)},
+                              {"filter", filter_name(request.options.filter)},
+                              {"volume", arguments.volume},
+                              {"backend", figures.backend},
+                              {"samples", request.sampling.samples},
+                              {"seed", request.options.seed},
+                              {"load",
+                               {{"way", figures.loaded.way},
+                                {"bytes", figures.loaded.bytes},
+                                {"memory_bytes", figures.loaded.memory},
+                                {"transfer_s", figures.loaded.seconds},
+                                {"note", figures.loaded.note}}},
+                              {"cache", to_json(picture.cache)},
+                              {"finest_level", picture.finest_level},
+                              {"levels_note", picture.levels_note},
+                              {"memory_note", picture.memory_note},
+                              {"load_s", figures.load_s},
+                              {"render_s", picture.render_s}};
+  std::cout << json_text(report, 2) << '\n';
+}
+
 void render(const RenderArguments& arguments) {
   PictureRequest request = read_picture_request(arguments.picture);
   request.sampling.cancel = &interrupt_flag();
@@ -121,15 +173,7 @@ void render(const RenderArguments& arguments) {
   const double load_s = seconds_since(start);
   const LoadSummary& loaded = volume->load_summary();
   if (!arguments.json && loaded.way == "cached") spdlog::info("{}: {}", arguments.input, loaded.note);
-
-  if (range) {
-    if (const std::string line = surface_warning(request.scene, *range); !line.empty()) spdlog::warn("{}", line);
-    if (!request.scene.volume.range) request.scene.volume.range = {range->min, range->max};
-  }
-  if (const std::string line = opacity_warning(request.scene); !line.empty()) {
-    spdlog::warn("{}: {}", arguments.picture.at("scene"), line);
-  }
-
+  fit_scene(request.scene, range, arguments.picture);
   std::optional<Image> bar;
   if (request.colorbar) {
     bar =
@@ -144,35 +188,7 @@ void render(const RenderArguments& arguments) {
   progress.finish();
   if (!picture.memory_note.empty()) spdlog::warn("{}: {}", arguments.input, picture.memory_note);
   const std::uint64_t bytes = image_file.commit(picture.image, picture.tone);
-  if (arguments.json) {
-    const nlohmann::json report{{"image", arguments.output},
-                                {"bytes", bytes},
-                                {"width", picture.image.width},
-                                {"height", picture.image.height},
-                                {"mode", render_mode_name(request.scene.mode)},
-                                {"filter", filter_name(request.options.filter)},
-                                {"volume", arguments.volume},
-                                {"backend", backend->name()},
-                                {"samples", request.sampling.samples},
-                                {"seed", request.options.seed},
-                                {"load",
-                                 {{"way", loaded.way},
-                                  {"bytes", loaded.bytes},
-                                  {"memory_bytes", loaded.memory},
-                                  {"transfer_s", loaded.seconds},
-                                  {"note", loaded.note}}},
-                                {"cache", to_json(picture.cache)},
-                                {"finest_level", picture.finest_level},
-                                {"levels_note", picture.levels_note},
-                                {"memory_note", picture.memory_note},
-                                {"load_s", load_s},
-                                {"render_s", picture.render_s}};
-    std::cout << json_text(report, 2) << '\n';
-  } else {
-    if (!picture.levels_note.empty()) spdlog::info("{}: {}", arguments.input, picture.levels_note);
-    spdlog::info("{}: {} x {}, {} samples a pixel, {:.2f} s", arguments.output, picture.image.width,
-                 picture.image.height, request.sampling.samples, picture.render_s);
-  }
+  write_report(arguments, request, picture, {backend->name(), loaded, load_s, bytes});
 }
 
 }  // namespace

@@ -130,33 +130,56 @@ std::unique_ptr<WorkerProcess> open_browser(boost::asio::io_context& io, const s
       });
 }
 
+// Conversions of inputs that are no NanoVDB files. They go with the object.
+struct OpenedSources {
+  std::optional<SourcePreview> shown;
+  std::optional<SourcePreview> compared;
+};
+
+// Converts those of INPUT and --against that are sources, and refuses options that go with other inputs.
+void open_sources(const ViewArguments& arguments, const BackendChoice& choice, ViewSettings& settings,
+                  OpenedSources& sources) {
+  if (is_source(arguments.input)) {
+    sources.shown.emplace(arguments.input, arguments.source, arguments.work_dir, choice.memory.ceiling,
+                          arguments.progress);
+    settings.preview_of = arguments.input;
+    settings.render_input = dense_words(arguments.input, arguments.source);
+  }
+  if (!arguments.against.empty() && is_source(arguments.against)) {
+    sources.compared.emplace(arguments.against, arguments.source, arguments.work_dir, choice.memory.ceiling,
+                             arguments.progress, SourcePreview::Kept::all);
+  }
+  const bool converts = sources.shown || sources.compared;
+  if (const std::string key = given_input_option(arguments.source); !converts && !key.empty()) {
+    throw Error(ErrorKind::usage, compose(option(key), cat(" says how to read a source, and ", arguments.input,
+                                                           " is shown as it is; leave it out")));
+  }
+  if (sources.shown && arguments.series) {
+    throw Error(ErrorKind::usage, compose(option("series"), cat(" is of a NanoVDB file, and ", arguments.input,
+                                                                " is converted to be seen; leave it out")));
+  }
+}
+
+// Prints the page's URL, and writes its address, with the token where there is one, to --progress-fd.
+void tell_address(const ProgressOptions& progress, const ListenAddress& address, const std::string& url,
+                  const std::string& token) {
+  std::printf("%s\n", url.c_str());
+  finish_stdout();  // nobody finds a page whose address could not be told
+  nlohmann::ordered_json told{{"address", address.text()}};
+  if (!token.empty()) told["token"] = token;
+  announce(progress, told.dump());
+}
+
 void view(const ViewArguments& arguments) {
   // The conversions of previews and forecasts, which need it, may come much later.
   if (!arguments.work_dir.empty()) check_work_directory(*make_posix_file_system(), arguments.work_dir);
   ViewSettings settings = settings_of(arguments);
   BackendChoice choice = read_backend_choice(arguments.backend);
-  std::optional<SourcePreview> preview;
-  if (is_source(arguments.input)) {
-    preview.emplace(arguments.input, arguments.source, arguments.work_dir, choice.memory.ceiling, arguments.progress);
-    settings.preview_of = arguments.input;
-    settings.render_input = dense_words(arguments.input, arguments.source);
-  }
-  std::optional<SourcePreview> compared;
-  if (!arguments.against.empty() && is_source(arguments.against)) {
-    compared.emplace(arguments.against, arguments.source, arguments.work_dir, choice.memory.ceiling, arguments.progress,
-                     SourcePreview::Kept::all);
-  }
-  if (const std::string key = given_input_option(arguments.source); !preview && !compared && !key.empty()) {
-    throw Error(ErrorKind::usage, compose(option(key), cat(" says how to read a source, and ", arguments.input,
-                                                           " is shown as it is; leave it out")));
-  }
-  if (preview && arguments.series) {
-    throw Error(ErrorKind::usage, compose(option("series"), cat(" is of a NanoVDB file, and ", arguments.input,
-                                                                " is converted to be seen; leave it out")));
-  }
-  ViewedFiles files = find_viewed_files({preview ? preview->file() : arguments.input, arguments.series},
-                                        compared ? compared->file() : arguments.against);
-  if (preview || compared) {  // whose file has another name each time
+  OpenedSources sources;
+  open_sources(arguments, choice, settings, sources);
+  ViewedFiles files = find_viewed_files({sources.shown ? sources.shown->file() : arguments.input, arguments.series},
+                                        sources.compared ? sources.compared->file() : arguments.against);
+  if (sources.shown || sources.compared) {  // whose file has another name each time
     files.key = viewed_key({arguments.input, arguments.series}, arguments.against);
   }
   choice.memory.volumes = volumes_held(files);
@@ -173,8 +196,8 @@ void view(const ViewArguments& arguments) {
     spdlog::warn("{}; the page begins with {}", fault, files.steps.front());
   }
   const auto named = [&](const std::string& path) {
-    if (preview && path == preview->file()) return arguments.input;
-    return compared && path == compared->file() ? arguments.against : path;
+    if (sources.shown && path == sources.shown->file()) return arguments.input;
+    return sources.compared && path == sources.compared->file() ? arguments.against : path;
   };
   if (lies_elsewhere(files)) {
     spdlog::warn("{} and {} have other index boxes, voxel sizes or origins; each is shown where it lies in the world",
@@ -187,11 +210,7 @@ void view(const ViewArguments& arguments) {
   if (interrupt_flag()) throw Error(ErrorKind::interrupted, "interrupted before it was ready");
   address.port = server.port();
   const std::string url = "http://" + address.text() + "/";
-  std::printf("%s\n", url.c_str());
-  finish_stdout();  // nobody finds a page whose address could not be told
-  nlohmann::ordered_json told{{"address", address.text()}};
-  if (!token.empty()) told["token"] = token;
-  announce(arguments.progress, told.dump());
+  tell_address(arguments.progress, address, url, token);
   std::unique_ptr<WorkerProcess> browser;
   if (arguments.open) browser = open_browser(io, url);
   io.run();

@@ -33,10 +33,12 @@ std::string table(std::string_view title, std::string_view names, std::span<cons
 std::string options_page() {
   return cat(
       "# Options of a conversion\n\n"
-      "One table in the program, `compressor/options`, says what options there are: the command line, the keys of a\n"
-      "`[[watch]]` table and this page are made from it, the keywords of `weir.convert` in Python are checked against "
+      "One table in the program, `compressor/options`, says what options there are. The command line, the keys of a\n"
+      "`[[watch]]` table and this page are made from it. The keywords of `weir.convert` in Python are checked against "
       "it.\nC has most of them as members of `weir_convert_options` and `weir_input_options`; `weir.h` describes "
       "those.\n"
+      "`weir convert --help` explains further options of the command alone, such as `--skip-done`, `--dry-run`, "
+      "`--within`,\n`--bandwidth` and `--json`.\n"
       "`weir man --options` prints this page. `weir man DIRECTORY`, which `weir --help` does not list, writes the "
       "manual\npages, for the installation.\n",
       table("Input: what a file does not say itself", "key, keyword", input_options()),

@@ -46,6 +46,14 @@ std::unique_ptr<Trace> open_trace(const std::string& path, std::span<const std::
       throw Error(ErrorKind::usage, cat("--trace ", path, ": is an input or an output; choose another"));
     }
   }
+  std::error_code failure;
+  const std::filesystem::path directory = std::filesystem::path(path).parent_path();
+  if (!directory.empty() &&
+      std::filesystem::status(directory, failure).type() == std::filesystem::file_type::not_found &&
+      failure != std::errc::not_a_directory) {
+    throw Error(ErrorKind::io, cat("--trace ", path, ": the directory ", directory.string(),
+                                   " does not exist; make it or choose another"));
+  }
   if (!may_be_replaced(path)) throw usage_error(cat("--trace ", path, ": exists and is no trace; choose another"));
   return std::make_unique<Trace>(path);
 }

@@ -88,6 +88,20 @@ TEST(LeafDifference, WithoutAFiniteVoxelThereIsNoRange) {
   EXPECT_GT(d.range.min, d.range.max);
 }
 
+TEST(LeafDifference, VoxelsOutsideDoNotCount) {
+  const Box node{{8, 0, -8}, {16, 8, 0}};
+  const Box inside{{10, 0, -8}, {16, 7, -1}};
+  Pair leaf;
+  leaf.source.fill(3.0F);
+  leaf.decoded.fill(1.0F);
+  const LeafValues seen = inside_only(leaf.source, leaf.decoded, node, inside);
+  for_each_index(node, [&](const Index3& i) {
+    const Index3 at = i - node.lo;
+    EXPECT_EQ(seen[static_cast<std::size_t>(at.x << 6 | at.y << 3 | at.z)], inside.contains(i) ? 3.0F : 1.0F);
+  });
+  EXPECT_EQ(difference_of(seen, leaf.decoded).different, 6U * 7U * 7U);
+}
+
 TEST(AbsDifference, ZeroWhereEitherIsNotFinite) {
   EXPECT_EQ(abs_difference(1.0F, -2.0F), 3.0);
   EXPECT_EQ(abs_difference(kNaN, 1.0F), 0.0);

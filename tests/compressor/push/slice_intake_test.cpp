@@ -266,6 +266,15 @@ TEST_F(SliceIntakeTest, FailFromOutsideRefusesFurtherSlabs) {
   EXPECT_EQ(message_of([&] { intake.add(slab(8, 1)); }), "enough");
 }
 
+// Who waits for it would wait forever.
+TEST_F(SliceIntakeTest, NeedsBuffersAndWorkers) {
+  for (const IntakeRoom room : {IntakeRoom{0, 1}, IntakeRoom{1, 0}}) {
+    EXPECT_EQ(message_of([&] { const SliceIntake intake(plan(), 2, room, keeper_.sink()); }),
+              "a slice intake without buffers or workers");
+  }
+  EXPECT_EQ(keeper_.abandoned, 0);
+}
+
 TEST_F(SliceIntakeTest, CanBeDestroyedUnfinished) {
   const SliceIntake never(plan(), 2, {12, 2}, keeper_.sink());
   SliceIntake intake(plan(), 2, {12, 2}, keeper_.sink());

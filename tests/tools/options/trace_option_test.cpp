@@ -126,6 +126,27 @@ TEST_F(TraceOption, TellsWhatIsCompared) {
   EXPECT_EQ(bytes_of(threads, "compare"), 4 * kVoxels);
   EXPECT_EQ(names_of(threads.at(0)), Names{"compare"});
   EXPECT_EQ(run_weir({"compare", input_, directory_ / "o.nvdb", "--trace", input_}).exit_code, 2);
+  const std::string missing = directory_ / "missing";
+  const CommandResult refused = run_weir({"compare", input_, directory_ / "o.nvdb", "--trace", missing + "/t.json"});
+  EXPECT_EQ(refused.exit_code, 5);
+  EXPECT_EQ(refused.err, "weir: --trace " + missing + "/t.json: the directory " + missing +
+                             " does not exist; make it or choose another\n");
+}
+
+TEST_F(TraceOption, TraceOverAVolumeOfAVectorField_IsRefused) {
+  const std::string x = directory_ / "x.nvdb";
+  const std::string y = directory_ / "y.nvdb";
+  const std::string z = directory_ / "z.nvdb";
+  const std::string source = directory_ / "s_256x256x40_float32.raw";
+  std::filesystem::copy_file(input_, source);
+  for (const std::string& volume : {x, y, z}) {
+    ASSERT_EQ(run_weir({"convert", volume == z ? source : input_, "-o", volume, "--rate", "2"}).exit_code, 0);
+  }
+  for (const std::string& file : {y, z, z + ".json", source}) {
+    const CommandResult result = run_weir({"compare", input_, x, "--vector", input_, y, source, z, "--trace", file});
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_EQ(result.err, "weir: --trace " + file + ": is an input or an output; choose another\n");
+  }
 }
 
 TEST_F(TraceOption, TellsWhatIsVerified) {

@@ -98,6 +98,27 @@ TEST_P(Documentation, LinksPointToExistingFiles) {
   }
 }
 
+/// The cells of a table's row: what its bars, but for escaped ones, divide.
+std::size_t cells(const std::string& row) {
+  std::size_t bars = 0;
+  for (std::size_t i = 0; i < row.size(); ++i) bars += row[i] == '|' && (i == 0 || row[i - 1] != '\\') ? 1 : 0;
+  return bars - 1;
+}
+
+TEST_P(Documentation, TablesHaveOneRowALine) {
+  const std::vector<std::string> lines = split(read_file(path()), '\n');
+  const auto is_row = [&](std::size_t at) { return at < lines.size() && lines[at].starts_with('|'); };
+  for (std::size_t at = 0; at < lines.size(); ++at) {
+    if (!is_row(at) || (at > 0 && is_row(at - 1))) continue;
+    ASSERT_TRUE(is_row(at + 1)) << "line " << at + 1;
+    EXPECT_EQ(lines[at + 1].find_first_not_of("|-: "), std::string::npos) << "line " << at + 2 << ": " << lines[at + 1];
+    for (std::size_t row = at; is_row(row); ++row) {
+      EXPECT_TRUE(lines[row].ends_with('|')) << "line " << row + 1 << ": " << lines[row];
+      EXPECT_EQ(cells(lines[row]), cells(lines[at])) << "line " << row + 1 << ": " << lines[row];
+    }
+  }
+}
+
 TEST_P(Documentation, CommandsGiveTheDocumentedResults) {
   const TemporaryDirectory directory;
   CommandOptions options;
