@@ -77,6 +77,9 @@ function(weir_library name)
   endif()
   add_library(weir_${name} STATIC ${sources})
   target_link_libraries(weir_${name} PUBLIC weir_options ${ARG_LINKS})
+  if(name MATCHES "^(tools|daemon)$" AND WEIR_COMMAND_OPTIMISATION)
+    target_compile_options(weir_${name} PRIVATE ${WEIR_COMMAND_OPTIMISATION})
+  endif()
 endfunction()
 
 # weir_embed_page(TARGET FOLDER FUNCTION HEADER): the files of FOLDER, compiled into TARGET as FUNCTION(), which HEADER
@@ -174,17 +177,27 @@ function(weir_leave_out variable)
   set(${variable} ${kept} PARENT_SCOPE)
 endfunction()
 
-# weir_leave_out_slow_tests(): adds those of tests/slow_tests.txt to WEIR_TESTS_LEFT_OUT, unless WEIR_SLOW_TESTS is on.
-function(weir_leave_out_slow_tests)
-  set(slow_tests ${PROJECT_SOURCE_DIR}/tests/slow_tests.txt)
-  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${slow_tests})
+# weir_read_patterns(FILE VARIABLE): its lines, but for comments. The build is configured again where they change.
+function(weir_read_patterns file variable)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
+  file(STRINGS ${file} patterns REGEX "^[^#]")
+  set(${variable} ${patterns} PARENT_SCOPE)
+endfunction()
+
+# weir_read_left_out(): makes WEIR_TESTS_LEFT_OUT one filter: the patterns of the file that it may name, and the tests of
+# tests/slow_tests.txt, unless WEIR_SLOW_TESTS is on.
+function(weir_read_left_out)
+  set(left_out ${WEIR_TESTS_LEFT_OUT})
+  if(left_out MATCHES "^@(.+)")
+    weir_read_patterns(${CMAKE_MATCH_1} left_out)
+  endif()
   set(slow)
   if(NOT WEIR_SLOW_TESTS)
-    file(STRINGS ${slow_tests} slow REGEX "^[^#]")
+    weir_read_patterns(${PROJECT_SOURCE_DIR}/tests/slow_tests.txt slow)
   endif()
   set(WEIR_SLOW_TEST_NAMES ${slow} PARENT_SCOPE)
-  list(PREPEND slow ${WEIR_TESTS_LEFT_OUT})
-  list(JOIN slow ":" patterns)
+  list(APPEND left_out ${slow})
+  list(JOIN left_out ":" patterns)
   set(WEIR_TESTS_LEFT_OUT ${patterns} PARENT_SCOPE)
 endfunction()
 
