@@ -200,15 +200,17 @@ def _derived(measured):
     lines = []
     for ours, rival in _pairs(RIVALS):
         for title, of in kinds.items():
-            found = []
+            found, missing = [], 0
             for result in measured.results("derived"):
                 rows = {(row["method"], row["share"]): row for row in result.get("rows", [])}
+                missing += sum(1 for method, share in rows if method == rival and (ours, share) not in rows)
                 for (method, share), own in rows.items():
                     theirs = rows.get((rival, share))
                     if method == ours and theirs and of(own) > of(theirs):
                         ratio = of(own) / of(theirs) if of(theirs) > 0 else math.inf
                         found.append((ratio, f"{result['volume']} at {share} % of dense"))
-            lines += _times_line(ours, f"{_rate_title(rival)}, {title} at equal bytes", found)
+            without = f" (in {missing} there is no file so small)" if missing else ""
+            lines += _times_line(ours, f"{_rate_title(rival)}, {title} at equal bytes{without}", found)
     return lines
 
 

@@ -98,7 +98,9 @@ std::uint64_t plain_offset(const HeaderVolume& volume, const Shape& shape, std::
                 cat(volume.data_path, ": has ", room, " bytes from offset ", volume.data_offset, " on, and ",
                     attached ? "its header" : volume.info.path, " asks for ", extents_text(volume.extents), ' ',
                     scalar_name(volume.type), ", ", shape.all_bytes, " bytes; ",
-                    room < shape.all_bytes ? "the file is cut or the header wrong" : "the header is wrong"));
+                    room < shape.all_bytes ? "the file is cut or the header wrong"
+                    : volume.ends_file     ? "something else comes before the values, and the header is wrong"
+                                           : "the header is wrong"));
   }
   return volume.at_end ? file_bytes - shape.all_bytes : volume.data_offset;
 }

@@ -45,6 +45,7 @@ std::unique_ptr<InputFile> open_data_file(const HeaderVolume& volume, DirectIo m
 /// an extent is impossible, the data file missing or too short, or, where it is the header's own, longer by a plane of
 /// the volume or by more than 4096 bytes; and what spool_inflated throws. That the file has more bytes is said in
 /// details.data_note: another file may hold other arrays too, and the header's own may end in a line end or padding.
+/// A packed stream must unpack to exactly what the header says.
 std::unique_ptr<VolumeSource> open_header_volume(const HeaderVolume& volume, const SourceOptions& options);
 
 /// The same checks but for options.index and the packed bytes, and what there is.

@@ -147,7 +147,7 @@ TEST_F(HeaderVolumeTest, BytesBehindTheValues_AreRefusedWhereNoneMayFollow) {
   use(write_headed(scratch_, "array.hv", "header", bytes));
   EXPECT_EQ(refusal(ErrorKind::input), volume_.info.path +
                                            ": has 49 bytes from offset 6 on, and its header asks for 4x3x2 uint16, 48 "
-                                           "bytes; the header is wrong");
+                                           "bytes; something else comes before the values, and the header is wrong");
 }
 
 // Each of two volumes of 24 bytes: as much as one of them is one too many.

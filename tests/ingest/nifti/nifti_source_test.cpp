@@ -243,9 +243,9 @@ TEST(NiftiSource, ExtensionsThatTheOffsetDoesNotPass_AreNotTakenForValues) {
   EXPECT_EQ(read_volume(*open_source(scratch.write("a.nii", bytes), {})), as_floats(ramp()));  // there are none
   bytes.resize(384);
   const std::string path = scratch.write("b.nii", bytes);
-  EXPECT_EQ(
-      refusal(path),
-      path + ": has 32 bytes from offset 352 on, and its header asks for 4x3x2 uint8, 24 bytes; the header is wrong");
+  EXPECT_EQ(refusal(path), path +
+                               ": has 32 bytes from offset 352 on, and its header asks for 4x3x2 uint8, 24 bytes; "
+                               "something else comes before the values, and the header is wrong");
 }
 
 TEST(NiftiSource, GarbageAndBombsAreRefused) {
