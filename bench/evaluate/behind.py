@@ -64,7 +64,7 @@ def _peers_error(measured):
                 found.setdefault((ours, peer), []).append((gap, mine, other,
                                                            f"{own['volume']} at {mine['share']} % of dense"))
     return [line for (ours, peer), gaps in found.items()
-            for line in _gap_line(ours, f"{peer}, PSNR at equal bytes{_how_often(gaps, 0)}{_without(gaps)}", gaps)]
+            for line in _gap_line(ours, f"{peer}, PSNR at equal bytes{_how_often(gaps, 0)}{_without(_missing(gaps))}", gaps)]
 
 
 def _peers_time(measured):
@@ -84,9 +84,13 @@ def _how_often(found, even):
     return f", in {sum(first[0] > even for first in found)} of {len(found)}"
 
 
-def _without(gaps):
-    """Of how many of (dB behind, ours, theirs, where) there is no file of ours, as the smallest tree is larger."""
-    missing = sum(1 for _, own, _, _ in gaps if not own["bytes"])
+def _missing(gaps):
+    """Of how many of (dB behind, ours, theirs, where) there is no file of ours."""
+    return sum(1 for _, own, _, _ in gaps if not own["bytes"])
+
+
+def _without(missing):
+    """For a title: in how many cases ours has no file, as the smallest tree is larger."""
     return f" (in {missing} there is no file so small)" if missing else ""
 
 
@@ -96,7 +100,7 @@ def _rates(measured):
     for ours, rival in _pairs(RIVALS):
         gaps = [(-gap_db(own, theirs), own, theirs, where)
                 for where, own, theirs in _equal_bytes(measured, ours, rival) if theirs["bytes"]]
-        lines += _gap_line(ours, f"{_rate_title(rival)}, PSNR at equal bytes{_without(gaps)}", gaps)
+        lines += _gap_line(ours, f"{_rate_title(rival)}, PSNR at equal bytes{_without(_missing(gaps))}", gaps)
     return lines
 
 
@@ -209,8 +213,7 @@ def _derived(measured):
                     if method == ours and theirs and of(own) > of(theirs):
                         ratio = of(own) / of(theirs) if of(theirs) > 0 else math.inf
                         found.append((ratio, f"{result['volume']} at {share} % of dense"))
-            without = f" (in {missing} there is no file so small)" if missing else ""
-            lines += _times_line(ours, f"{_rate_title(rival)}, {title} at equal bytes{without}", found)
+            lines += _times_line(ours, f"{_rate_title(rival)}, {title} at equal bytes{_without(missing)}", found)
     return lines
 
 
@@ -229,7 +232,7 @@ def _pictures(measured):
             gaps.append((own["flip_mean"] - theirs["flip_mean"],
                          f"{own['flip_mean']:.4f} against {theirs['flip_mean']:.4f}", f"{scene} at 1:{rate}"))
         worst = max(gaps, default=(0,))
-        title = f"{_rate_title(rival)}, mean FLIP at equal bytes" + (f" (in {missing} there is no file so small)" if missing else "")
+        title = f"{_rate_title(rival)}, mean FLIP at equal bytes{_without(missing)}"
         lines += [[ours, title, *worst[1:]]] if worst[0] > 0 else []
     return lines
 

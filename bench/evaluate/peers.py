@@ -16,7 +16,12 @@ from programs import ProgramFailed, run
 FLOAT_BITS = 32
 CHUNK_EDGE = 256  # of SPERR's default
 HEADER_BYTES = 64  # of a chunk, at most: what SPERR's files are longer than they are asked to be
-WORD_BYTES = 8  # zfp's streams end with a whole one
+ZFP_WORD_BYTES = 8  # its streams end with a whole one
+
+
+def zfp_block_bits(extent, size):
+    """The most whole bits for each block of 4^3 with which zfp's stream takes at most `size` bytes."""
+    return 8 * (size - ZFP_WORD_BYTES) // math.prod(-(-n // 4) for n in extent)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -154,8 +159,7 @@ class ZfpRate(Zfp):
         return ["-r", repr(max(x, self.grain))]
 
     def options_for_size(self, volume, size):
-        blocks = math.prod(-(-n // 4) for n in volume.extent)
-        return ["-r", repr(max(1, 8 * (size - WORD_BYTES) // blocks) / 64)]
+        return ["-r", repr(max(1, zfp_block_bits(volume.extent, size)) / 64)]
 
 
 class ZfpAccuracy(Zfp):

@@ -7,10 +7,9 @@ import math
 import shutil
 
 from experiment import Experiment, describe, method_options, remove_volume, size_text
-from experiments.sizes import cells
 from experiments.zfp import zfp_statistics
 from markdown import command, decibel, scientific, table
-from peers import WORD_BYTES
+from peers import zfp_block_bits
 from programs import BUDGET_EXIT_CODE, ProgramFailed
 
 SHARES = (5, 10)  # percent of dense float32
@@ -71,7 +70,7 @@ class Derived(Experiment):
         size = share * volume.dense_bytes // 100
         if method == "zfp":
             decoded = bench.scratch(f"decoded_{volume.size_text}_float32.raw")
-            block_bits = 8 * (size - WORD_BYTES) // cells(volume.extent, 4)  # the most whole bits a block
+            block_bits = zfp_block_bits(volume.extent, size)
             with bench.files.float32_file(volume) as wide:
                 theirs = zfp_statistics(["-i", wide, "-f", "-3", *volume.extent, "-r", repr(block_bits / 64), "-o", decoded])
             bench.weir.run("convert", decoded, "-o", output, "--overwrite", "--encoding", "packed", "--lossless")

@@ -37,8 +37,8 @@ class Peers(Experiment):
                 kept = [record for record in kept_records(bench.kept) if record["name"] in names]
                 print(f"peers: {peer.title} skipped, the command {peer.program} is not found"
                       + ("; its figures are those that are kept" if kept else ""), file=sys.stderr)
-                for record in kept:  # its seconds are of another day than weir's
-                    bench.store.adopt({**record, "result": {**record["result"], "speeds": []}})
+                for record in kept:
+                    bench.store.adopt(record)
         for volume in wanted:
             if bench.files.available(volume):
                 for encoding in OURS:
@@ -205,10 +205,10 @@ def kept_records(path):
 
 
 def keep_records(measured, path):
-    """Leaves what was measured of others for runs that do not find them."""
+    """Leaves what was measured of others for runs that do not find them, but no seconds: weir's are of another day then."""
     records = {record["name"]: record for record in kept_records(path)}
-    records.update((record["name"], record) for record in measured.records(Peers.name)
-                   if record["result"]["method"] not in OURS)
+    records.update((record["name"], {**record, "result": {**record["result"], "speeds": []}})
+                   for record in measured.records(Peers.name) if record["result"]["method"] not in OURS)
     path.write_text(json.dumps([records[name] for name in sorted(records)], indent=1) + "\n")
 
 
