@@ -28,6 +28,7 @@ log=$folder/build.log
 options=()
 [[ $folder != build/release ]] || options+=(-DWEIR_CUDA="${WEIR_CUDA:-AUTO}")
 [[ $folder != build/release ]] || options+=(-DWEIR_SLOW_TESTS="${WEIR_SLOW_TESTS:-ON}")
+[[ -z ${WEIR_TESTS+x} ]] || options+=(-DWEIR_TESTS="$WEIR_TESTS")
 [[ -z ${WEIR_TESTS_LEFT_OUT+x} ]] || options+=(-DWEIR_TESTS_LEFT_OUT="$WEIR_TESTS_LEFT_OUT")
 [[ -z ${WEIR_TEST_FOLDERS+x} ]] || options+=(-DWEIR_TEST_FOLDERS="$WEIR_TEST_FOLDERS")
 if ! cmake --preset "$preset" "${options[@]}" >"$log" 2>&1; then
