@@ -177,8 +177,11 @@ class PackedEncoder final : public PackedLayerEncoder {
 
   void write_corner(const Index3& leaf) {
     if (!is_corner(target_.tree.leaves, leaf)) return;
+    LeafValues outside;
+    outside.fill(target_.fill.background);
+    const LeafValues values = inside_only(decoded_, outside, node_, inside_);
     std::array<std::byte, nvdb::kFloatLeafBytes> image{};
-    encode_float_leaf(decoded_, node_, inside_, leaf_statistics(decoded_, node_, inside_), image);
+    encode_float_leaf(values, node_, inside_, leaf_statistics(values, node_, inside_), image);
     const std::uint64_t offset = corner_offset(target_.layout, leaf);
     target_.out.write_at(offset, image);
     if (target_.sums) volume_sum_ += placed_checksum(offset, image);

@@ -97,7 +97,7 @@ Sample read_sample(const RowStore& rows) {
 
 constexpr std::size_t kLeavesTogether = 128;  // by one thread
 
-SampledSteps::Part steps_of(std::span<const Sample::Leaf> leaves, const GainRule& rule, const StreamLengths& lengths,
+SampledSteps::Part steps_of(std::span<const Sample::Leaf> leaves, const GainRule& rule, const RegionStreams& streams,
                             const MeanRange& range, const RowStore& rows) {
   SampledSteps::Part steps;
   RegionGains gains;
@@ -111,7 +111,7 @@ SampledSteps::Part steps_of(std::span<const Sample::Leaf> leaves, const GainRule
     LeafGain leaf;
     gains.clear();
     gains.begin(leaf);
-    rule.add_packed_steps(ladder, region, lengths, sampled.found, sampled.voxels,
+    rule.add_packed_steps(ladder, region, streams, sampled.found, sampled.voxels,
                           rule.visibility == nullptr ? nullptr : &reach, leaf, gains);
     const SampledBlock block{sampled.row, sampled.region, is_sparse(sampled.found), ladder.exact == ExactKind::ordered};
     for (const LeafStep& step : leaf.all_steps()) steps.add(block, step);
@@ -120,12 +120,12 @@ SampledSteps::Part steps_of(std::span<const Sample::Leaf> leaves, const GainRule
 }
 
 SampledSteps steps_of(const Sample& sample, const GainRule& rule, const MeanRange& range, const RowStore& rows) {
-  const StreamLengths lengths(range, *rule.packed);
+  const RegionStreams streams(range, *rule.packed);
   std::vector<SampledSteps::Part> parts((sample.leaves.size() + kLeavesTogether - 1) / kLeavesTogether);
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
     const std::size_t first = kLeavesTogether * part;
     const std::size_t count = std::min(kLeavesTogether, sample.leaves.size() - first);
-    parts[part] = steps_of(std::span(sample.leaves).subspan(first, count), rule, lengths, range, rows);
+    parts[part] = steps_of(std::span(sample.leaves).subspan(first, count), rule, streams, range, rows);
   });
   return {range.high - range.low, sample.rows, std::move(parts)};
 }

@@ -256,10 +256,10 @@ void GainRule::gains(const TreeRegions& tree, const RegionRows& rows, RegionGain
   out.clear();
   const bool whole = are_whole(leaves, rows.leaf_box());
   SharedValues& region = out.shared;
-  std::optional<StreamLengths> lengths;
+  std::optional<RegionStreams> streams;
   if (packed) {
-    region = shared_values(rows, leaves, fill);
-    lengths.emplace(region.means, *packed);
+    region = shared_values(rows, leaves, fill, {max_error, visibility != nullptr});
+    streams.emplace(region.means, *packed);
   }
   rows.for_each([&](const Index3& leaf, const LeafRow& row) {
     const std::int64_t voxels = whole ? kLeafVoxels : leaves.voxels(leaf).voxels();
@@ -276,7 +276,7 @@ void GainRule::gains(const TreeRegions& tree, const RegionRows& rows, RegionGain
     const MinMax* const reach = visibility == nullptr ? nullptr : &rows.reach(leaf);
     out.begin(gain);
     if (packed) {
-      add_packed_steps(rows.ladder(leaf), region, *lengths, row, voxels, reach, gain, out);
+      add_packed_steps(rows.ladder(leaf), region, *streams, row, voxels, reach, gain, out);
     } else if (const Weights weights = weights_of(reach, tile);
                gain.required || !keys_below(least_key, row, tile, weights)) {
       add_steps(row, voxels, tile, weights, gain, out);

@@ -144,7 +144,7 @@ struct GainRule {
 
   /// Adds a packed block's steps to `out`: `leaf` says whether a block without a stream reads the same bits, and
   /// whether it is required. `reach` is null where everything counts alike.
-  void add_packed_steps(const PackedLadder& ladder, const SharedValues& region, const StreamLengths& lengths,
+  void add_packed_steps(const PackedLadder& ladder, const SharedValues& region, const RegionStreams& streams,
                         const LeafRow& row, std::int64_t voxels, const MinMax* reach, LeafGain& leaf,
                         RegionGains& out) const;
 

@@ -2,15 +2,26 @@
 
 #include <algorithm>
 #include <bit>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "compressor/leaf/certificate.h"
-#include "format/packed/block_decode.h"
 #include "format/packed/block_encode.h"
 #include "format/packed/lattice_block.h"
 
 namespace weir {
 namespace {
+
+// Squared error of a block's mean by step, from the least one on: its codes lie the step's size / sqrt(512) apart.
+const std::array<double, kMostStep - kLeastStep + 1> kMeanErrors = [] {
+  std::array<double, kMostStep - kLeastStep + 1> errors{};
+  for (std::int32_t step = kLeastStep; step <= kMostStep; ++step) {
+    const auto size = static_cast<double>(step_size(step));
+    errors[static_cast<std::size_t>(step - kLeastStep)] = size * size / 12;
+  }
+  return errors;
+}();
 
 // The value that most uniform blocks have; of several the one of the lowest bits.
 std::optional<float> commonest_uniform(const RegionRows& rows, const Fill& fill) {
@@ -47,6 +58,67 @@ float mean_of(const RegionRows& rows, float fallback) {
   return count == 0 ? fallback : static_cast<float>(sum.value() / static_cast<double>(count));
 }
 
+// The median of the blocks' means, each counted by its finite voxels.
+float median_of(const RegionRows& rows, float fallback) {
+  std::vector<std::pair<float, std::uint32_t>> means;
+  std::uint64_t count = 0;
+  rows.for_each([&](const Index3&, const LeafRow& row) {
+    if (row.finite == 0) return;
+    means.emplace_back(row.mean, row.finite);
+    count += row.finite;
+  });
+  std::sort(means.begin(), means.end());
+  std::uint64_t below = 0;
+  for (const auto& [mean, voxels] : means) {
+    below += voxels;
+    if (2 * below >= count) return mean;
+  }
+  return fallback;
+}
+
+bool has_rungs(const RegionRows& rows) {
+  bool found = false;
+  rows.for_each([&](const Index3& leaf, const LeafRow&) {
+    const PackedLadder& ladder = rows.ladder(leaf);
+    found = found || ladder.count > 0 || ladder.near_count > 0;
+  });
+  return found;
+}
+
+// A block without a finite value counts as whole.
+std::uint64_t voxels_of(const LeafRow& row) { return row.finite == 0 ? std::uint64_t{kLeafVoxels} : row.finite; }
+
+float shared_value(const RegionRows& rows, const Fill& fill, const SharedUse& use) {
+  const std::optional<float> uniform = commonest_uniform(rows, fill);
+  if (use.weighed) return uniform ? *uniform : mean_of(rows, fill.background);
+  const bool exact = !use.max_error && !has_rungs(rows);
+  const float mean = mean_of(rows, fill.background);
+  std::uint64_t all = 0;
+  CompensatedSum about_mean;
+  rows.for_each([&](const Index3&, const LeafRow& row) {
+    all += voxels_of(row);
+    about_mean.add(row.sse_about(mean));
+  });
+  const double small = about_mean.value() / static_cast<double>(64 * all);  // squared error of a voxel
+  const auto does = [&](const LeafRow& row, float value) {
+    if (row.finite == 0) return fill.non_finite != NonFinitePolicy::keep && Fill::same_bits(fill.background, value);
+    if (use.max_error) return row.max_abs_about(value) <= *use.max_error;
+    if (exact) return Fill::keeps_values(row, value);
+    return row.sse_about(value) <= small * row.finite;
+  };
+  const auto that_do = [&](float value) {
+    std::uint64_t voxels = 0;
+    rows.for_each([&](const Index3&, const LeafRow& row) { voxels += does(row, value) ? voxels_of(row) : 0; });
+    return voxels;
+  };
+  const std::uint64_t with_uniform = uniform ? that_do(*uniform) : 0;
+  if (uniform && 2 * with_uniform >= all) return *uniform;
+  if (const float median = median_of(rows, fill.background); 8 * that_do(median) >= 7 * all) return median;
+  // Blocks of few voxels, as at a border, often have one value. What reads that instead of the mean is far off.
+  const bool spares = use.max_error || exact || 32 * with_uniform >= all;
+  return uniform && spares ? *uniform : mean;
+}
+
 // The means that a block's stream may have. `whole`: it has no voxels outside the domain, which would take part in the
 // mean. `filled`: the background takes the place of voxels that are not finite.
 MinMax mean_range(const LeafRow& row, bool whole, bool filled, float background) {
@@ -62,10 +134,9 @@ MinMax mean_range(const LeafRow& row, bool whole, bool filled, float background)
 
 }  // namespace
 
-SharedValues shared_values(const RegionRows& rows, const NodeLattice& leaves, const Fill& fill) {
+SharedValues shared_values(const RegionRows& rows, const NodeLattice& leaves, const Fill& fill, const SharedUse& use) {
   SharedValues region;
-  const std::optional<float> uniform = commonest_uniform(rows, fill);
-  region.value = uniform ? *uniform : mean_of(rows, fill.background);
+  region.value = shared_value(rows, fill, use);
   MinMax means = kNoBounds;
   const bool all_whole = are_whole(leaves, rows.leaf_box());
   rows.for_each([&](const Index3& leaf, const LeafRow& row) {
@@ -78,11 +149,30 @@ SharedValues shared_values(const RegionRows& rows, const NodeLattice& leaves, co
   return region;
 }
 
-StreamLengths::StreamLengths(const MeanRange& means, const PackedRule& rule) : coarsest_(rule.coarsest) {
+RegionStreams::RegionStreams(const MeanRange& means, const PackedRule& rule)
+    : means_(means), coarsest_(rule.coarsest), finest_(rule.coarsest - 1) {
   for (std::size_t field = 0; field < mean_bits_.size(); ++field) {
     const std::int32_t step = coarsest_ + static_cast<std::int32_t>(field);
     mean_bits_[field] = static_cast<std::uint8_t>(step > kMostStep ? kNoMeanBits : mean_bits(means, step));
+    if (mean_bits_[field] != kNoMeanBits) finest_ = step;
   }
+}
+
+double RegionStreams::error(const PackedLadder& ladder, KeptLevel level, const LeafRow& row,
+                            std::int64_t voxels) const {
+  if (level == kExactLevel) return 0;
+  if (level >= kFirstNearLevel) return ladder.near[level - kFirstNearLevel].error.value() * row.sse;
+  const std::size_t rung = level - 1U;
+  const std::int32_t written = step(ladder, rung);
+  const double of_values = ladder.rungs[rung].error.value() * row.sse;
+  if (written != ladder.step(rung) && row.finite == kLeafVoxels) {
+    // Codes so far apart may hit the mean of many blocks, or miss it by as much.
+    const float decoded = decode_mean(means_, written, mean_code(means_, written, row.mean));
+    const double off = static_cast<double>(decoded) - static_cast<double>(row.mean);
+    return of_values + off * off * static_cast<double>(voxels);
+  }
+  return of_values + kMeanErrors[static_cast<std::size_t>(written - kLeastStep)] * static_cast<double>(voxels) /
+                         static_cast<double>(kLeafVoxels);
 }
 
 PackedKind packed_kind(const PackedLadder& ladder, KeptLevel level) {
@@ -94,26 +184,17 @@ PackedKind packed_kind(const PackedLadder& ladder, KeptLevel level) {
   return ladder.rungs[level - 1U].bits == kMeanAloneBits ? PackedKind::mean : PackedKind::transform;
 }
 
-const std::array<double, kMostStep - kLeastStep + 1> kMeanErrors = [] {
-  std::array<double, kMostStep - kLeastStep + 1> errors{};
-  for (std::int32_t step = kLeastStep; step <= kMostStep; ++step) {
-    const auto size = static_cast<double>(step_size(step));
-    errors[static_cast<std::size_t>(step - kLeastStep)] = size * size / 12;
-  }
-  return errors;
-}();
-
 PlannedStreams plan_streams(const RegionRows& rows, const TreeRegions& tree, const SharedValues& shared,
                             const PackedRule& rule, const LeafChoices& choices) {
   PlannedStreams plan;
   plan.region = shared;
-  const StreamLengths lengths(plan.region.means, rule);
+  const RegionStreams streams(plan.region.means, rule);
   rows.for_each([&](const Index3& leaf, const LeafRow&) {
     const std::size_t position = tree.mask_position(leaf);
     const KeptLevel level = choices.level(position);
     if (level == 0) return;
     const PackedLadder& ladder = rows.ladder(leaf);
-    plan.bytes[position] = static_cast<std::uint16_t>(lengths.at(ladder, level));
+    plan.bytes[position] = static_cast<std::uint16_t>(streams.bytes(ladder, level));
     if (level == kExactLevel) {
       plan.steps[position] =
           ladder.exact == ExactKind::bounded ? PlannedStreams::kBoundedStep : PlannedStreams::kExactStep;
@@ -121,7 +202,7 @@ PlannedStreams plan_streams(const RegionRows& rows, const TreeRegions& tree, con
       const int exponent = ladder.near_exponent - (level - kFirstNearLevel);
       plan.steps[position] = static_cast<std::int16_t>(PlannedStreams::kNearStep + exponent);
     } else {
-      plan.steps[position] = static_cast<std::int16_t>(ladder.step(level - 1U));
+      plan.steps[position] = static_cast<std::int16_t>(streams.step(ladder, level - 1U));
     }
   });
   return plan;

@@ -2,9 +2,11 @@
 // of the others' means, and what each stream takes.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "compressor/leaf/fill.h"
 #include "compressor/packed/packed_ladder.h"
@@ -18,39 +20,61 @@
 #include "format/packed/block_constants.h"
 #include "format/packed/block_encode.h"
 #include "format/packed/block_steps.h"
+#include "format/packed/stream_length.h"
 
 namespace weir {
 
 struct SharedValues {
-  float value = 0;  ///< what blocks without a stream read: the commonest value of uniform blocks, else the mean
+  float value = 0;  ///< what blocks without a stream read
   MeanRange means;  ///< of the blocks that are not uniform; {0, 0} where there is none
 };
 
-/// Of the region with those rows, in their order; `leaves` is the leaf lattice.
-SharedValues shared_values(const RegionRows& rows, const NodeLattice& leaves, const Fill& fill);
+/// What the shared value of a region is to serve.
+struct SharedUse {
+  std::optional<double> max_error = std::nullopt;  ///< within which every voxel must be
+  bool weighed = false;                            ///< a scene decides what matters
+};
 
-/// Bytes of the streams of a region, from its blocks' ladders and the range of its means.
-class StreamLengths {
+/// Of the region with those rows, in their order; `leaves` is the leaf lattice. The value is the commonest one of
+/// uniform blocks, where at least a 32nd of the voxels need no stream by it, or any where errors are bounded or a scene
+/// weighs; else the mean. But it is the median of the blocks' means where 7 of 8 voxels need none by that. A block
+/// needs none where its mean squared error is below a 64th of that of the region about its mean, or is within
+/// `max_error`.
+SharedValues shared_values(const RegionRows& rows, const NodeLattice& leaves, const Fill& fill, const SharedUse& use);
+
+/// What the streams of a region take and lose, from its blocks' ladders and the range of its means.
+class RegionStreams {
  public:
-  StreamLengths(const MeanRange& means, const PackedRule& rule);
+  RegionStreams(const MeanRange& means, const PackedRule& rule);
 
   /// Bytes of a block's stream at a level; 0 where the level is none, or cannot be had.
-  std::uint32_t at(const PackedLadder& ladder, KeptLevel level) const {
+  std::uint32_t bytes(const PackedLadder& ladder, KeptLevel level) const {
     if (level == 0) return 0;
     if (level == kExactLevel) return ladder.exact_bytes;
     if (level >= kFirstNearLevel) return ladder.near[level - kFirstNearLevel].bytes;
-    return of_rung(ladder, level - 1U);
+    return bytes_of_rung(ladder, level - 1U);
   }
-  /// 0 where it was not built, or cannot be had.
-  std::uint32_t of_rung(const PackedLadder& ladder, std::size_t rung) const {
+  /// Step number of the stream of a rung. A mean alone has a coarser one than its rung where a region's means lie so
+  /// far apart that their codes would have too many bits: the finest that they allow.
+  std::int32_t step(const PackedLadder& ladder, std::size_t rung) const {
+    const std::int32_t step = ladder.step(rung);
+    return ladder.rungs[rung].bits == kMeanAloneBits ? std::min(step, finest_) : step;
+  }
+  /// Squared error expected of the in-domain voxels of a block at a level but 0.
+  double error(const PackedLadder& ladder, KeptLevel level, const LeafRow& row, std::int64_t voxels) const;
+
+ private:
+  // 0 where it was not built, or cannot be had.
+  std::uint32_t bytes_of_rung(const PackedLadder& ladder, std::size_t rung) const {
     const std::uint32_t bits = ladder.rungs[rung].bits;
-    const auto field = static_cast<std::uint32_t>(ladder.step(rung) - coarsest_);
+    const auto field = static_cast<std::uint32_t>(step(ladder, rung) - coarsest_);
     if (bits == 0 || field >= mean_bits_.size() || mean_bits_[field] == kNoMeanBits) return 0;
     return stream_bytes(bits, mean_bits_[field]);
   }
 
- private:
+  MeanRange means_;
   std::int32_t coarsest_;
+  std::int32_t finest_;                                 // step at which means have codes
   std::array<std::uint8_t, kPackedSteps> mean_bits_{};  // by the field of the step
 };
 
@@ -72,19 +96,6 @@ struct PlannedStreams {
 static_assert(sizeof(PlannedStreams) == 16 + 4 * LeafChoices::kLeaves, "plans are spilled as they are");
 
 PackedKind packed_kind(const PackedLadder& ladder, KeptLevel level);
-
-/// Squared error of a block's mean by step, from the least one on: its codes lie the step's size / sqrt(512) apart.
-extern const std::array<double, kMostStep - kLeastStep + 1> kMeanErrors;
-
-/// Squared error expected of the in-domain voxels of a block at a level but 0.
-inline double packed_error(const PackedLadder& ladder, KeptLevel level, const LeafRow& row, std::int64_t voxels) {
-  if (level == kExactLevel) return 0;
-  if (level >= kFirstNearLevel) return ladder.near[level - kFirstNearLevel].error.value() * row.sse;
-  const std::size_t rung = level - 1U;
-  const double of_mean = kMeanErrors[static_cast<std::size_t>(ladder.step(rung) - kLeastStep)] *
-                         static_cast<double>(voxels) / static_cast<double>(kLeafVoxels);
-  return ladder.rungs[rung].error.value() * row.sse + of_mean;
-}
 
 /// `shared` are the region's.
 PlannedStreams plan_streams(const RegionRows& rows, const TreeRegions& tree, const SharedValues& shared,

@@ -64,13 +64,13 @@ constexpr auto kEndBytes = static_cast<std::uint32_t>(packed::chunk::kEndBytes);
 
 }  // namespace
 
-void GainRule::add_packed_steps(const PackedLadder& ladder, const SharedValues& region, const StreamLengths& lengths,
+void GainRule::add_packed_steps(const PackedLadder& ladder, const SharedValues& region, const RegionStreams& streams,
                                 const LeafRow& row, std::int64_t voxels, const MinMax* reach, LeafGain& leaf,
                                 RegionGains& out) const {
   const Weights weights = weights_of(reach, region.value);
   const double none = leaf.exact ? 0 : weights.tile * row.sse_about(region.value);
   const auto stream = [&](KeptLevel level) {
-    const std::uint32_t bytes = lengths.at(ladder, level);
+    const std::uint32_t bytes = streams.bytes(ladder, level);
     return bytes == 0 ? 0 : bytes + kEndBytes;
   };
   const PackedPoint exact{stream(kExactLevel), 0, kExactLevel};
@@ -78,7 +78,8 @@ void GainRule::add_packed_steps(const PackedLadder& ladder, const SharedValues& 
     leaf.required = leaf.required || (weights.tile > 0 && row.max_abs_about(region.value) > *max_error);
     leaf.lossless = true;
     if (!leaf.required) return;
-    const bool bounded = ladder.count > 0 && mean_bits(region.means, ladder.step(0)) <= kMostBoundedMeanBits;
+    const bool bounded = ladder.count > 0 && streams.step(ladder, 0) == ladder.step(0) &&
+                         mean_bits(region.means, ladder.step(0)) <= kMostBoundedMeanBits;
     const PackedPoint rung{bounded ? stream(1) : 0, 0, 1};
     out.add(leaf, packed_step({0, none, 0}, rung.bytes > 0 && rung.bytes < exact.bytes ? rung : exact));
     return;
@@ -92,7 +93,7 @@ void GainRule::add_packed_steps(const PackedLadder& ladder, const SharedValues& 
     for (std::size_t rung = rungs.first; rung < rungs.end; ++rung) {
       const auto level = static_cast<KeptLevel>(first + rung);
       const std::uint32_t bytes = stream(level);
-      if (bytes > 0) ways[count++] = {bytes, weights.kept * packed_error(ladder, level, row, voxels), level};
+      if (bytes > 0) ways[count++] = {bytes, weights.kept * streams.error(ladder, level, row, voxels), level};
     }
   };
   LadderRange range{{PackedLadder::kMeanRungs, ladder.count}, {0, ladder.near_count}};

@@ -65,6 +65,8 @@ class RegionPlanner {
     CompensatedSum seen_squares;
     CompensatedSum expected;
     const bool whole = are_whole(tree_.leaves, rows.leaf_box());
+    std::optional<RegionStreams> streams;
+    if (rule_.packed) streams.emplace(region.packed_means, *rule_.packed);
     rows.for_each([&](const Index3& leaf, const LeafRow& row) {
       const std::size_t position = tree_.mask_position(leaf);
       const LeafWidth width = choices.width(position);
@@ -73,7 +75,7 @@ class RegionPlanner {
         const double weight = rule_.visibility == nullptr ? 1 : rule_.visibility->weight(rows.reach(leaf));
         if (rule_.packed) {
           const KeptLevel level = choices.level(position);
-          expected.add(weight * packed_error(rows.ladder(leaf), level, row, voxels));
+          expected.add(weight * streams->error(rows.ladder(leaf), level, row, voxels));
           const bool exact = level == kExactLevel && rows.ladder(leaf).exact != ExactKind::bounded;
           ++tally.blocks[static_cast<std::size_t>(packed_kind(rows.ladder(leaf), level))];
           tally.leaves_exact = tally.leaves_exact && (!choices.seen(position) || exact);

@@ -138,7 +138,7 @@ bool decode_transform(const BlockConstants& constants, const MeanRange& range, c
     most = most < index ? index : most;
     values[index] = sizes.coefficient(list.magnitude[n], coded.negative(n));
   }
-  values_of_coefficients(constants, packed_detail::decode_mean(range, step, coded.code()), (most >> 6U) + 1, values);
+  values_of_coefficients(constants, decode_mean(range, step, coded.code()), (most >> 6U) + 1, values);
   return true;
 }
 

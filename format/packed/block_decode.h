@@ -30,11 +30,6 @@ WEIR_HOST_DEVICE inline float clamp_to(const BlockConstants& constants, float v)
   return v >= constants.minimum ? (v <= constants.maximum ? v : constants.maximum) : constants.minimum;
 }
 
-WEIR_HOST_DEVICE inline float decode_mean(const MeanRange& range, std::int32_t step, std::uint32_t code) {
-  const float offset = static_cast<float>(code) * mean_quantum(step);
-  return range.low + offset;
-}
-
 /// What is known once all magnitudes are decoded.
 struct CodedNumber {
   std::uint32_t code = 0;     ///< of the mean, or the base

@@ -291,11 +291,7 @@ void TransformBlock::encode(const BlockConstants& constants, const MeanRange& ra
   std::memcpy(signs.data(), coefficients_.data(), sizeof signs);
   StreamFront& front = front_;
   front.number_bits = mean_bits(range, step);
-  const float width = range.high - range.low;
-  const auto last = static_cast<std::uint32_t>(width / mean_quantum(step)) + 1;
-  const double code = std::nearbyint((static_cast<double>(mean_) - static_cast<double>(range.low)) /
-                                     static_cast<double>(mean_quantum(step)));
-  front.number = static_cast<std::uint32_t>(std::clamp(code, 0.0, static_cast<double>(last)));
+  front.number = mean_code(range, step, mean_);
   const auto head = [&](PackedKind kind) {
     return static_cast<std::byte>(static_cast<unsigned>(kind) | static_cast<unsigned>(step - constants.coarsest) << 2U);
   };
@@ -322,8 +318,7 @@ bool TransformBlock::decoded(const BlockConstants& constants, const MeanRange& r
   decode_rows(coefficients_.data(), magnitudes_, constants.below_one, constants.below_more, step_size(step),
               values.data());
   const auto last_row = 63U - static_cast<unsigned>(std::countl_zero(magnitudes_.live));
-  values_of_coefficients(constants, packed_detail::decode_mean(range, step, front_.number), last_row / 8 + 1,
-                         values.data());
+  values_of_coefficients(constants, decode_mean(range, step, front_.number), last_row / 8 + 1, values.data());
   return true;
 }
 

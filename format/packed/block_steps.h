@@ -1,6 +1,7 @@
 // Steps of the quantiser, and the code of a block's mean (FORMAT.md, "Steps"). For host and device.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 #include "format/base/host_device.h"
@@ -71,6 +72,21 @@ WEIR_HOST_DEVICE inline unsigned mean_bits(const MeanRange& range, std::int32_t 
   const float codes = width / mean_quantum(step);
   if (!(codes < 16777214.0F)) return kNoMeanBits;
   return 32U - static_cast<unsigned>(__builtin_clz(static_cast<std::uint32_t>(codes) + 1));
+}
+
+/// The mean of a code.
+WEIR_HOST_DEVICE inline float decode_mean(const MeanRange& range, std::int32_t step, std::uint32_t code) {
+  const float offset = static_cast<float>(code) * mean_quantum(step);
+  return range.low + offset;
+}
+
+/// The code, of those of a step, that is nearest to a mean in the range.
+WEIR_HOST_DEVICE inline std::uint32_t mean_code(const MeanRange& range, std::int32_t step, float mean) {
+  const float width = range.high - range.low;
+  const float quantum = mean_quantum(step);
+  const double last = static_cast<double>(static_cast<std::uint32_t>(width / quantum) + 1);
+  const double code = rint((static_cast<double>(mean) - static_cast<double>(range.low)) / static_cast<double>(quantum));
+  return static_cast<std::uint32_t>(code < 0 ? 0.0 : code > last ? last : code);
 }
 
 }  // namespace weir

@@ -137,15 +137,6 @@ WEIR_HOST_DEVICE void decode_stage(const Warp& warp, const BlockConstants& const
   });
 }
 
-// The code of a mean, as TransformBlock::encode() has it.
-WEIR_HOST_DEVICE inline std::uint32_t code_of_mean(const MeanRange& range, std::int32_t step, float mean) {
-  const float width = range.high - range.low;
-  const float quantum = mean_quantum(step);
-  const double last = static_cast<double>(static_cast<std::uint32_t>(width / quantum) + 1);
-  const double code = rint((static_cast<double>(mean) - static_cast<double>(range.low)) / static_cast<double>(quantum));
-  return static_cast<std::uint32_t>(code < 0 ? 0.0 : code > last ? last : code);
-}
-
 }  // namespace encode_detail
 
 /// The state, codes and decoded values of an ask of the call that is of a transform.
@@ -171,8 +162,8 @@ WEIR_HOST_DEVICE void code_block(const Warp& warp, const EncodeCall& call, const
   std::uint32_t number = 0;
   std::uint32_t nonzero = 0;
   if (!left) {
-    number = code_of_mean(ask.means, ask.step, range.mean);
-    const float mean = packed_detail::decode_mean(ask.means, ask.step, number);
+    number = mean_code(ask.means, ask.step, range.mean);
+    const float mean = decode_mean(ask.means, ask.step, number);
     if (end > 0) {
       nonzero = write_codes(warp, tables, kEndUnit * end, stage, call.coded + std::size_t{512} * i);
       decode_stage(warp, call.constants, step, mean, stage, decoded);

@@ -16,6 +16,7 @@
 #include "format/layout/nanovdb_layout.h"
 #include "ingest/synthetic/synthetic.h"
 #include "tests/compressor/support/converted.h"
+#include "tests/compressor/support/packed_files.h"
 #include "tests/stock/stock_tree.h"
 
 namespace weir::oracle_test {
@@ -317,6 +318,26 @@ TEST_P(OracleMetricTest, SameTreeAsOpenVdbForEveryMetricAndBrick) {
       }
     }
   }
+}
+
+TEST(PackedOracle, OutsideTheDomain_LeavesAreTheBackground) {
+  MemoryVolume volume(test::kPackedDomain, test::smooth);
+  ConversionOptions options = test::packed(Budget::Kind::psnr, 60);
+  options.preview = Preview::on;
+  const Converted converted = test::convert(volume, options);
+  const auto background = static_cast<float>(converted.sidecar.background.value);
+  const StockReader stock(converted.file);
+  const NodeLattice leaves = make_lattice(test::kPackedDomain, kLeafDim);
+  const Box last = leaves.node_box(leaves.count - Index3{1, 1, 1});
+  int outside = 0;
+  for (std::int64_t n = 0; n < last.voxels(); ++n) {
+    const Index3 i = last.lo + index_at(n, last.extent());
+    if (test::kPackedDomain.contains(i)) continue;
+    ++outside;
+    EXPECT_EQ(bits_of(stock.value(i)), bits_of(background)) << i.x << ' ' << i.y << ' ' << i.z;
+    EXPECT_FALSE(stock.active(i));
+  }
+  EXPECT_EQ(outside, 512 - 5 * 6 * 5);
 }
 
 INSTANTIATE_TEST_SUITE_P(Volumes, OracleMetricTest, testing::ValuesIn(small_cases()),
