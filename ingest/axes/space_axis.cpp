@@ -52,15 +52,18 @@ std::optional<std::size_t> space_direction(const std::string& label) {
   return std::nullopt;
 }
 
-bool is_down(std::string_view positive) { return lower_case(positive) == "down"; }
-
-bool is_space_axis(const AxisPlace& axis) {
+bool names_space_axis(const std::string& label) {
   // Which direction these are depends on the field.
   constexpr std::array<std::string_view, 3> kNames{"j", "k", "eta"};
   constexpr std::array<std::string_view, 1> kBegin{"eta_"};
-  const std::string name = lower_case(axis.label);
-  return space_direction(axis.label) || is_one_of(kNames, name) || begins_with(kBegin, name) ||
-         (axis.has_coordinates && !axis.units.empty() && !axis.is_time);
+  const std::string name = lower_case(label);
+  return space_direction(label) || is_one_of(kNames, name) || begins_with(kBegin, name);
+}
+
+bool is_down(std::string_view positive) { return lower_case(positive) == "down"; }
+
+bool is_space_axis(const AxisPlace& axis) {
+  return names_space_axis(axis.label) || (axis.has_coordinates && !axis.units.empty() && !axis.is_time);
 }
 
 }  // namespace weir

@@ -18,6 +18,9 @@ bool names_x_axis(const std::string& label);
 /// 0, 1 or 2 where an axis called so is the x, y or z of space (z: of height or depth); nullopt for other names.
 std::optional<std::size_t> space_direction(const std::string& label);
 
+/// Whether an axis called so is one of space, whichever it is: the names above, j, k, eta, ...
+bool names_space_axis(const std::string& label);
+
 /// Whether CF's attribute `positive` of coordinates (4.3) says that they rise downwards.
 bool is_down(std::string_view positive);
 

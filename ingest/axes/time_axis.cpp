@@ -5,29 +5,37 @@
 #include <string_view>
 
 #include "format/base/ascii.h"
+#include "ingest/axes/axis_unit.h"
+#include "ingest/axes/space_axis.h"
 
 namespace weir {
 namespace {
 
-// UDUNITS' names of times that outputs have.
-constexpr std::array<std::string_view, 25> kUnits{
-    "s",       "sec", "secs", "second", "seconds", "ms",    "us", "ns",  "ps",   "fs",     "min",   "mins", "minute",
-    "minutes", "h",   "hr",   "hrs",    "hour",    "hours", "d",  "day", "days", "months", "years", "year"};
+bool is_standard_time(std::string_view standard_name) {
+  constexpr std::array<std::string_view, 3> kNames{"time", "forecast_period", "forecast_reference_time"};
+  return std::ranges::find(kNames, standard_name) != kNames.end();
+}
 
-bool is_unit_of_time(std::string_view units) { return std::find(kUnits.begin(), kUnits.end(), units) != kUnits.end(); }
+// Of a number of steps, or in what the code itself counts.
+bool is_no_unit(std::string_view units) {
+  constexpr std::array<std::string_view, 13> kNone{"",          "1",          "-",         "none",  "count",
+                                                   "index",     "step",       "steps",     "cycle", "cycles",
+                                                   "iteration", "iterations", "code units"};
+  return std::ranges::find(kNone, lower_case(trimmed(units))) != kNone.end();
+}
 
 }  // namespace
 
 bool is_time_axis(const AxisWords& words) {
   const std::string axis = lower_case(words.axis);
-  const std::string units = lower_case(words.units);
   const std::string name = lower_case(words.name);
-  if (axis == "t" || words.standard_name == "time") return true;
-  if (axis == "x" || axis == "y" || axis == "z") return false;
-  if (units.find(" since ") != std::string::npos) return true;
-  if (name == "time" || name == "times") return units.empty() || is_unit_of_time(units);
-  if (is_unit_of_time(units)) return name == "t" || name.starts_with("time") || words.grows;
-  return words.grows && units.empty() && words.standard_name.empty();
+  if (axis == "t" || is_standard_time(words.standard_name)) return true;
+  if (axis == "x" || axis == "y" || axis == "z" || !words.positive.empty()) return false;  // CF 4.3
+  if (lower_case(words.units).find(" since ") != std::string::npos) return true;
+  const bool grows = words.grows && words.standard_name.empty() && !names_space_axis(words.name);
+  if (is_unit_of_time(words.units)) return name == "t" || name.starts_with("time") || grows;
+  if (name == "time" || name == "times") return !is_unit_of_space(words.units);
+  return grows && is_no_unit(words.units);
 }
 
 }  // namespace weir

@@ -116,9 +116,10 @@ void place_by_scale(hid_t scale, bool grows, AxisPlace& axis) {
   axis.has_coordinates = true;
   axis.units = first_text_attribute(scale, "units");
   axis.calendar = first_text_attribute(scale, "calendar");
-  axis.is_time = is_time_axis(
-      {name, axis.units, first_text_attribute(scale, "axis"), first_text_attribute(scale, "standard_name"), grows});
-  axis.points_down = is_down(first_text_attribute(scale, "positive"));
+  const std::string positive = first_text_attribute(scale, "positive");
+  axis.is_time = is_time_axis({name, axis.units, first_text_attribute(scale, "axis"),
+                               first_text_attribute(scale, "standard_name"), grows, positive});
+  axis.points_down = is_down(positive);
   if (axis.spacing) return;
   if (const Storage storage = storage_of(scale); has_too_large_chunks(storage)) {
     axis.note = cat("its coordinates lie in packed chunks of ", storage.chunk[0], ", and at most ", kMaxCoordinateChunk,

@@ -17,6 +17,7 @@
 #include "ingest/hdf5/storage/unwritten_chunks.h"
 #include "ingest/hdf5/virtual/coverage.h"
 #include "ingest/hdf5/virtual/selection_blocks.h"
+#include "ingest/source/convert_command.h"
 
 namespace weir {
 namespace {
@@ -36,6 +37,11 @@ std::string list_text(const std::vector<T>& values) {
   std::string text;
   for (const T& v : values) text += cat(text.empty() ? "" : ", ", v);
   return text;
+}
+
+// Without a layout, h5repack copies a virtual dataset as it is: H5Ocopy copies its mappings.
+std::string as_one_dataset(const std::string& file) {
+  return cat("write it as one with h5repack -l CONTI ", shell_word(file), " NEW");
 }
 
 /// A hyperslab that may go on without end along one axis.
@@ -153,8 +159,7 @@ class MappingReader {
     if (endless) {
       std::optional<MappedSlab> source = MappedSlab::of(mapping.in_source.get());
       if (!source || !source->endless || source->dense() != slab->dense()) {
-        throw error(
-            "a mapping goes on without end in a way that weir does not follow; write the dataset as one with h5repack");
+        throw error(cat("a mapping goes on without end in a way that weir does not follow; ", as_one_dataset(parent_)));
       }
       const hsize_t blocks = std::min(slab->room(dims_of(space_.get())[*slab->endless]),
                                       source->room(dims_of(found.in_source.get())[*source->endless]));
@@ -223,8 +228,12 @@ class MappingReader {
     // As of such a dataset that is read alone (dataset_facts.cpp).
     found.all_fill = storage.is_all_fill && number && !may_be_netcdf_fill(source.get(), *number, storage.fill);
     if (!storage.obstacle.empty() && !found.all_fill) throw refuse(storage.obstacle);
-    if (storage.kind == StorageKind::mapped || storage.kind == StorageKind::external) {
-      throw refuse("is spread over other files itself; write it as one with h5repack");
+    if (storage.kind == StorageKind::mapped) {
+      const std::string& in = found.file.empty() ? parent_ : found.file;
+      throw refuse(cat("is spread over other datasets itself; ", as_one_dataset(in), ", and put NEW in its place"));
+    }
+    if (storage.kind == StorageKind::external) {
+      throw refuse("has its values in external files; write it with the values in its own file");
     }
     found.chunk = storage.chunk;
     found.value_bytes = H5Tget_size(type.get());
@@ -247,7 +256,7 @@ class MappingReader {
     const hssize_t held = H5Sget_select_npoints(found.in_source.get());
     if (mapped != held) throw error(cat(source_text(found), "has ", held, " elements where ", mapped, " are mapped"));
     const auto blocks = selection_blocks(found.in_virtual.get(), kMostBlocks - blocks_.size());
-    if (!blocks) throw error("its mappings have too many pieces; write the dataset as one with h5repack");
+    if (!blocks) throw error(cat("its mappings have too many pieces; ", as_one_dataset(parent_)));
     blocks_.insert(blocks_.end(), blocks->begin(), blocks->end());
     std::vector<hsize_t> first(wanted_.lo.size());
     std::vector<hsize_t> last(first.size());

@@ -8,6 +8,12 @@
 namespace weir {
 namespace {
 
+// Versions up to 0.3 have names alone, of which t is the time.
+bool is_time_of_image(const ScaleAxis& axis) {
+  return axis.type.empty() ? axis.name == "t" || is_time_axis({axis.name, axis.unit, {}, {}, false})
+                           : axis.type == "time";
+}
+
 void place_by_level(const FoundLevel& found, ArrayAxes& axes) {
   const std::size_t rank = axes.places.size();
   const ScaleLevel& level = found.image.levels[found.level];
@@ -16,12 +22,13 @@ void place_by_level(const FoundLevel& found, ArrayAxes& axes) {
       const ScaleAxis& said = found.image.axes[axis];
       axes.places[axis].label = said.name;
       axes.places[axis].units = said.unit;
-      axes.places[axis].is_time = said.type == "time";
+      axes.places[axis].is_time = is_time_of_image(said);
       axes.types[axis] = said.type;
     }
   }
   const bool fits = level.scale.size() == rank;
   for (std::size_t axis = 0; axis < rank; ++axis) {
+    if (!fits && axes.places[axis].is_time) continue;  // a position is no time
     axes.places[axis].spacing = fits ? level.scale[axis] : 1.0;
     axes.places[axis].origin = fits ? level.translation[axis] : 0.0;
     axes.places[axis].spacing_from = cat("coordinateTransformations in ", found.image.document);

@@ -81,8 +81,9 @@ void place_by_array(ZarrStore& store, const ZarrNode& found, AxisPlace& axis) {
   axis.has_coordinates = true;
   axis.units = attribute("units");
   axis.calendar = attribute("calendar");
-  axis.is_time = is_time_axis({axis.label, axis.units, attribute("axis"), attribute("standard_name"), false});
-  axis.points_down = is_down(attribute("positive"));
+  const std::string positive = attribute("positive");
+  axis.is_time = is_time_axis({axis.label, axis.units, attribute("axis"), attribute("standard_name"), false, positive});
+  axis.points_down = is_down(positive);
   if (std::cmp_greater(axis.extent, kMaxCoordinates)) {
     axis.note = cat("more than ", kMaxCoordinates, " coordinates, taken as indices");
     return;

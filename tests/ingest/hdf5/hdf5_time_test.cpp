@@ -1,4 +1,6 @@
 // Time in a file: never a volume's axis, and kept where it is known.
+#include <tuple>
+
 #include "ingest/hdf5/hdf5_source.h"
 #include "tests/ingest/hdf5/support/h5py_file.h"
 
@@ -231,6 +233,34 @@ with h5py.File("a.h5", "w") as f:
           "lie in other files; write it with the time first, or into one file");
 }
 
+// An unlimited dimension of cycles in no unit, and times in units that are not UDUNITS' shortest.
+TEST_F(Hdf5Time, TimeInAnyUnitButOneOfSpace_IsNoAxisOfAVolume) {
+  write_by_h5py(scratch_, R"(
+import netCDF4
+n = netCDF4.Dataset("a.nc", "w")
+for name, size in [("cycle", None), ("time", 3), ("z", 5), ("y", 7), ("x", 9)]: n.createDimension(name, size)
+for name, values_, units in [("cycle", [100, 200, 300], "1"), ("time", [1, 3, 5], "microseconds")]:
+    c = n.createVariable(name, "f8", (name,)); c[:] = values_; c.units = units
+for name in ["cycle", "time"]:
+    n.createVariable(name + "_plane", "f4", (name, "y", "x"))[:] = values("f4", (3, 7, 9))
+    v = n.createVariable(name + "_volume", "f4", (name, "z", "y", "x")); v[:] = values("f4", (3,) + SHAPE)
+    expect(name, v[2])
+n.close()
+)");
+  for (const auto& [name, value, units] : {std::tuple("cycle", 300.0, "1"), std::tuple("time", 5.0, "microseconds")}) {
+    const std::string plane = cat(name, "_plane");
+    EXPECT_EQ(message_of_error(ErrorKind::input, [&] { open_source(scratch_.path("a.nc"), dataset_options(plane)); }),
+              cat(scratch_.path("a.nc"), ": /", plane, ": 2 axes and time (", name,
+                  "=3 x y=7 x x=9); a volume has three axes of space; to take the time for a length, give --spacing"));
+    const std::string volume = cat(name, "_volume");
+    expect_reads(scratch_, "a.nc", dataset_options(volume, {2}), name);
+    const auto time = details_of("a.nc", volume, {2}).time;
+    ASSERT_TRUE(time.has_value()) << name;
+    EXPECT_EQ(time->value, value);
+    EXPECT_EQ(time->units, units);
+  }
+}
+
 TEST_F(Hdf5Time, VolumeThatGrowsAlongAHeightIsAVolume) {
   write_by_h5py(scratch_, R"(
 import netCDF4
@@ -239,9 +269,14 @@ for name, size in [("height", None), ("y", 7), ("x", 9)]: n.createDimension(name
 h = n.createVariable("height", "f4", ("height",)); h[:] = np.arange(5); h.units = "m"
 v = n.createVariable("v", "f4", ("height", "y", "x")); v[:] = values("f4"); expect("v", v[:])
 n.close()
+n = netCDF4.Dataset("bare.nc", "w")
+for name, size in [("level", None), ("y", 7), ("x", 9)]: n.createDimension(name, size)
+n.createVariable("v", "f4", ("level", "y", "x"))[:] = np.fromfile("v.expected", "<f4").reshape(SHAPE)
+n.close()
 with h5py.File("grown.h5", "w") as f: f.create_dataset("v", data=np.fromfile("v.expected", "<f4").reshape(SHAPE), maxshape=(None, 7, 9))
 )");
   expect_reads(scratch_, "a.nc", dataset_options("v"), "v");
+  expect_reads(scratch_, "bare.nc", dataset_options("v"), "v");
   expect_reads(scratch_, "grown.h5", dataset_options("v"), "v");
 }
 

@@ -171,6 +171,25 @@ TEST(OmeZarr, PlanesOverTime_AreNoVolume) {
             "run.zarr/0: 2 axes of space at its end (c 3, y 4, x 5); a volume has three");
 }
 
+TEST(OmeZarr, AxisTOfAVersionThatHasNamesAlone_IsATimeOfNoValue) {
+  const ZarrFiles files;
+  const auto write = [&](std::string_view axes, std::string_view shape) {
+    files.write(".zgroup", R"({"zarr_format":2})");
+    files.write(".zattrs", cat(R"({"multiscales":[{"axes":)", axes, R"(,"datasets":[{"path":"0"}]}]})"));
+    files.write("0/.zarray", zarray(shape, shape));
+  };
+  write(R"(["t","y","x"])", "[3,4,5]");
+  EXPECT_EQ(files.message(ErrorKind::input),
+            "run.zarr/0: 2 axes of space and a time at its end (t 3, y 4, x 5); a volume has three of space; to take "
+            "the time for a length, give --spacing");
+  write(R"(["t","z","y","x"])", "[2,3,4,5]");
+  SourceOptions options;
+  options.index = {1};
+  const auto source = open_source(files.path(), options);
+  EXPECT_EQ(source->info().extent, (Index3{5, 4, 3}));
+  EXPECT_FALSE(source->info().details.time);
+}
+
 TEST(OmeZarr, ScaleOfZero_IsRefusedByTheDocumentThatSaysIt) {
   for (const bool v3 : {false, true}) {
     const ZarrFiles files;

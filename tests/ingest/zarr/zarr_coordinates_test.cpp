@@ -211,6 +211,32 @@ TEST_F(ZarrCoordinates, OfATimeAmongTheLastThree_MakeNoVolume) {
   EXPECT_EQ(open_source(files_.path(), options)->info().dataset, "run/T");
 }
 
+// As xarray writes a timedelta, and yt a cosmology.
+TEST_F(ZarrCoordinates, OfATimeInAnyUnitButOneOfSpace_MakeNoVolumeAndSayWhenItIs) {
+  files_.write("run/rain/.zarray", zarray("[2,3,4]", "[2,3,4]", "|u1", "null"));
+  files_.write("run/rain/.zattrs", R"({"_ARRAY_DIMENSIONS":["time","lat","lon"]})");
+  files_.write("run/rain/0.0.0", std::string(24, 'a'));
+  SourceOptions options;
+  options.dataset = "run/rain";
+  for (const char* units : {"s", "Myr", "microseconds", "nanoseconds", "weeks", "code_time", "code units", "1"}) {
+    write_axis("time", {20, 30}, cat(R"({"units":")", units, R"("})"));
+    EXPECT_EQ(message_of_error(ErrorKind::input, [&] { open_source(files_.path(), options); }),
+              files_.path("run/rain") +
+                  ": 2 axes of space and a time at its end (time 2, lat 3, lon 4); a volume has three of space; to "
+                  "take the time for a length, give --spacing")
+        << units;
+    for (const std::int64_t time : {0, 1}) {
+      const auto at = info(time).details.time;
+      ASSERT_TRUE(at) << units;
+      EXPECT_EQ(at->value, 20 + 10 * time);
+      EXPECT_EQ(at->units, units);
+    }
+  }
+  write_axis("time", {20, 30}, R"({"units":"km"})");
+  EXPECT_EQ(open_source(files_.path(), options)->info().spacing, (std::array<double, 3>{1, 1, 10}));
+  EXPECT_FALSE(info().details.time);
+}
+
 TEST_F(ZarrCoordinates, ThatPointDown_AreKeptAndSaid) {
   write_axis("z", {5, 15}, R"({"positive":"Down","axis":"Z"})");
   const auto source = open(0);

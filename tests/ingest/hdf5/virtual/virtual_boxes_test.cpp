@@ -284,6 +284,8 @@ whole("flat.h5", [(S[:2], half), (S[2:], V("source.h5", "flat", (2, 4, 4)))])
 whole("unwritten.h5", [(S[:2], half), (S[2:], V("source.h5", "unwritten", (2, 4, 4)))])
 whole("packed.h5", [(S[:2], half), (S[2:], V("source.h5", "packed", (2, 4, 4)))])
 whole("nested.h5", [(S[...], V("gap.h5", "v", (4, 4, 4)))])
+with h5py.File("raw source.h5", "w") as f: f.create_dataset("v", (4, 4, 4), "f4", external="raw")[...] = 1
+whole("raw.h5", [(S[...], V("raw source.h5", "v", (4, 4, 4)))])
 whole("cut.h5", [(S[:2], half), (S[2:], V("source.h5", "half", (9, 4, 4))[4:6])])
 open("bad.h5", "w").write("nothing of HDF5 in here")
 whole("bad source.h5", [(S[...], V("bad.h5", "v", (4, 4, 4)))])
@@ -308,11 +310,37 @@ whole("bad source.h5", [(S[...], V("bad.h5", "v", (4, 4, 4)))])
   EXPECT_EQ(said("packed.h5"), source +
                                    "packed: packed by the filter sperr (32028), and no plugin for it is found; "
                                    "set HDF5_PLUGIN_PATH to the directory that has it");
-  EXPECT_EQ(said("nested.h5"), "its source " + scratch_.path("gap.h5") +
-                                   ": v: is spread over other files itself; write it as one with h5repack");
+  EXPECT_EQ(said("nested.h5"),
+            "its source " + scratch_.path("gap.h5") +
+                ": v: is spread over other datasets itself; write it as one with h5repack -l CONTI " +
+                scratch_.path("gap.h5") + " NEW, and put NEW in its place");
+  EXPECT_EQ(said("raw.h5"), "its source " + scratch_.path("raw source.h5") +
+                                ": v: has its values in external files; write it with the values in its own file");
   EXPECT_EQ(said("bad source.h5"), "its source " + scratch_.path("bad.h5") +
                                        ": no HDF5 signature at 0, 512, 1024 ...: the file is of another format than "
                                        "its name says, or its beginning is lost");
+}
+
+// h5repack copies a virtual dataset as one, unless it is told a layout.
+TEST_F(VirtualDataset, MappingsThatAreNotFollowed_AreRefusedWithTheCommandThatHelps) {
+  write_by_h5py(scratch_, R"(
+from h5py import h5s, h5p, h5d
+U = h5s.UNLIMITED
+with h5py.File("grown.h5", "w", libver="latest") as f: f.create_dataset("d", data=np.ones((6, 4, 4), "f4"), maxshape=(None, 4, 4), chunks=(2, 4, 4))
+with h5py.File("a b.h5", "w", libver="latest") as f:
+    space, source = (h5s.create_simple((0, 4, 4), (U, 4, 4)) for _ in range(2))
+    space.select_hyperslab((0, 0, 0), (U, 1, 1), (2, 1, 1), (1, 4, 4))
+    source.select_hyperslab((0, 0, 0), (1, 1, 1), None, (U, 4, 4))
+    made = h5p.create(h5p.DATASET_CREATE)
+    made.set_virtual(space, b"grown.h5", b"d", source)
+    space.select_all()
+    h5d.create(f.id, b"v", h5py.h5t.IEEE_F32LE, space, made)
+)");
+  EXPECT_EQ(refused("a b.h5"),
+            scratch_.path("a b.h5") +
+                ": /v: a mapping goes on without end in a way that weir does not follow; write it as one with h5repack "
+                "-l CONTI '" +
+                scratch_.path("a b.h5") + "' NEW");
 }
 
 TEST_F(VirtualDataset, SourcesLostAfterOpeningAreAnErrorToo) {
