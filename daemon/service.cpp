@@ -184,7 +184,7 @@ void Service::reload() {
 std::optional<DaemonConfig> Service::load_again() {
   try {
     DaemonConfig config = load_();
-    check_access(config);
+    check_access(config, true);
     log_.reopen(config.service);
     return config;
   } catch (const Error& error) {

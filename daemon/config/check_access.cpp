@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <string>
 
+#include "daemon/config/foreign_state.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "format/io/file_system.h"
@@ -102,9 +103,10 @@ void require_directory(const std::string& path, std::string_view key) {
 
 }  // namespace
 
-void check_access(const DaemonConfig& config) {
+void check_access(const DaemonConfig& config, bool state_is_open) {
   const ServiceConfig& service = config.service;
   require_file(service.state, "state");
+  if (!state_is_open) refuse_foreign_state(service.state);
   require_file(service.log_file, "log");
   require_file(service.port_file, "port_file");
   require_file(service.control_socket, "control_socket");

@@ -1,10 +1,15 @@
 #include "daemon/config/watch_conflicts.h"
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
+#include <initializer_list>
 #include <string_view>
 #include <tuple>
+#include <utility>
 #include <vector>
 
+#include "daemon/config/glob.h"
 #include "format/base/text.h"
 #include "format/io/real_path.h"
 
@@ -13,21 +18,128 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where a watch reads and writes, symbolic links followed. To ask the file system for each pair of watches took
-/// minutes for a thousand.
+/// Where a watch reads and writes, symbolic links followed, and possible_names(). To ask the file system for each pair
+/// of watches took minutes for a thousand.
 struct Places {
   fs::path directory;
   fs::path output;
+  std::vector<std::string> names;
 };
 
-std::string_view template_of(const WatchConfig& watch) {
-  return watch.name.empty() ? std::string_view("{stem}.nvdb") : watch.name;
+// What stands for {dataset} and {step} may be nothing: a raw file has neither.
+std::vector<std::string> without_words(std::string name) {
+  std::vector<std::string> names{std::move(name)};
+  for (const std::string_view word : {"{dataset}", "{step}"}) {
+    for (std::size_t i = 0, count = names.size(); i < count; ++i) {
+      std::string without = names[i];
+      for (std::size_t at = without.find(word); at != std::string::npos; at = without.find(word)) {
+        without.erase(at, word.size());
+      }
+      if (without != names[i]) names.push_back(std::move(without));
+    }
+  }
+  return names;
+}
+
+// Of the default: convert puts more behind the stem where a file has several volumes and options choose of them.
+std::vector<std::string> default_names(const WatchConfig& watch) {
+  constexpr std::array kChoosing{"dataset", "index", "component", "magnitude", "level"};
+  const bool chooses =
+      std::ranges::any_of(kChoosing, [&](const char* option) { return watch.convert_option(option).has_value(); });
+  if (!chooses) return {"{stem}.nvdb"};
+  return {"{stem}.nvdb", "{stem}_{dataset}.nvdb", "{stem}_{step}.nvdb", "{stem}_{dataset}_{step}.nvdb"};
+}
+
+// Templates of all that an output may be called, in which no word stands for nothing.
+std::vector<std::string> possible_names(const WatchConfig& watch) {
+  return watch.name.empty() ? default_names(watch) : without_words(watch.name);
+}
+
+/// The first of `a` that is one of `b`, too; empty: none.
+std::string_view common_name(const std::vector<std::string>& a, const std::vector<std::string>& b) {
+  const auto at = std::ranges::find_first_of(a, b);
+  return at == a.end() ? std::string_view() : std::string_view(*at);
+}
+
+/// "sub/deep" of "/in/sub/deep" below "/in"; empty where it does not lie below it. As text: lies_below() takes several
+/// times as long.
+std::string_view place_below(const fs::path& path, const fs::path& directory) {
+  const std::string_view text = path.native();
+  const std::string_view above = directory.native() == "/" ? std::string_view() : directory.native();
+  const bool is_below = text.size() > above.size() + 1 && text.starts_with(above) && text[above.size()] == '/';
+  return is_below ? text.substr(above.size() + 1) : std::string_view();
+}
+
+/// Whether all that `watch` includes lies in other sub-directories than `place`: "run1/*.raw", of "run2".
+bool includes_others(const WatchConfig& watch, std::string_view place) {
+  const auto lies_elsewhere = [&](std::string_view pattern) {
+    const std::size_t end = pattern.find('/');
+    const std::string_view first = pattern.substr(0, end);
+    const bool is_name = first.find_first_of("*?[{\\") == std::string_view::npos;
+    return end != std::string_view::npos && is_name && first != place.substr(0, place.find('/'));
+  };
+  return !watch.include.empty() && std::ranges::all_of(watch.include, lies_elsewhere);
+}
+
+/// Whether `watch` excludes from its sub-directory `place` all that `inner` includes there, by the same patterns.
+bool leaves_to(const WatchConfig& watch, const WatchConfig& inner, std::string_view place) {
+  const auto excludes = [&](const std::string& pattern) {
+    return std::ranges::find(watch.exclude, cat(place, '/', pattern)) != watch.exclude.end();
+  };
+  return !inner.include.empty() && std::ranges::all_of(inner.include, excludes);
+}
+
+/// Whether a recursive watch takes no file right in its sub-directory `place`: it is hidden, or excluded. A name that
+/// nobody gives matches only what takes any name.
+bool leaves_out(const WatchConfig& watch, std::string_view place) {
+  const auto is_excluded = [&](std::string_view path) {
+    return std::ranges::any_of(watch.exclude, [&](const std::string& pattern) {
+      const std::size_t name = pattern.find('/') == std::string::npos ? path.find_last_of('/') + 1 : 0;
+      return matches_glob(pattern, path.substr(name));
+    });
+  };
+  if (place.starts_with('.') || place.find("/.") != std::string_view::npos) return true;
+  for (std::size_t end = place.find('/');; end = place.find('/', end + 1)) {
+    if (is_excluded(place.substr(0, end))) return true;
+    if (end == std::string_view::npos) return is_excluded(cat(place, "/\x01 any name \x01"));
+  }
+}
+
+/// Where `inner` watches a sub-directory of the recursive `outer`, and both write what comes of a source there to one
+/// directory: that sub-directory, relative. Empty: it is not so.
+std::string_view twice_converted(const WatchConfig& outer, const Places& at_outer, const WatchConfig& inner,
+                                 const Places& at_inner) {
+  if (!outer.recursive) return {};
+  const std::string_view place = place_below(at_inner.directory, at_outer.directory);
+  if (place.empty() || place != place_below(at_inner.output, at_outer.output)) return {};
+  const bool apart = leaves_out(outer, place) || includes_others(outer, place) || leaves_to(outer, inner, place);
+  return apart ? std::string_view() : place;
 }
 
 /// Whether some file can be a source of both.
 bool share_sources(const WatchConfig& a, const Places& at_a, const WatchConfig& b, const Places& at_b) {
   return at_a.directory == at_b.directory || (a.recursive && lies_below(at_b.directory, at_a.directory)) ||
          (b.recursive && lies_below(at_a.directory, at_b.directory));
+}
+
+/// What the second one has to change where both write the same names; empty: they do not.
+std::string same_names(const WatchConfig& a, const Places& at_a, const WatchConfig& b, const Places& at_b) {
+  const auto written = [&](std::string_view name, const WatchConfig& into) {
+    return cat("the watch \"", a.label, "\" writes the same names, ", name, " in ", into.output,
+               "; give this one another output or name");
+  };
+  if (at_a.output == at_b.output) {
+    const std::string_view name = common_name(at_a.names, at_b.names);
+    return name.empty() ? std::string() : written(name, b);
+  }
+  for (const auto& [outer, at_outer, inner, at_inner] :
+       {std::tuple(&a, &at_a, &b, &at_b), std::tuple(&b, &at_b, &a, &at_a)}) {
+    const std::string_view place = twice_converted(*outer, *at_outer, *inner, *at_inner);
+    const std::string_view name = place.empty() ? place : common_name(at_a.names, at_b.names);
+    if (name.empty()) continue;
+    return cat(written(name, *inner), ", or exclude ", place, " from the watch \"", outer->label, '"');
+  }
+  return {};
 }
 
 std::optional<WatchConflict> conflict_of_two(std::span<const WatchConfig> watches, std::span<const Places> places,
@@ -39,10 +151,8 @@ std::optional<WatchConflict> conflict_of_two(std::span<const WatchConfig> watche
         second, "label",
         cat("there is a watch of the label \"", a.label, "\" already; give this one a label of its own")};
   }
-  if (places[first].output == places[second].output && template_of(a) == template_of(b)) {
-    return WatchConflict{second, "output",
-                         cat("the watch \"", a.label, "\" writes the same names, ", template_of(a), " in ", a.output,
-                             "; give this one another output or name")};
+  if (std::string message = same_names(a, places[first], b, places[second]); !message.empty()) {
+    return WatchConflict{second, "output", std::move(message)};
   }
   for (const auto& [deleting, reading, index] : {std::tuple(&a, &b, first), std::tuple(&b, &a, second)}) {
     if (deleting->source != AfterDone::delete_after_verify) continue;
@@ -62,7 +172,9 @@ bool is_within(const std::string& path, const std::string& directory) {
 
 std::optional<WatchConflict> find_conflict(std::span<const WatchConfig> watches) {
   std::vector<Places> places;
-  for (const WatchConfig& watch : watches) places.push_back({real_path(watch.directory), real_path(watch.output)});
+  for (const WatchConfig& watch : watches) {
+    places.push_back({real_path(watch.directory), real_path(watch.output), possible_names(watch)});
+  }
   for (std::size_t i = 0; i < watches.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       if (auto conflict = conflict_of_two(watches, places, j, i)) return conflict;

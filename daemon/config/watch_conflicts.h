@@ -21,7 +21,8 @@ struct WatchConflict {
 };
 
 /// The first conflict: a label used twice; a watched directory in an output, where what is written would be
-/// found and converted; two watches that write the same names; one that deletes what another one reads.
+/// found and converted; two watches that write the same names into one output, or that both convert a source and may
+/// write the same name for it; one that deletes what another one reads.
 std::optional<WatchConflict> find_conflict(std::span<const WatchConfig> watches);
 
 }  // namespace weir

@@ -18,6 +18,7 @@
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "format/io/descriptor.h"
+#include "format/io/is_directory.h"
 #include "format/sidecar/sidecar.h"
 #include "ingest/files/file_state.h"
 #include "ingest/files/input_directory.h"
@@ -75,7 +76,9 @@ SourceDeletion::SourceDeletion(boost::asio::io_context& io, const JobStore& stor
 void SourceDeletion::configure(const DaemonConfig& config) {
   const std::vector<WatchConfig> before = std::exchange(watches_, {});
   waits_for_.clear();
+  markers_.clear();
   for (const WatchConfig& watch : config.watches) {
+    if (watch.complete == Completion::marker) markers_[watch.label] = watch.marker;
     if (watch.source == AfterDone::delete_after_verify) watches_.push_back(watch);
   }
   std::erase_if(due_, [&](const auto& entry) {
@@ -159,17 +162,23 @@ void SourceDeletion::take_up() {
 
 void SourceDeletion::look() {
   const Clock::time_point now = Clock::now();
+  std::map<std::string, bool> waits;  // by label, of those that are due
   int looks = 0;
   for (auto at = due_.begin(); at != due_.end() && looks < kLooks;) {
     if (at->second.time > now) {
       ++at;
       continue;
     }
-    ++looks;
-    const auto job = store_.job(at->first);
-    const WatchConfig* watch = job ? deleting_watch(job->watch) : nullptr;
-    const bool here = watch != nullptr && job->state == JobState::done;  // else it is converted anew
-    if (here && try_to_delete(*job, *watch) == Outcome::later) {
+    const WatchConfig* watch = deleting_watch(at->second.watch);
+    if (watch != nullptr && !waits.contains(watch->label)) waits[watch->label] = waits_for_directory(*watch);
+    bool later = watch != nullptr && waits[watch->label];
+    if (!later) {
+      ++looks;
+      const auto job = store_.job(at->first);
+      const bool here = watch != nullptr && job && job->state == JobState::done;  // else it is converted anew
+      later = here && try_to_delete(*job, *watch) == Outcome::later;
+    }
+    if (later) {
       at->second.time = now + std::clamp(delay_of(*watch), kSoon, kAgain);
       ++at;
       continue;
@@ -178,6 +187,17 @@ void SourceDeletion::look() {
     named_back_.erase(at->first);
     at = due_.erase(at);
   }
+}
+
+// Whether the directory is not there, as during a remount: its sources cannot be judged. The watch is named once.
+bool SourceDeletion::waits_for_directory(const WatchConfig& watch) {
+  const bool is_there = is_directory(watch.directory);
+  if (is_there) away_.erase(watch.label);
+  if (!is_there && away_.insert(watch.label).second) {
+    log_.warn("not-deleted",
+              {{"watch", watch.label}, {"reason", cat(watch.directory, " is not there; tried again once it is")}});
+  }
+  return !is_there;
 }
 
 // One that cannot be looked at keeps no other waiting. What a file system refuses it may do later.
@@ -193,7 +213,7 @@ SourceDeletion::Outcome SourceDeletion::try_to_delete(const Job& job, const Watc
 
 SourceDeletion::Outcome SourceDeletion::look_at(const Job& job, const WatchConfig& watch) {
   if (files_->exists(hidden_name(job))) return finish_interrupted(job, watch);
-  if (is_gone(job.source)) return Outcome::over;
+  if (is_gone_from(watch.directory, job.source)) return Outcome::over;
   if (!takes_source(watch, job.source) || job.options != options_text(watch)) {
     keep(job, "the watch does not take it any more, or converts it otherwise");
     return Outcome::over;
@@ -220,7 +240,7 @@ SourceDeletion::Outcome SourceDeletion::look_at(const Job& job, const WatchConfi
     keep(job, kNotKnown);
     return Outcome::over;
   }
-  return remove(job, watch, writers);
+  return remove(job, writers);
 }
 
 // A conversion flushes its own directory: neither those that were made for it, nor anything where it found the output
@@ -255,33 +275,68 @@ void SourceDeletion::give_name_back(const Job& job) {
 
 // Under a hidden name first, which is never a source: what took its place meanwhile gets its name back, and so does
 // the source where a writer has found it by its name before. From then on none can; `writers` tells of those before.
-SourceDeletion::Outcome SourceDeletion::remove(const Job& job, const WatchConfig& watch, const FileWriters& writers) {
+SourceDeletion::Outcome SourceDeletion::remove(const Job& job, const FileWriters& writers) {
   const std::string doomed = hidden_name(job);
   files_->rename_new(job.source, doomed);
+  bool is_source = false;
+  bool one_waits = false;
   try {
-    const bool is_source = is_source_file(doomed, job);
-    const bool one_waits = writers.one_waits();
-    if (is_source && !one_waits) {
-      files_->remove(doomed);
-      removed(job, watch, writers.known());
-    } else {
-      give_name_back(job);
-      if (one_waits) return wait_for(job, kInUse);
-    }
+    is_source = is_source_file(doomed, job);
+    one_waits = writers.one_waits();
   } catch (const Error&) {
     if (files_->exists(doomed)) give_name_back(job);
     throw;
   }
+  if (is_source && !one_waits) return remove_hidden(job, writers.known());
+  give_name_back(job);
+  return one_waits ? wait_for(job, kInUse) : Outcome::over;
+}
+
+// Its marker goes before it: left alone, as by a kill in between, it would call the next file of that name complete
+// before it is. What a kill leaves is the hidden name, with which finish_interrupted() begins here again.
+SourceDeletion::Outcome SourceDeletion::remove_hidden(const Job& job, bool writers_known) {
+  const std::string doomed = hidden_name(job);
+  const std::string marker = marker_of(job);
+  const auto is_of_next_file = [&] {
+    return files_->exists(job.source) && look_at_file(marker).ctime_ns > look_at_file(doomed).ctime_ns;
+  };
+  const bool has_marker = !marker.empty() && files_->exists(marker) && !is_of_next_file();
+  try {
+    if (has_marker) {
+      files_->remove(marker);
+      files_->sync_directory(fs::path(marker).parent_path().string());
+    }
+    files_->remove(doomed);
+  } catch (const Error& error) {
+    const bool marker_stays = has_marker && files_->exists(marker);
+    if (files_->exists(doomed) && !files_->exists(job.source)) {
+      give_name_back(job);
+      if (has_marker && !marker_stays) mark_again(job);
+    }
+    if (!marker_stays) throw;
+    const std::string reason = error.what();
+    if (std::exchange(waits_for_[job.id], reason) != reason) {
+      log_.warn("marker-stays", {{"job", job.id}, {"reason", cat(reason, "; its source stays, tried again later")}});
+    }
+    return Outcome::later;
+  }
+  log_.info("deleted", {{"job", job.id}, {"source", job.source}, {"in_use", writers_known ? "no" : "not known"}});
   return Outcome::over;
 }
 
-void SourceDeletion::removed(const Job& job, const WatchConfig& watch, bool writers_known) const {
-  log_.info("deleted", {{"job", job.id}, {"source", job.source}, {"in_use", writers_known ? "no" : "not known"}});
-  if (watch.complete != Completion::marker) return;
+std::string SourceDeletion::marker_of(const Job& job) const {
+  const auto at = markers_.find(job.watch);
+  return at == markers_.end() ? std::string() : job.source + at->second;
+}
+
+// Without it the watch would not take the source any more, whose name it has again.
+void SourceDeletion::mark_again(const Job& job) const {
+  const std::string marker = marker_of(job);
+  if (marker.empty() || files_->exists(marker)) return;
   try {
-    files_->remove(job.source + watch.marker);
-  } catch (const Error& error) {  // it would call the next file of that name complete before it is
-    log_.warn("marker-stays", {{"job", job.id}, {"reason", error.what()}});
+    files_->create(marker);
+  } catch (const Error& error) {
+    keep(job, cat("its marker was removed and could not be made again: ", error.what()));
   }
 }
 
@@ -295,13 +350,16 @@ SourceDeletion::Outcome SourceDeletion::finish_interrupted(const Job& job, const
   if (is_source && fault.empty() && !writers.known() && !says_when_done(watch.complete)) fault = kNotKnown;
   if (is_source && fault.empty()) {
     flush_outputs(job, watch);
-    files_->remove(doomed);
-    removed(job, watch, writers.known());
-  } else if (files_->exists(job.source)) {
+    return remove_hidden(job, writers.known());
+  }
+  if (files_->exists(job.source)) {
     keep(job, left_fault(doomed, is_source));
   } else {
     files_->rename_new(doomed, job.source);
-    if (is_source) keep(job, cat(fault, "; let its job be done again (weir retry --force ", job.id, ")"));
+    if (is_source) {
+      mark_again(job);
+      keep(job, cat(fault, "; let its job be done again (weir retry --force ", job.id, ")"));
+    }
   }
   return Outcome::over;
 }
@@ -325,6 +383,7 @@ void SourceDeletion::uncover(const HiddenSource& hidden) const {
       return;
     }
     files_->rename_new(hidden.path, job->source);
+    mark_again(*job);
     keep(*job, cat("a deletion that was interrupted had left it as ", hidden.path,
                    "; it has its name back. To have it deleted, let its job be done again (weir retry --force ",
                    job->id, ")"));

@@ -12,6 +12,7 @@
 //      Where that cannot be known, the writer must say itself that it is done (says_when_done). One that opens it while
 //      it is looked at gets it whole: the source has lost its name when this is looked at last;
 //   5. the outputs are on their disk, with the directories that were made for them.
+// Its marker is deleted with it, and before it; where the source gets its name back, the marker is made again.
 // Jobs of an earlier process are taken up a few at a time; a deletion that it was killed in is finished. Where the
 // watch deletes no more, or the job is to be done again, the source gets its name back; what no job knows is told of
 // and stays. One thread, that of the io_context.
@@ -65,6 +66,7 @@ class SourceDeletion {
   void work();
   void take_up();
   void look();
+  bool waits_for_directory(const WatchConfig& watch);
   void arm();
   void wait_until(Clock::time_point time);
   Outcome try_to_delete(const Job& job, const WatchConfig& watch);
@@ -73,8 +75,10 @@ class SourceDeletion {
   std::optional<FileState> state_since_certified(const Job& job) const;
   Outcome wait_for(const Job& job, const std::string& reason);
   void give_name_back(const Job& job);
-  Outcome remove(const Job& job, const WatchConfig& watch, const FileWriters& writers);
-  void removed(const Job& job, const WatchConfig& watch, bool writers_known) const;
+  Outcome remove(const Job& job, const FileWriters& writers);
+  Outcome remove_hidden(const Job& job, bool writers_known);
+  std::string marker_of(const Job& job) const;
+  void mark_again(const Job& job) const;
   Outcome finish_interrupted(const Job& job, const WatchConfig& watch);
   void uncover(const HiddenSource& hidden) const;
   void keep(const Job& job, const std::string& reason) const;
@@ -84,7 +88,9 @@ class SourceDeletion {
   const EventLog& log_;
   Held held_;
   std::vector<WatchConfig> watches_;               ///< those that delete
+  std::map<std::string, std::string> markers_;     ///< WatchConfig::marker by label, of those that wait for one
   std::map<std::int64_t, Due> due_;                ///< by job
+  std::set<std::string> away_;                     ///< labels of those that were said to wait for their directory
   std::map<std::int64_t, std::string> waits_for_;  ///< by job: what was said of it
   std::map<std::int64_t, std::int64_t>
       named_back_;  ///< by job: FileState::ctime_ns of sources that got their name back

@@ -6,35 +6,34 @@
 #include <spdlog/sinks/stdout_sinks.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdio>
 #include <fstream>
 
+#include "daemon/log/plain_text.h"
 #include "format/base/error.h"
 
 namespace weir {
 namespace {
 
 std::string logfmt(std::string_view value) {
-  const auto plain = [](char c) { return static_cast<unsigned char>(c) > ' ' && c != '"' && c != '=' && c != '\x7f'; };
-  bool all_plain = !value.empty();
-  for (const char c : value) all_plain = all_plain && plain(c);
-  if (all_plain) return std::string(value);
   std::string text = "\"";
-  for (const char c : value) {
+  bool is_word = !value.empty();  // needs no quotes
+  for (std::string_view rest = value; !rest.empty();) {
+    const std::size_t plain = plain_bytes(rest);
+    const char c = rest.front();
+    is_word = is_word && plain != 0 && c != ' ' && c != '"' && c != '=';
     if (c == '"' || c == '\\') {
       text += cat('\\', c);
     } else if (c == '\n') {
       text += "\\n";
-    } else if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') {
-      std::array<char, 8> code{};
-      std::snprintf(code.data(), code.size(), "\\x%02x", static_cast<unsigned>(static_cast<unsigned char>(c)));
-      text += code.data();
+    } else if (plain == 0) {
+      text += cat("\\x", hex(static_cast<unsigned char>(c), 2));
     } else {
-      text += c;
+      text += rest.substr(0, plain);
     }
+    rest.remove_prefix(std::max<std::size_t>(plain, 1));
   }
-  return text + '"';
+  return is_word ? std::string(value) : text + '"';
 }
 
 // What each line looks like, with `before` it.

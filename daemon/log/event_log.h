@@ -25,8 +25,9 @@ struct Field {
   std::string value;
 };
 
-/// "done job=7 source=\"/in/a b.raw\"": a value with a space, a quote, an equals sign or a control character is
-/// quoted, and those inside are escaped with a backslash, so that an event stays one line.
+/// "done job=7 source=\"/in/a b.raw\"": a value with a space, a quote, an equals sign or anything that is not plain
+/// (plain_bytes) is quoted. Quotes and backslashes inside are escaped with a backslash, and each byte that is not plain
+/// is \n or \x1b, so that an event stays one line of UTF-8.
 std::string event_text(std::string_view name, std::initializer_list<Field> fields);
 
 class EventLog {

@@ -160,6 +160,7 @@ std::string move_aside(const std::string& path) {
 }  // namespace
 
 Database open_state_file(const std::string& path, std::string& notice) {
+  refuse_foreign_state(path);  // before SQLite may remove its journal
   try {
     return open_whole(path);
   } catch (const CorruptDatabase& damage) {

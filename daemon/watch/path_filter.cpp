@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "daemon/watch/glob.h"
+#include "daemon/config/glob.h"
 #include "daemon/watch/store_quiet.h"
 #include "format/base/ascii.h"
 #include "format/base/text.h"

@@ -78,6 +78,17 @@ TEST_F(CheckAccess, StateDirectoryNotWritable_IsRefused) {
   expect_refused(directory_ / "state", "state", "written to");
 }
 
+TEST_F(CheckAccess, StateThatIsAnotherFile_IsRefusedAndUnchanged) {
+  for (const char* name : {"in", "out", "state"}) allow(name, true);
+  const std::string state = directory_ / "state/weir.db";
+  write_file(state, "\x89HDF\r\n\x1a\n and volumes");
+  fs::permissions(state, fs::perms::all);
+  const CommandResult result = check();
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_EQ(result.err, cat("weir: ", state, ": is no state file of weir; name another file as state in [service]\n"));
+  EXPECT_EQ(read_file(state), "\x89HDF\r\n\x1a\n and volumes");
+}
+
 TEST_F(CheckAccess, OutputNotWritable_IsRefused) {
   allow("state", true);
   allow("out", false);

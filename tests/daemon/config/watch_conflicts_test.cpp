@@ -60,6 +60,71 @@ TEST(WatchConflicts, SameOutputNames_AreAConflict) {
   EXPECT_EQ(conflict({watch("/in", "/out"), second}), "");
 }
 
+TEST(WatchConflicts, NamesThatAreEqualWithoutADataset_AreAConflict) {
+  WatchConfig second = watch("/in2", "/out");
+  second.name = "{stem}{dataset}.nvdb";
+  EXPECT_EQ(conflict({watch("/in", "/out"), second}),
+            "1 output: the watch \"/in\" writes the same names, {stem}.nvdb in /out; give this one another output or "
+            "name");
+  second.name = "{step}{stem}{dataset}.nvdb";
+  EXPECT_NE(conflict({watch("/in", "/out"), second}), "");
+  EXPECT_NE(conflict({second, watch("/in", "/out")}), "");
+  second.name = "{stem}_{dataset}.nvdb";
+  EXPECT_EQ(conflict({watch("/in", "/out"), second}), "") << "a_.nvdb and a.nvdb";
+  WatchConfig choosing = watch("/in", "/out");
+  choosing.convert_options = {"--dataset=rho"};
+  EXPECT_EQ(conflict({choosing, second}),
+            "1 output: the watch \"/in\" writes the same names, {stem}_{dataset}.nvdb in /out; give this one another "
+            "output or name")
+      << "that is the default's name in a file of several datasets";
+}
+
+TEST(WatchConflicts, SubdirectoryConvertedTwiceToOneName_IsAConflict) {
+  WatchConfig outer = watch("/in", "/out");
+  WatchConfig inner = watch("/in/sub/deep", "/out/sub/deep");
+  EXPECT_EQ(conflict({outer, inner}), "") << "only one of them enters the sub-directory";
+  outer.recursive = true;
+  const std::string message =
+      " writes the same names, {stem}.nvdb in /out/sub/deep; give this one another output or name, or exclude sub/deep "
+      "from the watch \"/in\"";
+  EXPECT_EQ(conflict({outer, inner}), "1 output: the watch \"/in\"" + message);
+  EXPECT_EQ(conflict({inner, outer}), "1 output: the watch \"/in/sub/deep\"" + message);
+  inner.output = "/out/deep";
+  EXPECT_EQ(conflict({outer, inner}), "") << "another place below the output";
+  inner.output = "/out/sub/deep";
+  inner.name = "{stem}_2.nvdb";
+  EXPECT_EQ(conflict({outer, inner}), "");
+}
+
+TEST(WatchConflicts, SubdirectoryExcludedFromTheOuterWatch_DoesNotConflict) {
+  WatchConfig outer = watch("/in", "/out");
+  outer.recursive = true;
+  const WatchConfig inner = watch("/in/sub/deep", "/out/sub/deep");
+  for (const char* pattern : {"sub", "deep", "sub/deep", "sub/*", "sub/deep/*", "**/deep"}) {
+    outer.exclude = {pattern};
+    EXPECT_EQ(conflict({outer, inner}), "") << pattern;
+  }
+  for (const char* pattern : {"su", "sub/deep/*.raw", "*.raw", "deep/*"}) {
+    outer.exclude = {pattern};
+    EXPECT_NE(conflict({outer, inner}), "") << pattern;
+  }
+}
+
+TEST(WatchConflicts, PatternsThatKeepSubdirectoriesApart_MakeNoConflict) {
+  WatchConfig outer = watch("/in", "/out");
+  outer.recursive = true;
+  WatchConfig inner = watch("/in/run2", "/out/run2");
+  outer.include = {"run1/*.raw"};
+  EXPECT_EQ(conflict({outer, inner}), "");
+  outer.include = {"run1/*.raw", "run?/*.h5"};
+  EXPECT_NE(conflict({outer, inner}), "");
+  outer.include.clear();
+  outer.exclude = {"run2/*.raw"};
+  EXPECT_NE(conflict({outer, inner}), "");
+  inner.include = {"*.raw"};
+  EXPECT_EQ(conflict({outer, inner}), "");
+}
+
 TEST(WatchConflicts, DeletingSourcesOfAnotherWatch_IsAConflict) {
   WatchConfig outer = watch("/in", "/a");
   WatchConfig inner = watch("/in/deep", "/b");

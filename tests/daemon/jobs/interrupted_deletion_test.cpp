@@ -42,6 +42,39 @@ TEST_F(InterruptedDeletion, LeftUnderTheHiddenNameWithoutItsOutput_GetsItsNameBa
   EXPECT_TRUE(logged(output_ + " is not there as it was; let its job be done again (weir retry --force 1)"));
 }
 
+TEST_F(InterruptedDeletion, LeftUnderTheHiddenNameWithItsMarker_IsDeletedWithIt) {
+  config_.watches[0].complete = Completion::marker;
+  write_file(source_ + ".done", "");
+  const std::int64_t id = convert();
+  fs::rename(source_, hidden(id));
+  deletion_.configure(config_);
+  EXPECT_TRUE(run_until([&] { return deletion_.idle(); }));
+  EXPECT_EQ(list_directory(directory_ / "in"), Names{});
+}
+
+TEST_F(InterruptedDeletion, LeftUnderTheHiddenNameBehindItsMarker_GetsItBackWithItsName) {
+  config_.watches[0].complete = Completion::marker;
+  const std::int64_t id = convert();
+  fs::rename(source_, hidden(id));
+  fs::remove(output_);
+  deletion_.configure(config_);
+  EXPECT_TRUE(stays());
+  EXPECT_EQ(list_directory(directory_ / "in"), (Names{"a_1x2x3_uint8.raw", "a_1x2x3_uint8.raw.done"}));
+}
+
+TEST_F(InterruptedDeletion, MarkerOfTheNextFileOfThatName_Stays) {
+  config_.watches[0].complete = Completion::marker;
+  const std::int64_t id = convert();
+  fs::rename(source_, hidden(id));
+  pass_file_tick();
+  write_file(source_, "newer");
+  write_file(source_ + ".done", "");
+  deletion_.configure(config_);
+  EXPECT_TRUE(run_until([&] { return deletion_.idle(); }));
+  EXPECT_EQ(list_directory(directory_ / "in"), (Names{"a_1x2x3_uint8.raw", "a_1x2x3_uint8.raw.done"}));
+  EXPECT_EQ(read_file(source_), "newer");
+}
+
 TEST_F(InterruptedDeletion, LeftUnderTheHiddenNameWhoseNameIsTaken_IsSaid) {
   const std::int64_t id = convert();
   fs::rename(source_, hidden(id));
@@ -134,9 +167,11 @@ TEST_F(InterruptedDeletion, WatchThatKeepsSourcesNow_GivesTheNameBack) {
   const std::int64_t id = convert();
   fs::rename(source_, hidden(id));
   config_.watches[0].source = AfterDone::keep;
+  config_.watches[0].complete = Completion::marker;
   deletion_.configure(config_);
   EXPECT_TRUE(run_until([&] { return logged(hidden(id) + "; it has its name back"); }));
   EXPECT_EQ(read_file(source_), "values");
+  EXPECT_TRUE(fs::exists(source_ + ".done"));
   EXPECT_FALSE(fs::exists(hidden(id)));
 }
 

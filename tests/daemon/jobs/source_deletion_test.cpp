@@ -15,6 +15,7 @@
 #include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "format/base/error.h"
 #include "format/io/descriptor.h"
@@ -119,6 +120,62 @@ TEST_F(SourceDeletionTest, MarkerIsDeletedWithItsSource) {
   EXPECT_FALSE(fs::exists(source_ + ".done"));
 }
 
+// A process may be killed between any two steps: no marker may be left without its source.
+TEST_F(SourceDeletionTest, Marker_IsDeletedBeforeItsSource) {
+  config_.watches[0].complete = Completion::marker;
+  write_file(source_ + ".done", "");
+  const std::int64_t id = convert();
+  auto files = std::make_unique<SteppedFileSystem>();
+  std::vector<std::string> removed;
+  files->before_remove = [&](const std::string& path) {
+    EXPECT_TRUE(fs::exists(hidden(id))) << path;
+    EXPECT_FALSE(fs::exists(source_)) << path;
+    EXPECT_EQ(fs::exists(source_ + ".done"), removed.empty()) << path;
+    removed.push_back(path);
+  };
+  SourceDeletion deletion(io_, store_, log_, {}, std::move(files));
+  deletion.configure(config_);
+  deletion.done(id);
+  EXPECT_TRUE(run_until([&] { return deletion.idle(); }));
+  EXPECT_EQ(removed, (std::vector<std::string>{source_ + ".done", hidden(id)}));
+  EXPECT_EQ(list_directory(directory_ / "in"), std::vector<std::string>{});
+}
+
+TEST_F(SourceDeletionTest, RemovalThatFailsBehindTheMarker_MakesTheMarkerAgain) {
+  config_.watches[0].complete = Completion::marker;
+  write_file(source_ + ".done", "");
+  const std::int64_t id = convert();
+  auto files = std::make_unique<SteppedFileSystem>();
+  bool fails = true;
+  files->before_remove = [&](const std::string& path) {
+    if (fails && path == hidden(id)) throw io_error(path, "remove", EIO);
+  };
+  SourceDeletion deletion(io_, store_, log_, {}, std::move(files));
+  deletion.configure(config_);
+  deletion.done(id);
+  ASSERT_TRUE(run_until([&] { return logged(" not-deleted job=1 "); }));
+  EXPECT_TRUE(fs::exists(source_));
+  EXPECT_TRUE(fs::exists(source_ + ".done"));
+  fails = false;
+  EXPECT_TRUE(run_until([&] { return deletion.idle(); }));
+  EXPECT_EQ(list_directory(directory_ / "in"), std::vector<std::string>{});
+}
+
+// As while it is mounted anew.
+TEST_F(SourceDeletionTest, DirectoryThatIsAway_IsWaitedForAndSaidOnce) {
+  deletion_.configure(config_);
+  deletion_.done(convert());
+  fs::rename(directory_ / "in", directory_ / "away");
+  ASSERT_TRUE(run_until([&] { return logged(" not-deleted watch="); }));
+  EXPECT_TRUE(logged(" reason=\"" + (directory_ / "in") + " is not there; tried again once it is\""));
+  EXPECT_FALSE(run_until([&] { return deletion_.idle(); }, milliseconds(500)));  // looked at again
+  const std::string log = read_file(directory_ / "log");
+  EXPECT_EQ(log.find("not-deleted"), log.rfind("not-deleted")) << log;
+  fs::rename(directory_ / "away", directory_ / "in");
+  EXPECT_FALSE(stays());
+  EXPECT_TRUE(logged(" deleted job=1 source=" + source_));
+}
+
 TEST_F(SourceDeletionTest, OpenForWriting_WaitsForTheClose) {
   Descriptor writer(::open(source_.c_str(), O_WRONLY | O_CLOEXEC));
   delete_done();
@@ -197,6 +254,7 @@ TEST_F(SourceDeletionTest, SourceThatTheWatchNoLongerTakes_Stays) {
   EXPECT_TRUE(stays()) << "another rate";
   watch = before;
   watch.directory = directory_ / "other";
+  fs::create_directory(watch.directory);
   deletion_.configure(config_);
   EXPECT_TRUE(stays()) << "another directory";
 }
@@ -244,12 +302,18 @@ TEST_F(SourceDeletionTest, WhatCannotBeDeleted_IsSaidAndTheNextOneGoes) {
   EXPECT_EQ(read_file(hidden(id)), "left by another deletion");
 }
 
-TEST_F(SourceDeletionTest, MarkerThatCannotBeRemoved_IsSaid) {
+TEST_F(SourceDeletionTest, MarkerThatCannotBeRemoved_IsSaidOnceAndKeepsItsSource) {
   config_.watches[0].complete = Completion::marker;
   fs::create_directories(source_ + ".done/not empty");
   delete_done();
+  ASSERT_TRUE(run_until([&] { return logged(" marker-stays job=1 reason="); }));
+  run_until([] { return false; }, milliseconds(500));  // tried again
+  EXPECT_TRUE(logged("; its source stays, tried again later"));
+  EXPECT_TRUE(fs::exists(source_));
+  const std::string log = read_file(directory_ / "log");
+  EXPECT_EQ(log.find("marker-stays"), log.rfind("marker-stays")) << log;
+  fs::remove_all(source_ + ".done");
   EXPECT_FALSE(stays());
-  EXPECT_TRUE(logged(" marker-stays job=1 reason="));
 }
 
 // Its certificate may be of one file: where the hierarchy has no chunk yet.

@@ -26,6 +26,18 @@ TEST(EventText, QuotesWhatIsNotOneWord) {
   EXPECT_EQ(event_text("pause", {}), "pause");
 }
 
+TEST(EventText, NamesThatAreNoUtf8OrSteerATerminal_AreEscaped) {
+  EXPECT_EQ(event_text("x", {{"source", "/in/caf\xe9.raw"}}), "x source=\"/in/caf\\xe9.raw\"");
+  EXPECT_EQ(event_text("x", {{"a", "caf\xc3\xa9"}}), "x a=caf\xc3\xa9");
+  EXPECT_EQ(event_text("x", {{"a",
+                              "\xc2\x9b"
+                              "31m"}}),
+            "x a=\"\\xc2\\x9b31m\"");
+  EXPECT_EQ(event_text("x", {{"a", "\xe2\x80\xaewar.a"}}), "x a=\"\\xe2\\x80\\xaewar.a\"");
+  EXPECT_EQ(event_text("x", {{"a", "\xe2\x80"}}), "x a=\"\\xe2\\x80\"") << "cut off";
+  EXPECT_EQ(event_text("x", {{"a", "back\\slash"}}), "x a=back\\slash");
+}
+
 TEST(EventLog, ALineHasTimeLevelAndEvent) {
   const TemporaryDirectory directory;
   ServiceConfig service;

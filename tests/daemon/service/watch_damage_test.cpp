@@ -28,10 +28,14 @@ void fill_state_file(const ServiceHarness& service) {
   });
 }
 
+// All but the header, which shows whose file it is.
 void damage_state_file(const ServiceHarness& service) {
   const auto size = fs::file_size(service.path("weir.db"));
   ASSERT_GT(size, 8U << 20U);
-  std::fstream(service.path("weir.db"), std::ios::in | std::ios::out | std::ios::binary) << std::string(size, 'x');
+  constexpr std::size_t kHeader = 100;  // bytes
+  std::fstream file(service.path("weir.db"), std::ios::in | std::ios::out | std::ios::binary);
+  file.seekp(kHeader);
+  file << std::string(size - kHeader, 'x');
 }
 
 void expect_end(ServiceHarness& service) {

@@ -26,7 +26,7 @@ TEST(WatchFaults, ALostStateFileIsRebuiltFromTheOutputs) {
   const auto made = fs::last_write_time(service.out(one + ".nvdb"));
 
   for (const char* suffix : {"-wal", "-shm"}) fs::remove(service.path(std::string("weir.db") + suffix));
-  write_file(service.path("weir.db"), "this is no database, it only has the name of one............................");
+  write_file(service.path("weir.db"), std::string("SQLite format 3\0", 16) + "and nothing else of a database");
   service.start();
   ASSERT_TRUE(service.eventually_done(2)) << service.log();
   EXPECT_TRUE(fs::exists(service.path("weir.db.corrupt-1"))) << "kept aside";

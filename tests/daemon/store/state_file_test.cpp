@@ -163,7 +163,32 @@ TEST_F(StateFile, DatabaseOfAnotherProgram_IsRefusedAndUnchanged) {
   EXPECT_EQ(list_directory(directory_.path()), std::vector<std::string>{"weir.db"});
 }
 
-TEST_F(StateFile, FileThatIsNoDatabase_IsMovedAside) {
+TEST_F(StateFile, FileThatWasNeverAStateFile_IsRefusedAndUnchanged) {
+  for (const std::string& theirs : {std::string(5000, 'x'), std::string("x"), std::string("\x89HDF\r\n\x1a\n"),
+                                    std::string("SQLite format 3"), std::string(68, 'x') + "wei"}) {
+    write_file(path_, theirs);
+    EXPECT_EQ(refusal(), path_ + ": is no state file of weir; name another file as state in [service]");
+    EXPECT_EQ(kind_, ErrorKind::input);
+    EXPECT_EQ(read_file(path_) == theirs, true) << "it was written to";
+    EXPECT_EQ(list_directory(directory_.path()), std::vector<std::string>{"weir.db"});
+  }
+}
+
+TEST_F(StateFile, FileThatShowsThatItWasAStateFile_IsMovedAside) {
+  int n = 0;
+  for (const std::string& damaged :
+       {std::string("SQLite format 3\0", 16) + std::string(5000, 'x'), std::string(68, 'x') + "weir" + "xxxx",
+        std::string(5000, '\0') + std::string(5000, 'x')}) {
+    write_file(path_, damaged);
+    EXPECT_EQ(marked(), 0);
+    const std::string aside = path_ + ".corrupt-" + std::to_string(++n);
+    EXPECT_EQ(notice_,
+              path_ + ": cannot use the state: file is not a database; moved to " + aside + ", jobs are found anew");
+    EXPECT_EQ(read_file(aside) == damaged, true);
+  }
+}
+
+TEST_F(StateFile, FileThatIsNoDatabaseAndHasAJournal_IsMovedAside) {
   const std::string text(5000, 'x');
   for (const std::string n : {"1", "2"}) {
     write_file(path_, text);

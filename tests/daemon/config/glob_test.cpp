@@ -1,4 +1,4 @@
-#include "daemon/watch/glob.h"
+#include "daemon/config/glob.h"
 
 #include <gtest/gtest.h>
 
