@@ -90,8 +90,8 @@ run_tests() {
   shift
   begin "tests of $preset"
   rm -rf "$results"
-  # One more than there are processors: many tests wait, for a service or a disk.
-  "$@" ctest --preset "$preset" --parallel "$(($(nproc) + 1))" --output-junit "$results/ctest.xml" 2>&1 | show_tests "$results" "$log" || true
+  # Two more than there are processors: many tests wait, for a service or a disk.
+  "$@" ctest --preset "$preset" --parallel "$(($(nproc) + 2))" --output-junit "$results/ctest.xml" 2>&1 | show_tests "$results" "$log" || true
   end
   local kind name
   while IFS=$'\t' read -r kind name; do

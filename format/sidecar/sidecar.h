@@ -156,7 +156,7 @@ struct Sidecar {
     double mse = 0;
     double rmse = 0;
     double nmse = 0;                ///< mse / (value range)^2
-    std::optional<double> psnr_db;  ///< none when lossless
+    std::optional<double> psnr_db;  ///< none where the error is 0, or all values are one
     double max_abs = 0;
     bool lossless = false;
   } error;

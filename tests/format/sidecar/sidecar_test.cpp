@@ -54,7 +54,7 @@ Sidecar sample() {
   s.missing = {7, {"-9999", "nan"}, "background"};
   s.conversion_loss = {3, 4, 0.5};
   s.zeros = Sidecar::Zeros{123, 45};
-  s.background = {0.25, "modal", 0.9899};
+  s.background = {0.25, "mode", 0.9899};
   s.histogram = {-1, 2, {1, 0, 9007199254740993U}};
   s.budget = {"size", 1048576, 1048576, 1048592, 1.0000152587890625};
   s.selection = {"sse", "mean", 16, 512, 100, {1, 2, 3, 4, 5, 85}, {}};
