@@ -5,9 +5,9 @@
 #                          the format of C++, the shell scripts and the structure of the sources checked; the tests of the
 #                          formats and the readers (but heavy ones) again with AddressSanitizer and
 #                          UndefinedBehaviorSanitizer and, where threads run, with ThreadSanitizer; a short run of each
-#                          fuzzer. The tests of what the command does otherwise in a build without HDF5, OpenVDB and all
-#                          else that is optional. On a machine so slow that CI would not end in time the last of these are
-#                          skipped, and that is said.
+#                          fuzzer; a build without HDF5, OpenVDB and all else that is optional, and the tests of what its
+#                          command does differently. On a machine so slow that CI would not end in time the last of these
+#                          are skipped, and that is said.
 #   tools/test.sh --full   besides, all tests, all of them with the sanitizers too, the property tests over a thousand
 #                          volumes, Zarr against npm's zarrita, AMReX against yt, and clang-tidy.
 # Says what it does and how long that took last time. Logs are in build/checks/. The last line is `N passed, N failed,

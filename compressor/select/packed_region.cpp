@@ -115,7 +115,7 @@ float shared_value(const RegionRows& rows, const Fill& fill, const SharedUse& us
   if (uniform && 2 * with_uniform >= all) return *uniform;
   if (const float median = median_of(rows, fill.background); 8 * that_do(median) >= 7 * all) return median;
   // Blocks of few voxels, as at a border, often have one value. What reads that instead of the mean is far off.
-  const bool spares = use.max_error || exact || 32 * with_uniform >= all;
+  const bool spares = use.max_error || exact || 128 * with_uniform >= all;
   return uniform && spares ? *uniform : mean;
 }
 

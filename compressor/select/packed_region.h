@@ -35,11 +35,17 @@ struct SharedUse {
   bool weighed = false;                            ///< a scene decides what matters
 };
 
-/// Of the region with those rows, in their order; `leaves` is the leaf lattice. The value is the commonest one of
-/// uniform blocks, where at least a 32nd of the voxels need no stream by it, or any where errors are bounded or a scene
-/// weighs; else the mean. But it is the median of the blocks' means where 7 of 8 voxels need none by that. A block
-/// needs none where its mean squared error is below a 64th of that of the region about its mean, or is within
-/// `max_error`.
+/// Of the region with those rows, in their order; `leaves` is the leaf lattice. A block needs no stream by a value that
+/// is within `max_error` of all of its own. Without `max_error`, its mean squared error by the value must be at most a
+/// 64th of the region's about its mean; where no block has a rung, it must read bit for bit. The region's value is the
+/// first of these:
+/// - where a scene weighs, the commonest value of uniform blocks, else the mean;
+/// - the commonest value of uniform blocks, if half of the voxels need no stream by it;
+/// - the median of the blocks' means, if 7 of 8 voxels need none by that;
+/// - the commonest value of uniform blocks, if a 128th of the voxels need none by it, errors are bounded or no block
+/// has
+///   a rung;
+/// - the mean.
 SharedValues shared_values(const RegionRows& rows, const NodeLattice& leaves, const Fill& fill, const SharedUse& use);
 
 /// What the streams of a region take and lose, from its blocks' ladders and the range of its means.

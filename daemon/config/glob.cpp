@@ -104,4 +104,9 @@ bool matches_glob(std::string_view pattern, std::string_view path) {
   return !patterns;
 }
 
+bool matches_pattern(std::string_view pattern, std::string_view path) {
+  const bool of_name = pattern.find('/') == std::string_view::npos;
+  return matches_glob(pattern, of_name ? path.substr(path.find_last_of('/') + 1) : path);
+}
+
 }  // namespace weir

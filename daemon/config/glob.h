@@ -11,4 +11,8 @@ namespace weir {
 /// no encoding, no locale, letter case counts. A set without its end is the bracket itself.
 bool matches_glob(std::string_view pattern, std::string_view path);
 
+/// As `include` and `exclude` have them: a pattern with a slash is of the whole path, one without of its last
+/// component.
+bool matches_pattern(std::string_view pattern, std::string_view path);
+
 }  // namespace weir

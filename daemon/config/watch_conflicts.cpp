@@ -81,27 +81,28 @@ bool includes_others(const WatchConfig& watch, std::string_view place) {
   return !watch.include.empty() && std::ranges::all_of(watch.include, lies_elsewhere);
 }
 
-/// Whether `watch` excludes from its sub-directory `place` all that `inner` includes there, by the same patterns.
+/// Whether `watch` excludes from its sub-directory `place` all that `inner` includes there, by the same patterns. One
+/// without a slash takes names at any depth: of a recursive `inner`, "place/**/" is to be before it.
 bool leaves_to(const WatchConfig& watch, const WatchConfig& inner, std::string_view place) {
   const auto excludes = [&](const std::string& pattern) {
-    return std::ranges::find(watch.exclude, cat(place, '/', pattern)) != watch.exclude.end();
+    const bool at_any_depth = inner.recursive && pattern.find('/') == std::string::npos;
+    return std::ranges::find(watch.exclude, cat(place, at_any_depth ? "/**/" : "/", pattern)) != watch.exclude.end();
   };
   return !inner.include.empty() && std::ranges::all_of(inner.include, excludes);
 }
 
-/// Whether a recursive watch takes no file right in its sub-directory `place`: it is hidden, or excluded. A name that
-/// nobody gives matches only what takes any name.
+/// Whether a recursive watch takes no file right in its sub-directory `place`: it is hidden, or excluded. For any name
+/// stands one that nobody gives, which a pattern without a set matches only where it matches every name.
 bool leaves_out(const WatchConfig& watch, std::string_view place) {
-  const auto is_excluded = [&](std::string_view path) {
+  const auto is_excluded = [&](std::string_view path, bool any_name = false) {
     return std::ranges::any_of(watch.exclude, [&](const std::string& pattern) {
-      const std::size_t name = pattern.find('/') == std::string::npos ? path.find_last_of('/') + 1 : 0;
-      return matches_glob(pattern, path.substr(name));
+      return !(any_name && pattern.find('[') != std::string::npos) && matches_pattern(pattern, path);
     });
   };
   if (place.starts_with('.') || place.find("/.") != std::string_view::npos) return true;
   for (std::size_t end = place.find('/');; end = place.find('/', end + 1)) {
     if (is_excluded(place.substr(0, end))) return true;
-    if (end == std::string_view::npos) return is_excluded(cat(place, "/\x01 any name \x01"));
+    if (end == std::string_view::npos) return is_excluded(cat(place, "/\x01 any name \x01"), true);
   }
 }
 

@@ -13,7 +13,6 @@
 #include "daemon/jobs/conversion_task.h"
 #include "daemon/jobs/outputs_fault.h"
 #include "daemon/store/file_identity.h"
-#include "daemon/watch/file_writers.h"
 #include "daemon/watch/path_filter.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
@@ -76,6 +75,7 @@ SourceDeletion::SourceDeletion(boost::asio::io_context& io, const JobStore& stor
 void SourceDeletion::configure(const DaemonConfig& config) {
   const std::vector<WatchConfig> before = std::exchange(watches_, {});
   waits_for_.clear();
+  away_.clear();
   markers_.clear();
   for (const WatchConfig& watch : config.watches) {
     if (watch.complete == Completion::marker) markers_[watch.label] = watch.marker;
@@ -297,8 +297,9 @@ SourceDeletion::Outcome SourceDeletion::remove(const Job& job, const FileWriters
 SourceDeletion::Outcome SourceDeletion::remove_hidden(const Job& job, bool writers_known) {
   const std::string doomed = hidden_name(job);
   const std::string marker = marker_of(job);
+  // Of one tick, too: the marker of the source was there before its conversion.
   const auto is_of_next_file = [&] {
-    return files_->exists(job.source) && look_at_file(marker).ctime_ns > look_at_file(doomed).ctime_ns;
+    return files_->exists(job.source) && look_at_file(marker).ctime_ns >= look_at_file(doomed).ctime_ns;
   };
   const bool has_marker = !marker.empty() && files_->exists(marker) && !is_of_next_file();
   try {

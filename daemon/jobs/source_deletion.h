@@ -90,7 +90,7 @@ class SourceDeletion {
   std::vector<WatchConfig> watches_;               ///< those that delete
   std::map<std::string, std::string> markers_;     ///< WatchConfig::marker by label, of those that wait for one
   std::map<std::int64_t, Due> due_;                ///< by job
-  std::set<std::string> away_;                     ///< labels of those that were said to wait for their directory
+  std::set<std::string> away_;                     ///< labels of watches whose directory was said to be missing
   std::map<std::int64_t, std::string> waits_for_;  ///< by job: what was said of it
   std::map<std::int64_t, std::int64_t>
       named_back_;  ///< by job: FileState::ctime_ns of sources that got their name back

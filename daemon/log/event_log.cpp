@@ -9,8 +9,8 @@
 #include <cstdio>
 #include <fstream>
 
-#include "daemon/log/plain_text.h"
 #include "format/base/error.h"
+#include "format/base/printable.h"
 
 namespace weir {
 namespace {

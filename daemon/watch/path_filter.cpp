@@ -30,9 +30,8 @@ bool is_no_plotfile_yet(std::string_view path) {
 // A plotfile goes by its directory's name, and so does a Zarr hierarchy.
 bool matches(const std::vector<std::string>& patterns, std::string_view path) {
   if (is_plotfile_head(path) || is_store_head(path)) path = named_by_head(path);
-  return std::any_of(patterns.begin(), patterns.end(), [&](const std::string& pattern) {
-    return matches_glob(pattern, pattern.find('/') == std::string::npos ? name_of(path) : path);
-  });
+  return std::any_of(patterns.begin(), patterns.end(),
+                     [&](const std::string& pattern) { return matches_pattern(pattern, path); });
 }
 
 bool is_known_format(std::string_view path, bool any_raw) {

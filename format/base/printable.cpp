@@ -10,20 +10,15 @@
 namespace weir {
 namespace {
 
-/// Bytes of the character that `text` begins with; 0 where that is a control character or no UTF-8.
-std::size_t shown_bytes(std::string_view text) {
-  const auto first = static_cast<unsigned char>(text.front());
-  if (first < 0x20 || first == 0x7F) return 0;
-  const std::size_t bytes = utf8_bytes(text);
-  const bool control = bytes == 2 && first == 0xC2 && static_cast<unsigned char>(text[1]) < 0xA0;  // to U+009F
-  return control ? 0 : bytes;
+bool is_between(std::string_view character, std::string_view first, std::string_view last) {
+  return character.size() == first.size() && character >= first && character <= last;  // as bytes without a sign
 }
 
 template <typename Escape>
 std::string escaped(std::string_view text, const Escape& escape) {
   std::string shown;
   while (!text.empty()) {
-    const std::size_t plain = shown_bytes(text);
+    const std::size_t plain = plain_bytes(text);
     shown += plain != 0 ? std::string(text.substr(0, plain)) : escape(text.front());
     text.remove_prefix(std::max<std::size_t>(plain, 1));
   }
@@ -36,6 +31,15 @@ std::string escape_of(char c) {
 }
 
 }  // namespace
+
+std::size_t plain_bytes(std::string_view text) {
+  const std::string_view character = text.substr(0, utf8_bytes(text));
+  const bool steers = is_between(character, std::string_view("\0", 1), "\x1f") || character == "\x7f" ||
+                      is_between(character, "\xc2\x80", "\xc2\x9f") ||
+                      is_between(character, "\xe2\x80\xa8", "\xe2\x80\xae") ||  // U+2028 to U+202E
+                      is_between(character, "\xe2\x81\xa6", "\xe2\x81\xa9");    // U+2066 to U+2069
+  return steers ? 0 : character.size();
+}
 
 std::string printable(const std::string& text) {
   return escaped(text, [](char) { return std::string("?"); });

@@ -10,7 +10,7 @@ namespace weir {
 bool is_unit_of_time(std::string_view unit);
 
 /// Whether `unit` is one that an axis of space has: of a length, an angle, a pressure or a level, by the same names.
-/// One letter counts in its own case only: m is a metre, M the mass of a black hole, a a year.
+/// One letter counts in its own case only: m is a metre and A an angstrom; M and a are neither.
 bool is_unit_of_space(std::string_view unit);
 
 }  // namespace weir

@@ -17,8 +17,9 @@ struct AxisWords {
 
 /// By the conventions of CF (4.4): axis T, a standard name of a time, units "... since ..."; by the name time, unless
 /// the units are of a length, an angle, a pressure or a level; by units of time where the name is t or begins with
-/// time; and a dimension that grows, in units of time or in none (a number of steps is none), where neither attributes
-/// nor its own name say that it is of space. Units of time alone are none: a seismic volume's depth is a travel time.
+/// time; and a dimension that grows, in units of time or in none (a number of steps is none), where it has no other
+/// standard name and its own name is none of space. Axis X, Y or Z, or `positive`, outweighs all of these but the
+/// standard name. Units of time alone are none: a seismic volume's depth is a travel time.
 bool is_time_axis(const AxisWords& words);
 
 }  // namespace weir

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "daemon/log/plain_text.h"
+#include "format/base/printable.h"
 #include "format/base/text.h"
 
 namespace weir {
@@ -21,7 +21,7 @@ std::string right(const std::string& text, std::size_t width) {
   return std::string(width - std::min(width, text.size()), ' ') + text;
 }
 
-std::string text_at(const Json& json, const char* key) { return masked_text(json.at(key).get<std::string>()); }
+std::string text_at(const Json& json, const char* key) { return printable(json.at(key).get<std::string>()); }
 
 std::string bytes_at(const Json& json, const char* key) { return format_bytes(json.at(key).get<std::uint64_t>()); }
 

@@ -28,7 +28,7 @@ void place_by_level(const FoundLevel& found, ArrayAxes& axes) {
   }
   const bool fits = level.scale.size() == rank;
   for (std::size_t axis = 0; axis < rank; ++axis) {
-    if (!fits && axes.places[axis].is_time) continue;  // a position is no time
+    if (!fits && axes.places[axis].is_time) continue;  // without a scale, its index is no value of time
     axes.places[axis].spacing = fits ? level.scale[axis] : 1.0;
     axes.places[axis].origin = fits ? level.translation[axis] : 0.0;
     axes.places[axis].spacing_from = cat("coordinateTransformations in ", found.image.document);

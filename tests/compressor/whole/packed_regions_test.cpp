@@ -32,6 +32,11 @@ MemoryVolume partly_filled(float fill) {
   return {kCube, [fill](const Index3& i) { return 10 * i.x + 7 * i.y > 700 ? fill : rough(i); }};
 }
 
+// But for one block of zeros.
+MemoryVolume nearly_constant() {
+  return {kCube, [](const Index3& i) { return i.x < 8 && i.y < 8 && i.z < 8 ? 0.0F : 100 + 1e-3F * rough(i); }};
+}
+
 TEST(PackedRegions, WhereFillValuesAreFarFromTheOthers_TheOthersAreMeans) {
   const ConversionOptions options = packed(Budget::Kind::psnr, 60);
   MemoryVolume near_volume = partly_filled(1e6F);
@@ -69,8 +74,7 @@ TEST(PackedRegions, InTheSmallestFile_OneBlockOfOneValueIsNotReadEverywhere) {
 }
 
 TEST(PackedRegions, NearlyConstantButForOneBlock_ThatBlockAloneHasAStream) {
-  const auto value = [](const Index3& i) { return i.x < 8 && i.y < 8 && i.z < 8 ? 0.0F : 100 + 1e-3F * rough(i); };
-  MemoryVolume volume(kCube, value);
+  MemoryVolume volume = nearly_constant();
   const ConversionOptions options = packed(Budget::Kind::psnr, 70);
   const Converted converted = test::convert(volume, options);
   EXPECT_EQ(converted.sidecar.selection.leaves_kept, 1U);
@@ -87,8 +91,7 @@ TEST(PackedRegions, BlocksOfTheBackgroundThatAreMany_HaveNoStream) {
 }
 
 TEST(PackedRegions, WithinALargestError_BlocksThatReadTheMedianHaveNoStream) {
-  const auto value = [](const Index3& i) { return i.x < 8 && i.y < 8 && i.z < 8 ? 0.0F : 100 + 1e-3F * rough(i); };
-  MemoryVolume volume(kCube, value);
+  MemoryVolume volume = nearly_constant();
   const ConversionOptions options = packed(Budget::Kind::max_error, 0.01);
   const Converted converted = test::convert(volume, options);
   EXPECT_EQ(converted.sidecar.selection.leaves_kept, 1U);

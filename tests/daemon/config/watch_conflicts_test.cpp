@@ -104,7 +104,7 @@ TEST(WatchConflicts, SubdirectoryExcludedFromTheOuterWatch_DoesNotConflict) {
     outer.exclude = {pattern};
     EXPECT_EQ(conflict({outer, inner}), "") << pattern;
   }
-  for (const char* pattern : {"su", "sub/deep/*.raw", "*.raw", "deep/*"}) {
+  for (const char* pattern : {"su", "sub/deep/*.raw", "sub/deep/[!r]*", "*.raw", "deep/*"}) {
     outer.exclude = {pattern};
     EXPECT_NE(conflict({outer, inner}), "") << pattern;
   }
@@ -122,6 +122,10 @@ TEST(WatchConflicts, PatternsThatKeepSubdirectoriesApart_MakeNoConflict) {
   outer.exclude = {"run2/*.raw"};
   EXPECT_NE(conflict({outer, inner}), "");
   inner.include = {"*.raw"};
+  EXPECT_EQ(conflict({outer, inner}), "");
+  inner.recursive = true;
+  EXPECT_NE(conflict({outer, inner}), "") << "run2/a/b.raw";
+  outer.exclude = {"run2/**/*.raw"};
   EXPECT_EQ(conflict({outer, inner}), "");
 }
 

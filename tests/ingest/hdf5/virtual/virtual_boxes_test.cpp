@@ -321,7 +321,7 @@ whole("bad source.h5", [(S[...], V("bad.h5", "v", (4, 4, 4)))])
                                        "its name says, or its beginning is lost");
 }
 
-// h5repack copies a virtual dataset as one, unless it is told a layout.
+// Without a layout, h5repack copies a virtual dataset as a virtual one.
 TEST_F(VirtualDataset, MappingsThatAreNotFollowed_AreRefusedWithTheCommandThatHelps) {
   write_by_h5py(scratch_, R"(
 from h5py import h5s, h5p, h5d
