@@ -220,7 +220,7 @@ StatusView ServiceControl::status() {
   view.version = state_.version;
   view.config = state_.config;
   const std::string hold = runner_.hold();
-  view.reason = hold.empty() ? runner_.waits_for_room() : hold;
+  view.reason = hold.empty() ? runner_.waits_for_disks() : hold;
   view.state = state_.stopping ? "stopping" : hold.empty() ? "running" : "paused";
   view.started_at = started_at_;
   view.queue_age_s = seconds_of(store_.queue_age_ms().value_or(0));

@@ -82,8 +82,9 @@ struct WatchConfig {
   std::string label;      ///< unique; names the watch in state, logs and metrics; default: its directory
   std::string directory;  ///< need not exist yet
   bool recursive = false;
-  std::string output;                ///< sub-directories of a recursive watch are repeated below it
-  std::string name;                  ///< template of output names, "{stem}.nvdb"; empty: convert's default
+  std::string output;        ///< sub-directories of a recursive watch are repeated below it
+  std::string output_mount;  ///< `output` is here or below; jobs wait while nothing is mounted here; empty: none
+  std::string name;          ///< template of output names, "{stem}.nvdb"; empty: convert's default
   std::vector<std::string> include;  ///< globs; empty: names of known formats, see PathFilter
   std::vector<std::string> exclude;  ///< globs
   /// Absolute; these and all below them are never sources: outputs of every watch, work directory, the

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-/// How often a full disk, a state file that cannot be written and short memory are looked at again.
+/// How often full disks, missing mounts, a state file that cannot be written and short memory are looked at again.
 constexpr milliseconds kLook{1000};
 /// A process that was asked to end and does not.
 constexpr milliseconds kAbandon{5000};
@@ -42,6 +42,7 @@ JobRunner::JobRunner(boost::asio::io_context& io, JobStore& store, const EventLo
       writes_(log),
       scheduler_(SchedulerLimits{}),
       deletion_(io, store, log, [this] { return stopping_ || scheduler_.paused(); }),
+      mounts_(log),
       timer_(io),
       grace_timer_(io) {}
 
@@ -51,8 +52,13 @@ void JobRunner::configure(const DaemonConfig& config) {
   scheduler_.set_limits({service.jobs, job_memory(service), service.bandwidth});
   forget_other_watches();
   std::vector<std::string> outputs;
-  for (const WatchConfig& watch : config.watches) outputs.push_back(watch.output);
+  std::vector<std::string> mounts;
+  for (const WatchConfig& watch : config.watches) {
+    outputs.push_back(watch.output);
+    mounts.push_back(watch.output_mount);
+  }
   disks_.watch(outputs);
+  mounts_.keep(mounts);
   writes_.add([this] { deletion_.configure(config_); });
 }
 
@@ -102,12 +108,13 @@ bool JobRunner::start_next() {
 }
 
 // The first that may start: a job may wait again while the processes of its last attempt still end, or for room.
-std::optional<Job> JobRunner::next_job(const WatchConfig& watch) const {
+std::optional<Job> JobRunner::next_job(const WatchConfig& watch) {
   constexpr std::size_t kMostLooked = 100;  // for one that fits where the first does not
   const std::size_t looked = full_disks_.empty() ? running_.size() + 1 : kMostLooked;
   const std::vector<Job> candidates = store_.candidates(watch.label, watch.priority, looked);
   // WatchedTree wakes the runner once it is back.
   if (candidates.empty() || !is_directory(watch.directory)) return std::nullopt;
+  if (!mounts_.mounted(watch.output_mount)) return std::nullopt;
   for (const Job& job : candidates) {
     if (running_.contains(job.id)) continue;
     if (full_disks_.empty()) return job;
@@ -286,7 +293,7 @@ void JobRunner::arm_timer() {
   }
   auto delay = milliseconds::max();
   const Clock::time_point now = Clock::now();
-  if (!writes_.fault().empty() || !full_disks_.empty() || !running_.empty()) delay = kLook;
+  if (!writes_.fault().empty() || !full_disks_.empty() || !mounts_.all_mounted() || !running_.empty()) delay = kLook;
   if (const auto until = scheduler_.bandwidth_until(now)) {
     delay = std::min(delay, std::chrono::ceil<milliseconds>(*until - now));
   }

@@ -17,6 +17,7 @@
 #include "daemon/config/config.h"
 #include "daemon/disks/full_disks.h"
 #include "daemon/disks/output_disks.h"
+#include "daemon/disks/output_mounts.h"
 #include "daemon/jobs/conversion_job.h"
 #include "daemon/jobs/job_figures.h"
 #include "daemon/jobs/pending_writes.h"
@@ -63,8 +64,8 @@ class JobRunner {
   /// Why nothing starts, in words: the state file cannot be written, no output's file system has room, or it was asked
   /// for. Empty: nothing prevents it.
   std::string hold() const;
-  /// Which file systems jobs wait for, those on others going on; empty: none.
-  std::string waits_for_room() const;
+  /// Which file systems jobs wait for, because they are full or not mounted. Jobs on others go on. Empty: none.
+  std::string waits_for_disks() const;
   bool paused() const { return scheduler_.paused(); }
   /// Why the state file cannot be written; empty: it can.
   const std::string& store_fault() const { return writes_.fault(); }
@@ -103,7 +104,8 @@ class JobRunner {
   void disk_full(const RunningJob& run, const TaskReport& report);
   void hold_disk(const RunningJob& run, const TaskReport& report, const DiskRoom& room, std::uint64_t needed);
   bool no_disk_has_room() const;
-  bool rendering_waits(const WatchConfig& watch, const Job& job) const;
+  std::string waits_for_room() const;
+  bool rendering_waits(const WatchConfig& watch, const Job& job);
   void rendering_ended(const RunningJob& run, const TaskReport& report);
   void end_stop_after(std::chrono::milliseconds patience);
   void end_stop();
@@ -112,7 +114,7 @@ class JobRunner {
   void arm_timer();
   void look_at_disks();
   void look_for_stalls();
-  std::optional<Job> next_job(const WatchConfig& watch) const;
+  std::optional<Job> next_job(const WatchConfig& watch);
   const WatchConfig* watch_of(const std::string& label) const;
 
   boost::asio::io_context& io_;
@@ -129,6 +131,7 @@ class JobRunner {
   std::vector<std::int64_t> unrendered_;  ///< done jobs whose thumbnails are to come, the next one last
   JobFigures figures_;
   OutputDisks disks_;
+  OutputMounts mounts_;
   boost::asio::steady_timer timer_;
   boost::asio::steady_timer grace_timer_;
   std::function<void()> stopped_;

@@ -56,6 +56,7 @@ void JobRunner::output_busy(const RunningJob& run, const TaskReport& report) {
 }
 
 void JobRunner::look_at_disks() {
+  mounts_.look();
   const auto free_of = [this](const std::string& directory) {
     return disks_.room(directory).value_or(DiskRoom{}).free;
   };
@@ -78,6 +79,11 @@ bool JobRunner::no_disk_has_room() const {
   if (work_room && !hold_of(*work_room).empty()) return true;
   const std::vector<OutputDisk> all = disks();
   return std::ranges::all_of(all, [this](const OutputDisk& disk) { return !hold_of(disk.room).empty(); });
+}
+
+std::string JobRunner::waits_for_disks() const {
+  const std::string room = waits_for_room();
+  return cat(room, room.empty() || mounts_.all_mounted() ? "" : "; ", mounts_.text());
 }
 
 // First the file systems that have no outputs, as that of work_dir, which all jobs may wait for.

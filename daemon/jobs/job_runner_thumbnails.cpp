@@ -47,7 +47,8 @@ bool JobRunner::start_next_rendering() {
 }
 
 // Where that is not known yet, in this round.
-bool JobRunner::rendering_waits(const WatchConfig& watch, const Job& job) const {
+bool JobRunner::rendering_waits(const WatchConfig& watch, const Job& job) {
+  if (!mounts_.mounted(watch.output_mount)) return true;
   if (full_disks_.empty()) return false;
   const std::optional<DiskRoom> room = disks_.room(output_directory(watch, job.source));
   return !room || !full_disks_.directory_on(room->device).empty();

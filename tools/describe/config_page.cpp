@@ -41,6 +41,8 @@ constexpr ConfigKey kConfigKeys[] = {
     {"service", "log_files", "5", "rotated files that are kept"},
     {"watch", "directory", "", "that is watched; need not exist yet"},
     {"watch", "output", "", "where results go"},
+    {"watch", "output_mount", "none",
+     "directory at which the file system of the output is mounted; jobs wait while nothing is mounted there"},
     {"watch", "label", "the directory", "name in state, log and metrics"},
     {"watch", "recursive", "false", "watch what is below, too"},
     {"watch", "include", "names of known formats",

@@ -23,9 +23,10 @@ class CheckAccess : public testing::Test {
     fs::permissions(directory_.path(), fs::perms::owner_all | fs::perms::others_read | fs::perms::others_exec);
     configure();
   }
-  void configure(const std::string& service = "state = 'state/weir.db'\n", const std::string& directory = "in") const {
+  void configure(const std::string& service = "state = 'state/weir.db'\n", const std::string& directory = "in",
+                 const std::string& more = "") const {
     write_file(directory_ / "weir.toml",
-               cat("[service]\n", service, "[[watch]]\ndirectory = '", directory, "'\noutput = 'out/deep'\n"));
+               cat("[service]\n", service, "[[watch]]\ndirectory = '", directory, "'\noutput = 'out/deep'\n", more));
   }
   /// As nobody, whom permissions stop, where the test runs as root, whom they do not.
   CommandResult check() const {
@@ -93,6 +94,17 @@ TEST_F(CheckAccess, OutputNotWritable_IsRefused) {
   allow("state", true);
   allow("out", false);
   expect_refused(directory_ / "out", "output", "written to");
+}
+
+// While nothing is mounted there, only root may write to the mount point: see docs/operations.md.
+TEST_F(CheckAccess, OutputOfAFileSystemThatIsNotMounted_IsNotLookedAt) {
+  allow("state", true);
+  allow("out", false);
+  configure("state = 'state/weir.db'\n", "in", "output_mount = 'out'\n");
+  const CommandResult result = check();
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const std::string said = cat("\n  mount       ", directory_ / "out", ", where no file system is mounted now\n");
+  EXPECT_NE(result.out.find(said), std::string::npos) << result.out;
 }
 
 TEST_F(CheckAccess, DirectoryNotReadable_IsRefused) {

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "format/base/error.h"
+#include "format/base/text.h"
 #include "tests/support/message_of_error.h"
 #include "tests/support/run_command.h"
 #include "tests/support/temporary_directory.h"
@@ -104,6 +105,7 @@ log_files = 9
 label = "density"
 directory = "../run/./42/"
 output = "/scratch/nvdb"
+output_mount = "/scratch"
 recursive = true
 include = ["*.h5", "*.nc"]
 exclude = ["checkpoint*"]
@@ -147,6 +149,7 @@ index = [0, "*"]
   EXPECT_EQ(watch.label, "density");
   EXPECT_EQ(watch.directory, (directory_.path().parent_path() / "run/42").string());
   EXPECT_EQ(watch.output, "/scratch/nvdb");
+  EXPECT_EQ(watch.output_mount, "/scratch");
   EXPECT_TRUE(watch.recursive);
   EXPECT_EQ(watch.include, (std::vector<std::string>{"*.h5", "*.nc"}));
   EXPECT_EQ(watch.exclude, std::vector<std::string>{"checkpoint*"});
@@ -303,6 +306,14 @@ TEST_F(Config, ATokenFromAFile) {
   EXPECT_EQ(refusal(service + "token = 'other'\n" + kWatch), "2:14: token and token_file exclude each other; give one");
   write_file(file, " \n");
   EXPECT_EQ(refusal(service + kWatch), "2:14: the token is empty; openssl rand -hex 32 makes one");
+}
+
+TEST_F(Config, OutputMount_IsTheOutputOrADirectoryAboveIt) {
+  EXPECT_EQ(watch_refusal("output_mount = 'out'"), "");
+  EXPECT_EQ(watch_refusal("output_mount = '/'"), "");
+  EXPECT_EQ(watch_refusal("output_mount = 'out/deep'"),
+            cat("4:16: output_mount is ", directory_ / "out/deep", ", and the output ", directory_ / "out",
+                " does not lie below it; name the directory at which its file system is mounted"));
 }
 
 TEST_F(Config, WrongValuesOfAWatch) {

@@ -69,7 +69,7 @@ TEST_F(JobRunnerDisksTest, FullDiskOfNeitherOutputNorWorkDir_IsTriedAgainAfterAW
   run_for(milliseconds(1500));
   EXPECT_EQ(starts(), 1U) << "started again and again";
   EXPECT_EQ(runner.hold(), "") << "others may find room where they spill";
-  EXPECT_EQ(runner.waits_for_room(), "no room in /proc");
+  EXPECT_EQ(runner.waits_for_disks(), "no room in /proc");
 }
 
 TEST_F(JobRunnerDisksTest, FullWorkDir_IsWaitedForByAll) {
@@ -100,7 +100,7 @@ TEST_F(JobRunnerDisksTest, FullDiskOfOneOutput_HoldsOnlyItsJobs) {
   run_until([&] { return state(waits) == JobState::waiting && runner.disks().size() == 2; });
   const Job goes_on = add("b", "two");
   EXPECT_EQ(runner.hold(), "") << "nothing is paused";
-  EXPECT_TRUE(runner.waits_for_room().starts_with("no room in /proc, where ")) << runner.waits_for_room();
+  EXPECT_TRUE(runner.waits_for_disks().starts_with("no room in /proc, where ")) << runner.waits_for_disks();
   run_until([&] { return state(goes_on) == JobState::done; });
   EXPECT_EQ(state(waits), JobState::waiting);
   runner.pause();
@@ -145,6 +145,46 @@ TEST_F(JobRunnerDisksTest, ThumbnailThatFindsNoRoom_IsRenderedWhenThereIsSome) {
   EXPECT_EQ(store_.job(job.id)->result.outputs.at(0).thumbnail, out + "/one_24x20x16_uint8.nvdb.png");
   EXPECT_TRUE(fs::exists(out + "/one_24x20x16_uint8.nvdb.png"));
   EXPECT_EQ(runner.figures().totals().done, 1U);
+}
+
+// A link stands for the mount point: first it leads to a plain directory, then to a mounted file system.
+TEST_F(JobRunnerDisksTest, OutputMountWithoutAFileSystem_HoldsOnlyItsJobs) {
+  const std::string mount = directory_ / "mount";
+  fs::create_directory_symlink(directory_.path(), mount);
+  config_.watches[0].output_mount = mount;
+  runner_.configure(config_);
+  const Job waits = add("a", "one");
+  const Job goes_on = add("b", "two");
+  runner_.wake();
+  run_until([&] { return state(goes_on) == JobState::done; });
+  run_for(milliseconds(1500));
+  EXPECT_EQ(state(waits), JobState::waiting);
+  EXPECT_EQ(store_.job(waits.id)->attempts, 0);
+  EXPECT_EQ(runner_.hold(), "") << "nothing is paused";
+  EXPECT_EQ(runner_.waits_for_disks(), cat("no file system is mounted at ", mount));
+
+  fs::remove(mount);
+  fs::create_directory_symlink("/proc", mount);
+  run_until([&] { return state(waits) == JobState::done; });
+  EXPECT_EQ(runner_.waits_for_disks(), "");
+  const std::string log = read_file(config_.service.log_file);
+  const std::string said = cat(" error output-not-mounted mount=", mount, " reason=");
+  ASSERT_NE(log.find(said), std::string::npos) << log;
+  EXPECT_EQ(log.find(said), log.rfind(said)) << "said more than once";
+  EXPECT_NE(log.find(cat(" info output-mounted mount=", mount, "\n")), std::string::npos) << log;
+}
+
+TEST_F(JobRunnerDisksTest, ConfigurationWithoutTheOutputMount_StartsTheJobsThatWaitedForIt) {
+  config_.watches[0].output_mount = directory_.path();
+  runner_.configure(config_);
+  const Job job = add("a", "one");
+  runner_.wake();
+  EXPECT_EQ(runner_.waits_for_disks(), cat("no file system is mounted at ", directory_.path().string()));
+  config_.watches[0].output_mount.clear();
+  runner_.configure(config_);
+  EXPECT_EQ(runner_.waits_for_disks(), "");
+  runner_.wake();
+  run_until([&] { return state(job) == JobState::done; });
 }
 
 }  // namespace

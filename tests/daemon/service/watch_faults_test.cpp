@@ -122,6 +122,24 @@ TEST(WatchFaults, AFullDiskPausesUntilThereIsRoom) {
   EXPECT_EQ(service.stop(), 0);
 }
 
+TEST(WatchFaults, OutputNotMounted_JobsWaitAndNothingIsWrittenBelowTheMountPoint) {
+  ServiceHarness service("", "output_mount = \"out\"\nsettle = 0.2\n");
+  service.start();
+  const std::string name = service.add("one", 3);
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" output-not-mounted ") == 1; })) << service.log();
+  const auto status = service.get("/api/status");
+  EXPECT_EQ(status["state"], "running");
+  EXPECT_EQ(status["reason"], "no file system is mounted at " + service.out().substr(0, service.out().size() - 1));
+  EXPECT_EQ(service.count("waiting"), 1U);
+  EXPECT_EQ(list_directory(service.out()), Names{});
+  ScopedMount mount(service.out(), 8 << 20);
+  if (!mount.refused().empty()) GTEST_SKIP() << mount.refused();
+  ASSERT_TRUE(service.eventually_done(1)) << service.log();
+  EXPECT_EQ(service.difference(name + ".raw", name + ".nvdb"), "");
+  EXPECT_EQ(service.logged(" output-mounted "), 1U);
+  EXPECT_EQ(service.stop(), 0);
+}
+
 // One output is larger than the rest of its disk, and one than the whole of another: neither holds up what fits.
 TEST(WatchFaults, OutputThatDoesNotFit_DelaysOnlyJobsAsLargeOnThatDisk) {
   ServiceHarness service("", "size = \"400000\"\nsettle = 0.2\n");
