@@ -23,16 +23,45 @@ const std::array<double, kMostStep - kLeastStep + 1> kMeanErrors = [] {
   return errors;
 }();
 
-// The value that most uniform blocks have; of several the one of the lowest bits.
-std::optional<float> commonest_uniform(const RegionRows& rows, const Fill& fill) {
-  std::vector<std::uint32_t> values;
+// A block without a finite value counts as whole.
+std::uint64_t voxels_of(const LeafRow& row) { return row.finite == 0 ? std::uint64_t{kLeafVoxels} : row.finite; }
+
+// Returns whether every voxel of the block is read as `value`, to the bit, if the block has no stream and the region's
+// blocks without a stream read `value`.
+bool reads_exactly(const LeafRow& row, float value, const Fill& fill) {
+  if (row.finite == 0) return fill.non_finite != NonFinitePolicy::keep && Fill::same_bits(fill.background, value);
+  return Fill::keeps_values(row, value);
+}
+
+struct RegionSums {
+  std::uint64_t voxels = 0;            // by voxels_of()
+  float mean = 0;                      // of the finite voxels; the background if there are none
+  std::vector<std::uint32_t> uniform;  // the bits of each uniform block's value
+};
+
+RegionSums sum_region(const RegionRows& rows, const Fill& fill) {
+  RegionSums sums;
+  CompensatedSum sum;
+  std::uint64_t finite = 0;
   rows.for_each([&](const Index3&, const LeafRow& row) {
-    if (row.uniform()) values.push_back(std::bit_cast<std::uint32_t>(row.mean));
+    sums.voxels += voxels_of(row);
+    sum.add(static_cast<double>(row.mean) * row.finite);
+    finite += row.finite;
+    if (row.uniform()) sums.uniform.push_back(std::bit_cast<std::uint32_t>(row.mean));
     if (row.finite == 0 && fill.non_finite != NonFinitePolicy::keep) {
-      values.push_back(std::bit_cast<std::uint32_t>(fill.background));
+      sums.uniform.push_back(std::bit_cast<std::uint32_t>(fill.background));
     }
   });
+  sums.mean = finite == 0 ? fill.background : static_cast<float>(sum.value() / static_cast<double>(finite));
+  return sums;
+}
+
+// Returns the value that most uniform blocks have. If several are equally frequent, the one of the lowest bits wins.
+std::optional<float> commonest(std::vector<std::uint32_t> values) {
   if (values.empty()) return std::nullopt;
+  if (std::ranges::all_of(values, [&](std::uint32_t value) { return value == values.front(); })) {
+    return std::bit_cast<float>(values.front());
+  }
   std::sort(values.begin(), values.end());
   std::size_t best = 0;
   std::size_t most = 0;
@@ -46,16 +75,6 @@ std::optional<float> commonest_uniform(const RegionRows& rows, const Fill& fill)
     first += count;
   }
   return std::bit_cast<float>(values[best]);
-}
-
-float mean_of(const RegionRows& rows, float fallback) {
-  CompensatedSum sum;
-  std::uint64_t count = 0;
-  rows.for_each([&](const Index3&, const LeafRow& row) {
-    sum.add(static_cast<double>(row.mean) * row.finite);
-    count += row.finite;
-  });
-  return count == 0 ? fallback : static_cast<float>(sum.value() / static_cast<double>(count));
 }
 
 // The median of the blocks' means, each counted by its finite voxels.
@@ -85,38 +104,72 @@ bool has_rungs(const RegionRows& rows) {
   return found;
 }
 
-// A block without a finite value counts as whole.
-std::uint64_t voxels_of(const LeafRow& row) { return row.finite == 0 ? std::uint64_t{kLeafVoxels} : row.finite; }
+// Says which blocks of a region are read well enough without a stream, if such blocks read a given value.
+class SpareRule {
+ public:
+  SpareRule(const RegionRows& rows, const RegionSums& sums, const Fill& fill, const SharedUse& use)
+      : fill_(fill), use_(use), exact_(!use.max_error && !has_rungs(rows)) {
+    if (use.max_error || exact_) return;
+    CompensatedSum about_mean;
+    rows.for_each([&](const Index3&, const LeafRow& row) { about_mean.add(row.sse_about(sums.mean)); });
+    small_ = about_mean.value() / static_cast<double>(64 * sums.voxels);
+  }
+
+  // Whether this rule demands exact values or a largest error, not only a small squared error.
+  bool is_strict() const { return use_.max_error.has_value() || exact_; }
+
+  bool spares(const LeafRow& row, float value) const {
+    if (row.finite == 0 || exact_) return reads_exactly(row, value, fill_);
+    if (use_.max_error) return row.max_abs_about(value) <= *use_.max_error;
+    return row.sse_about(value) <= small_ * row.finite;
+  }
+
+  // False only if spares() is false for every value. The margin is for the rounding of spares().
+  bool may_spare(const LeafRow& row) const {
+    constexpr double kMargin = 1e-9;
+    if (row.finite == 0) return fill_.non_finite != NonFinitePolicy::keep;
+    if (exact_) return row.uniform();
+    if (use_.max_error) {
+      const double width = static_cast<double>(row.max) - static_cast<double>(row.min);
+      return width <= 2 * *use_.max_error * (1 + kMargin);
+    }
+    const double residual = static_cast<double>(row.residual);
+    const double off_mean = residual * residual / row.finite;  // sse_about() is least at the mean before rounding
+    return row.sse - off_mean - kMargin * (row.sse + off_mean) <= small_ * row.finite;
+  }
+
+ private:
+  const Fill& fill_;
+  const SharedUse& use_;
+  bool exact_;        // no block has anything between its mean and its exact values
+  double small_ = 0;  // the squared error of a voxel that is not worth a stream
+};
 
 float shared_value(const RegionRows& rows, const Fill& fill, const SharedUse& use) {
-  const std::optional<float> uniform = commonest_uniform(rows, fill);
-  if (use.weighed) return uniform ? *uniform : mean_of(rows, fill.background);
-  const bool exact = !use.max_error && !has_rungs(rows);
-  const float mean = mean_of(rows, fill.background);
-  std::uint64_t all = 0;
-  CompensatedSum about_mean;
-  rows.for_each([&](const Index3&, const LeafRow& row) {
-    all += voxels_of(row);
-    about_mean.add(row.sse_about(mean));
-  });
-  const double small = about_mean.value() / static_cast<double>(64 * all);  // squared error of a voxel
-  const auto does = [&](const LeafRow& row, float value) {
-    if (row.finite == 0) return fill.non_finite != NonFinitePolicy::keep && Fill::same_bits(fill.background, value);
-    if (use.max_error) return row.max_abs_about(value) <= *use.max_error;
-    if (exact) return Fill::keeps_values(row, value);
-    return row.sse_about(value) <= small * row.finite;
-  };
-  const auto that_do = [&](float value) {
+  const RegionSums sums = sum_region(rows, fill);
+  const std::uint64_t all = sums.voxels;
+  const std::optional<float> uniform = commonest(sums.uniform);
+  if (use.weighed) return uniform.value_or(sums.mean);
+  const auto voxels_if = [&](const auto& holds) {
     std::uint64_t voxels = 0;
-    rows.for_each([&](const Index3&, const LeafRow& row) { voxels += does(row, value) ? voxels_of(row) : 0; });
+    rows.for_each([&](const Index3&, const LeafRow& row) { voxels += holds(row) ? voxels_of(row) : 0; });
     return voxels;
   };
-  const std::uint64_t with_uniform = uniform ? that_do(*uniform) : 0;
+  if (uniform && 2 * voxels_if([&](const LeafRow& row) { return reads_exactly(row, *uniform, fill); }) >= all) {
+    return *uniform;
+  }
+  const SpareRule rule(rows, sums, fill, use);
+  const auto spared_by = [&](float value) {
+    return voxels_if([&](const LeafRow& row) { return rule.spares(row, value); });
+  };
+  const std::uint64_t with_uniform = uniform ? spared_by(*uniform) : 0;
   if (uniform && 2 * with_uniform >= all) return *uniform;
-  if (const float median = median_of(rows, fill.background); 8 * that_do(median) >= 7 * all) return median;
+  if (8 * voxels_if([&](const LeafRow& row) { return rule.may_spare(row); }) >= 7 * all) {
+    if (const float median = median_of(rows, fill.background); 8 * spared_by(median) >= 7 * all) return median;
+  }
   // Blocks of few voxels, as at a border, often have one value. What reads that instead of the mean is far off.
-  const bool spares = use.max_error || exact || 128 * with_uniform >= all;
-  return uniform && spares ? *uniform : mean;
+  const bool spares = rule.is_strict() || 128 * with_uniform >= all;
+  return uniform && spares ? *uniform : sums.mean;
 }
 
 // The means that a block's stream may have. `whole`: it has no voxels outside the domain, which would take part in the
