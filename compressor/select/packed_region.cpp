@@ -23,7 +23,7 @@ const std::array<double, kMostStep - kLeastStep + 1> kMeanErrors = [] {
   return errors;
 }();
 
-// The value that most uniform blocks have; of several the one of the lowest bits.
+// Returns the value that most uniform blocks have; of several such values, the one with the lowest bits.
 std::optional<float> commonest_uniform(const RegionRows& rows, const Fill& fill) {
   std::vector<std::uint32_t> values;
   rows.for_each([&](const Index3&, const LeafRow& row) {
@@ -58,7 +58,7 @@ float mean_of(const RegionRows& rows, float fallback) {
   return count == 0 ? fallback : static_cast<float>(sum.value() / static_cast<double>(count));
 }
 
-// The median of the blocks' means, each counted by its finite voxels.
+// Returns the median of the blocks' means, each weighted by its finite voxels.
 float median_of(const RegionRows& rows, float fallback) {
   std::vector<std::pair<float, std::uint32_t>> means;
   std::uint64_t count = 0;
@@ -114,7 +114,8 @@ float shared_value(const RegionRows& rows, const Fill& fill, const SharedUse& us
   const std::uint64_t with_uniform = uniform ? that_do(*uniform) : 0;
   if (uniform && 2 * with_uniform >= all) return *uniform;
   if (const float median = median_of(rows, fill.background); 8 * that_do(median) >= 7 * all) return median;
-  // Blocks of few voxels, as at a border, often have one value. What reads that instead of the mean is far off.
+  // Blocks of few voxels, for example at a border, often have one value. A block that reads that value instead of the
+  // mean is far off.
   const bool spares = use.max_error || exact || 128 * with_uniform >= all;
   return uniform && spares ? *uniform : mean;
 }
