@@ -1,10 +1,9 @@
-// Seconds of a conversion at rate 8, to float and to quantised leaves, as a
-// multiple of two plain reading passes over its input, in one run, and the
-// process's peak memory against the volume's size.
+// Measures the seconds of a conversion at rate 8, to float and to quantised leaves, as a multiple of two plain reading
+// passes over its input in the same run. Also measures the process's peak memory against the volume's size.
 //
-// Environment: WEIR_BENCH_DIR (default: the system's temporary directory) and
-// WEIR_BENCH_DIM (voxels along the timed cube, default 512: 0.5 GB of float32).
-// WEIR_COMMAND in the build names the `weir` whose memory is measured.
+// Environment: WEIR_BENCH_DIR (default: the system's temporary directory) and WEIR_BENCH_DIM (voxels along the timed
+// cube, default 512: 0.5 GB of float32). WEIR_COMMAND, set by the build, names the `weir` command for the memory
+// measurement.
 #include <benchmark/benchmark.h>
 #include <fcntl.h>
 #include <spawn.h>
@@ -40,7 +39,7 @@ std::int64_t bench_dim() {
   return dim != nullptr ? parse_int(dim).value_or(512) : 512;
 }
 
-/// A synthetic volume as a raw file, and a place for its conversion; both removed at the end.
+/// A synthetic volume as a raw file, and a path for its conversion; both are removed at the end.
 class RawVolume {
  public:
   RawVolume(const std::string& kind, std::int64_t dim) {
@@ -104,7 +103,7 @@ void convert(const std::string& kind, Encoding encoding, benchmark::State& state
     converting_s += seconds;
     state.SetIterationTime(seconds);
     state.counters["psnr_db"] = sidecar.error.psnr_db.value_or(0);
-    volume.remove_output();  // freeing the file before is no part of a conversion
+    volume.remove_output();  // freeing the previous file is not part of a conversion
   }
   const auto n = static_cast<double>(state.iterations());
   state.counters["two_passes_s"] = reading_s / n;
@@ -123,7 +122,7 @@ BENCHMARK(quantise_cloud)->UseManualTime()->Iterations(5)->Unit(benchmark::kMill
 void quantise_turbulence(benchmark::State& state) { convert("turbulence", Encoding::fpn, state); }
 BENCHMARK(quantise_turbulence)->UseManualTime()->Iterations(5)->Unit(benchmark::kMillisecond);
 
-/// The figure that the command's sidecar gives for its own process.
+/// Returns the peak memory that the sidecar of the command records for its own process.
 double peak_of_command(const RawVolume& volume) {
   std::vector<std::string> words{WEIR_COMMAND, "convert", volume.path(), "-o",         volume.output(),
                                  "--memory",   "256MiB",  "--log-level", "off",        "--progress",
@@ -141,7 +140,7 @@ double peak_of_command(const RawVolume& volume) {
   return static_cast<double>(parse_sidecar(text, volume.output()).timing.peak_rss_bytes);
 }
 
-/// Peak memory of a conversion under --memory 256MiB; the argument is the edge of the cube.
+/// Peak memory of a conversion with --memory 256MiB; the argument is the edge of the cube.
 void peak_memory(benchmark::State& state) {
   const RawVolume volume("cloud", state.range(0));
   for (auto _ : state) {

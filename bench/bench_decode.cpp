@@ -1,5 +1,5 @@
-// How fast one core decodes packed blocks: all streams of synthetic volumes, by rate, in float32 values a second;
-// blocks without a stream do not count. Beside it, how fast such values are copied.
+// Measures how fast one core decodes packed blocks: all streams of synthetic volumes, by rate, in float32 values a
+// second; blocks without a stream do not count. For comparison, measures how fast such values are copied.
 //
 // Environment: WEIR_BENCH_DIM (voxels along the cube, default 256).
 #include <benchmark/benchmark.h>
@@ -50,7 +50,7 @@ void decode(benchmark::State& state, const std::string& kind) {
 BENCHMARK_CAPTURE(decode, turbulence, "turbulence")->Arg(16)->Arg(8)->Arg(4)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(decode, cloud, "cloud")->Arg(50)->Arg(20)->Arg(8)->Unit(benchmark::kMillisecond);
 
-/// Block by block, from memory to a core's cache.
+/// Copies block by block, from memory to a core's cache.
 void copy(benchmark::State& state) {
   const std::vector<float> all(std::size_t{1} << 24U, 1.0F);
   std::array<float, 512> values;

@@ -1,10 +1,9 @@
-// Rate of reading HDF5, as ratios within one run: chunks inflated and unshuffled
-// by us over libhdf5's own H5Dread, contiguous values over the same values as a
-// raw file, and chunks of one plane over cubes. The files are in the page cache:
-// the decoder is measured, not the disk.
+// Measures the rate of reading HDF5, as ratios within one run: chunks that weir inflates and unshuffles over libhdf5's
+// own H5Dread, contiguous values over the same values as a raw file, and chunks of one plane over cubes. The files are
+// in the page cache: this measures the decoder, not the disk.
 //
-// Environment: WEIR_BENCH_DIR (default: the system's temporary directory) and
-// WEIR_BENCH_MIB (default 256: float32 bytes of the volume).
+// Environment: WEIR_BENCH_DIR (default: the system's temporary directory) and WEIR_BENCH_MIB (default 256: float32
+// bytes of the volume).
 #include <benchmark/benchmark.h>
 #include <hdf5.h>
 #include <unistd.h>
@@ -72,7 +71,8 @@ class Files {
   }
 
  private:
-  /// A smooth field in steps of 1/4096, whose last four bits are noise: shuffled, deflate takes it to about a quarter.
+  /// Returns a plane of a smooth field in steps of 1/4096, with noise in the last four bits: after a shuffle, deflate
+  /// reduces it to about a quarter.
   std::vector<float> plane(hsize_t z) const {
     std::vector<float> values(kWidth * kWidth);
     auto state = static_cast<std::uint32_t>(z);
@@ -154,7 +154,7 @@ double seconds_of(const auto& action) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// The plain loop: slabs as thick as a chunk, so that the library too decodes every chunk once.
+/// The plain loop: slabs as thick as a chunk, so that the library, too, decodes every chunk once.
 void read_by_library(Layout layout) {
   const hid_t file = H5Fopen(files().path(layout).c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   const hid_t dataset = H5Dopen2(file, "density", H5P_DEFAULT);
@@ -178,7 +178,7 @@ void read_stream(Layout layout) {
   stream_blocks(*source, boxes, {}, [](const Block& block) { benchmark::DoNotOptimize(block.values.data()); });
 }
 
-/// Each turn measures both, one after the other, so that a machine whose rate drifts slows both.
+/// Each iteration measures both, one after the other, so that a machine with a drifting rate slows both.
 void compare(benchmark::State& state, const auto& one, const auto& other) {
   double one_s = 0;
   double other_s = 0;
@@ -194,7 +194,7 @@ void compare(benchmark::State& state, const auto& one, const auto& other) {
   state.counters["ratio"] = one_s / other_s;
 }
 
-/// ratio: how many times as fast as H5Dread; at least 1.7 on two cores.
+/// `ratio`: how many times as fast as H5Dread; at least 1.7 on two cores.
 void BM_GzipCubesOverLibrary(benchmark::State& state) {
   compare(
       state, [] { read_by_library(Layout::cubes); }, [] { read_stream(Layout::cubes); });
@@ -203,12 +203,12 @@ void BM_GzipPlanesOverLibrary(benchmark::State& state) {
   compare(
       state, [] { read_by_library(Layout::planes); }, [] { read_stream(Layout::planes); });
 }
-/// ratio: time of the raw file over time of the HDF5 file; at least 1 / 1.2 = 0.83.
+/// `ratio`: time of the raw file over time of the HDF5 file; at least 1 / 1.2 = 0.83.
 void BM_ContiguousOverRaw(benchmark::State& state) {
   compare(
       state, [] { read_stream(Layout::raw); }, [] { read_stream(Layout::contiguous); });
 }
-/// ratio: time of cubes over time of planes; at least 1 / 1.5 = 0.67.
+/// `ratio`: time of cubes over time of planes; at least 1 / 1.5 = 0.67.
 void BM_PlanesOverCubes(benchmark::State& state) {
   compare(
       state, [] { read_stream(Layout::cubes); }, [] { read_stream(Layout::planes); });

@@ -1,9 +1,9 @@
-// Rate of the block stream over a raw file, cold and cached, as a ratio of the
-// plainest possible sequential read of the same file in the same run: O_DIRECT
-// preads for the cold file, preads into a warm buffer for the cached one.
+// Measures the rate of the block stream over a raw file, cold and cached, as a ratio of the plainest possible
+// sequential read of the same file in the same run: O_DIRECT preads for the cold file, preads into a warm buffer for
+// the cached file.
 //
-// Environment: WEIR_BENCH_DIR (default: the system's temporary directory; must
-// be on the disk to measure) and WEIR_BENCH_MIB (default 1024).
+// Environment: WEIR_BENCH_DIR (default: the system's temporary directory; must be on the disk to measure) and
+// WEIR_BENCH_MIB (default 1024).
 #include <benchmark/benchmark.h>
 #include <fcntl.h>
 #include <unistd.h>
@@ -73,7 +73,7 @@ double seconds_of(const auto& action) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Bytes read; none where the file system refuses `flags`.
+/// Returns the bytes read; 0 if the file system refuses `flags`.
 std::uint64_t read_plainly(int flags) {
   const Descriptor file(::open(noise_file().path().c_str(), O_RDONLY | O_CLOEXEC | flags));
   const PageBuffer buffer(kPlainBytes);
@@ -96,8 +96,8 @@ void read_stream(DirectIo mode) {
   stream_blocks(*source, boxes, {}, [](const Block& block) { benchmark::DoNotOptimize(block.values.data()); });
 }
 
-/// Each turn measures the plain read and the stream, one after the other, so that a disk whose rate
-/// drifts slows both.
+/// Each iteration measures the plain read and the stream, one after the other, so that a disk with a drifting rate
+/// slows both.
 void compare(benchmark::State& state, bool cold, DirectIo mode) {
   double plain_s = 0;
   double stream_s = 0;

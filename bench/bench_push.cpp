@@ -1,11 +1,10 @@
-// What a push takes of a simulation's time: seconds of PushedVolume::slab as a
-// multiple of a plain copy of as many bytes in the same run, from memory that is
-// not in a cache to memory that is not, while the background thread works (`ratio`
-// by the wall, `cpu_ratio` by the thread's own time, for a machine that is shared); and
-// the bytes a second that push and end take when the simulation does nothing else.
+// Measures how much of a simulation's time a push takes: the seconds of PushedVolume::slab() as a multiple of a plain
+// copy of as many bytes in the same run, from and to memory that is not in a cache, while the background thread works.
+// `ratio` is by wall time, `cpu_ratio` by the thread's own time, for a machine that is shared. Also measures the bytes
+// a second that push and end take if the simulation does nothing else.
 //
-// Environment: WEIR_BENCH_DIR (default: the system's temporary directory) and
-// WEIR_BENCH_DIM (voxels along the cube, default 512: 0.5 GB of float32).
+// Environment: WEIR_BENCH_DIR (default: the system's temporary directory) and WEIR_BENCH_DIM (voxels along the cube,
+// default 512: 0.5 GB of float32).
 #include <benchmark/benchmark.h>
 #include <unistd.h>
 
@@ -32,7 +31,7 @@ using Clock = std::chrono::steady_clock;
 
 /// Planes handed over at a time.
 constexpr std::int64_t kPlanes = 8;
-/// Where the plain copies go, at least: more than a cache holds.
+/// The least size of the plain copies' target: more than a cache holds.
 constexpr std::size_t kCopyBytes = std::size_t{128} << 20U;
 
 std::string output_path() {
@@ -46,7 +45,7 @@ std::int64_t bench_dim() {
   return dim != nullptr ? parse_int(dim).value_or(512) : 512;
 }
 
-/// A simulation: its volume, and the time it takes for the next slab.
+/// A simulation: its volume, handed over in slabs.
 struct Simulation {
   explicit Simulation(const std::string& kind) : dim(bench_dim()), values(static_cast<std::size_t>(dim * dim * dim)) {
     open_synthetic(kind, {{dim, dim, dim}, 1})->read({{0, 0, 0}, {dim, dim, dim}}, values);
@@ -60,7 +59,7 @@ struct Simulation {
   std::vector<float> values;
 };
 
-/// Seconds by the wall, waits included, and of this thread's own work.
+/// Wall seconds, including waits, and seconds of this thread's own work.
 struct Spent {
   double wall_s = 0;
   double cpu_s = 0;
@@ -91,7 +90,7 @@ void compute_for(double seconds) {
   }
 }
 
-/// `pause_s_per_gb`: how long the simulation computes for each gigabyte that it hands over.
+/// `pause_s_per_gb`: the seconds that the simulation computes for each gigabyte that it hands over.
 void push(const std::string& kind, Encoding encoding, double pause_s_per_gb, benchmark::State& state) {
   const Simulation simulation(kind);
   const auto files = make_posix_file_system();
@@ -111,7 +110,7 @@ void push(const std::string& kind, Encoding encoding, double pause_s_per_gb, ben
     for (std::int64_t i = 0; i < simulation.slabs(); ++i) {
       const std::span<const float> slab = simulation.slab(i);
       slabs.time([&] { pushed.slab(i * kPlanes, kPlanes, slab.data()); });
-      // As many bytes from far away.
+      // Copies as many bytes from a distant place.
       const auto other = std::as_bytes(simulation.slab((i + simulation.slabs() / 2) % simulation.slabs()));
       const std::size_t at = static_cast<std::size_t>(i) * other.size() % (copies.size() - other.size() + 1);
       copying.time([&] { std::memcpy(&copies[at], other.data(), other.size()); });
@@ -132,7 +131,7 @@ void push(const std::string& kind, Encoding encoding, double pause_s_per_gb, ben
   state.counters["end_s"] = ends.wall_s / n;
 }
 
-/// A simulation that takes two seconds for a gigabyte; the background thread then is faster than it.
+/// The simulation takes two seconds for a gigabyte; the background thread is then faster than the simulation.
 constexpr double kComputes = 2;
 
 void push_cloud(benchmark::State& state) { push("cloud", Encoding::float32, kComputes, state); }
@@ -144,7 +143,7 @@ BENCHMARK(push_turbulence)->UseManualTime()->Iterations(3)->Unit(benchmark::kMil
 void push_turbulence_quantised(benchmark::State& state) { push("turbulence", Encoding::fpn, kComputes, state); }
 BENCHMARK(push_turbulence_quantised)->UseManualTime()->Iterations(3)->Unit(benchmark::kMillisecond);
 
-/// Nothing but pushing: the background thread is what is waited for.
+/// Only pushes: each slab waits for the background thread.
 void push_turbulence_only(benchmark::State& state) { push("turbulence", Encoding::float32, 0, state); }
 BENCHMARK(push_turbulence_only)->UseManualTime()->Iterations(3)->Unit(benchmark::kMillisecond);
 

@@ -1,5 +1,5 @@
-// The CPU renderer's rate, in camera samples a second of one thread, by mode,
-// filter and macrocell edge, on a synthetic cloud converted at rate 8.
+// Measures the CPU renderer's rate, in camera samples a second of one thread, by mode, filter and macrocell edge, on a
+// synthetic cloud converted at rate 8.
 //
 // Environment: WEIR_BENCH_DIM (voxels along the cube, default 256).
 #include <benchmark/benchmark.h>

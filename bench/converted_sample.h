@@ -1,4 +1,4 @@
-// A synthetic volume as a mapped file, for benchmarks of what reads it.
+// A synthetic volume as a mapped file, for benchmarks of code that reads it.
 #pragma once
 
 #include <unistd.h>
@@ -15,8 +15,8 @@
 
 namespace weir {
 
-/// `kind` of WEIR_BENCH_DIM voxels along an edge (default 256), converted at `rate`. The file's name is gone at once,
-/// the mapping stays. Throws as convert_volume.
+/// Returns a volume of `kind`, with WEIR_BENCH_DIM voxels along an edge (default 256), converted at `rate`. The file's
+/// name is removed at once; the mapping stays. Throws as convert_volume().
 inline NvdbFile converted_sample(const std::string& kind, Encoding encoding, double rate) {
   const char* text = std::getenv("WEIR_BENCH_DIM");
   const std::int64_t dim = text != nullptr ? parse_int(text).value_or(256) : 256;

@@ -39,8 +39,8 @@ std::uint64_t voxels_of(const BoxSet& leaves, const BlockPlan& plan) {
   return static_cast<std::uint64_t>(voxels);
 }
 
-// What a file that changed makes go wrong first is any error of its format, and whoever reads that one looks for damage
-// in a file that is whole by then.
+// Returns the cause of `error`. A source file that changes during the conversion first causes some format error, and a
+// user would then look for damage in a file that is whole. So an input error is replaced if a source file changed.
 Error with_its_cause(const Error& error, const SourceInfo& info) {
   if (error.kind() == ErrorKind::interrupted) return interrupted_error();
   if (error.kind() != ErrorKind::input) return error;
@@ -52,7 +52,7 @@ Error with_its_cause(const Error& error, const SourceInfo& info) {
   return error;
 }
 
-// Where a volume is not what it looks like, by what its file says of axes and values.
+// Tells `notice` what the file says about axes and values if the volume is not what it looks like.
 void say_axes(const SourceInfo& info, const Notice& notice) {
   const std::string volume = cat(info.path, ": ", info.dataset, info.dataset.empty() ? "" : ": ");
   for (std::size_t i = 0; notice && i < info.details.axes.size(); ++i) {
@@ -74,8 +74,8 @@ void say_axes(const SourceInfo& info, const Notice& notice) {
                  option("origin"), " set them in one"));
 }
 
-// Takes the room of a file whose size is known beforehand, while its volume is surveyed. Not where somebody has to be
-// asked for the room, and not for so little that it is soon done.
+// Reserves the disk space of an output of known size while its volume is surveyed. Not if `control.planned` must be
+// asked for the space first, and not for an output so small that reserving it is quick.
 void reserve_ahead(OutputFiles& output, const ConversionOptions& options, const ConversionControl& control,
                    VolumeSource& source) {
   constexpr std::uint64_t kLeastBytes = std::uint64_t{16} << 20U;
@@ -88,7 +88,7 @@ void reserve_ahead(OutputFiles& output, const ConversionOptions& options, const 
   output.reserve_ahead(bytes, source.resident() != nullptr ? Pages::cleared : Pages::as_they_are);
 }
 
-// What was surveyed by an earlier process does not count if its files are not as it wrote them.
+// Forgets the survey of an earlier process if its files are not as that process wrote them.
 void forget_damaged(Journal& journal, const SurveyStores& stores, const std::optional<LadderAim>& aim) {
   const SurveyState& survey = journal.state.survey;
   if (survey.done.empty()) return;
@@ -99,13 +99,13 @@ void forget_damaged(Journal& journal, const SurveyStores& stores, const std::opt
   if (damaged) journal.forget(cat(journal.path_of(std::string(*damaged)), " is damaged"));
 }
 
-// Files of a volume that is packed on a device may have the pages of earlier ones.
+// Returns whether the conversion's files may reuse pages of earlier files: if the volume is packed on a device.
 bool reuses_pages(VolumeSource& source, const ConversionOptions& options) {
   return source.resident() != nullptr && options.encoding == Encoding::packed;
 }
 
-// Unmaps pages of earlier files, which count as the process's, where there is no use for them, or too little memory
-// beside them: they are planned for as if none of them were used again.
+// Unmaps the pages of earlier files if this conversion does not reuse them, or if options.memory is too small beside
+// them. The pages count as the process's memory, and the memory plan assumes that none of them is reused.
 void clear_pages(VolumeSource& source, const ConversionOptions& options) {
   constexpr std::uint64_t kTimes = 5;
   ReusedPages& pages = ReusedPages::of_process();
@@ -113,10 +113,10 @@ void clear_pages(VolumeSource& source, const ConversionOptions& options) {
   if (!reuses_pages(source, options) || needed > options.memory) pages.clear();
 }
 
-// What counts besides what a conversion takes.
+// Whether memory that the process holds already counts towards options.memory.
 enum class Held { by_the_process, by_nobody };
 
-// Where a conversion reads and writes.
+// The source, the options and the outputs of a conversion.
 struct Conversion {
   VolumeSource& source;
   const ConversionOptions& options;
@@ -129,7 +129,8 @@ struct Conversion {
   BlockCoder* coder() const { return source.resident() == nullptr ? control.coder : nullptr; }
 };
 
-// What of packed blocks the survey looks for: no more than the file will need, where a look ahead tells that.
+// Sets `aim`, what the survey looks for in packed blocks. If a look ahead tells what the file will need, the survey
+// looks for no more than that.
 void aim_ladders(const Conversion& conversion, const ReadingPlan& reading, SurveyStores& stores,
                  const StreamOptions& stream, LadderAim& aim) {
   Journal* const journal = conversion.journal;
@@ -148,7 +149,8 @@ void aim_ladders(const Conversion& conversion, const ReadingPlan& reading, Surve
   aim.coder = conversion.coder();
 }
 
-// Surveys and writes, on `threads` of the `workers` that there were to be.
+// Surveys and writes the volume on `threads` threads. `workers` is the choice that was made before the system was asked
+// how many threads it lets start.
 Sidecar convert_on(std::size_t threads, const Workers& workers, const Conversion& conversion,
                    std::chrono::steady_clock::time_point started) {
   VolumeSource& source = conversion.source;
@@ -172,7 +174,7 @@ Sidecar convert_on(std::size_t threads, const Workers& workers, const Conversion
     reserve_ahead(conversion.output, options, control, source);
   }
   StreamOptions stream = stream_options(control);
-  // Of use to the survey, whose blocks are smaller; where threads are few, one has to do for reading.
+  // Buffers help the survey, because its blocks are smaller. If few threads can be started, reading has only one.
   if (threads == workers.threads) stream.buffer_bytes = 2 * memory.block_bytes;
   if (reading.encode.amplification > 1 && control.notice) {
     control.notice(amplification_notice(source, memory, options.memory, reading.encode));
@@ -216,7 +218,7 @@ Sidecar convert_on(std::size_t threads, const Workers& workers, const Conversion
                           stores, started);
 }
 
-// All of it but what comes after an error.
+// Does the whole conversion except the clean-up after an error.
 Sidecar convert_to(const Conversion& conversion, Held counted) {
   const ForkGuard forks;
   const ConversionOptions& options = conversion.options;
@@ -234,7 +236,7 @@ Sidecar convert_to(const Conversion& conversion, Held counted) {
   return OwnThreads(threads).run([&] { return convert_on(threads, workers, conversion, started); });
 }
 
-// A volume of weir's own is taken for what its certificate says.
+// Checks a volume that weir wrote against its certificate. Throws as refuse_damaged() does.
 void check_certified(const SourceInfo& info, const ConversionControl& control) {
   if (info.format != "nanovdb") return;
   DamageWatch watch;
@@ -259,14 +261,14 @@ Sidecar convert_volume(VolumeSource& source, const ConversionOptions& options, c
   OutputFiles output(files, options.output, options.overwrite);
   WorkDirectory work(files, options.output, options.work_dir);
   std::unique_ptr<Journal> journal;
-  // A team has no journal. With Resume::off, which the MPI program sets, open_journal() gives none and removes what was
-  // left to be continued.
+  // A team has no journal. With Resume::off, which the MPI program sets, open_journal() returns none and removes
+  // the files that an interrupted conversion left.
   if (team.alone() || options.resume == Resume::off) {
     journal = open_journal(source.info(), options, control, output, files);
   }
   std::vector<std::string> begun =
       journal ? journal->paths() : std::vector<std::string>{hidden_directory_of(options.output)};
-  begun.push_back(partial_path(options.output));  // the lock last: who has it may begin
+  begun.push_back(partial_path(options.output));  // the lock last: the process that gets it may begin
   const Hdf5CrashRemoval at_crash(std::move(begun));
   try {
     team.lead([&] { check_certified(source.info(), control); });

@@ -14,17 +14,18 @@ namespace weir {
 class OutputFiles;
 class WorkDirectory;
 
-/// Converts and returns the sidecar that was written. Throws Error; then an earlier output is untouched and nothing of
-/// the new one is left, except, where it can be continued (journal.h), the hidden directory beside it: the same call
-/// continues from there and gives the same bytes. Where `team` has other ranks, each calls this with a source of the
-/// same volume, the same options and a file system in which they find each other's files; an interrupted conversion is
-/// lost then, and options.memory and options.threads are those of each process. A team's options.resume is Resume::off;
-/// with another, what an earlier conversion left stays.
+/// Converts `source` and returns the sidecar that was written. If it throws an Error, an earlier output is untouched
+/// and nothing of the new output is left, except the hidden directory beside the output if the conversion can be
+/// continued (journal.h): the same call then continues and gives the same bytes.
+/// If `team` has other ranks, each rank calls this function with a source of the same volume, the same options and a
+/// file system in which the ranks find each other's files. options.memory and options.threads then apply to each
+/// process, and an interrupted conversion is lost. A team sets options.resume to Resume::off; with any other value,
+/// the files that an earlier conversion left stay.
 Sidecar convert_volume(VolumeSource& source, const ConversionOptions& options, const ConversionControl& control,
                        FileSystem& files, Team& team = no_team());
 
-/// The same for an output whose lock the caller holds, with the work directory beside it; options.memory counts besides
-/// what the process holds already, and an interrupted conversion is lost.
+/// Converts `source` into an output whose lock the caller holds, with `work` as the work directory beside the output.
+/// options.memory comes on top of the memory that the process holds already. An interrupted conversion is lost.
 Sidecar convert_into(OutputFiles& output, WorkDirectory& work, VolumeSource& source, const ConversionOptions& options,
                      const ConversionControl& control, Team& team);
 

@@ -14,31 +14,32 @@
 
 namespace weir {
 
-/// What a caller can watch and stop.
+/// The callbacks and switches by which a caller watches and stops a conversion.
 struct ConversionControl {
   const std::atomic<bool>* cancel = nullptr;
   std::function<void(const std::string& pass, std::uint64_t total_bytes)>
-      pass_started;  ///< float32 bytes; of "check" the file's
+      pass_started;  ///< total as float32 bytes; for "check" the file's bytes
   std::function<void(std::uint64_t done_bytes)> pass_advanced;
   Notice notice;
   std::function<void(std::uint64_t bytes)>
-      planned;                          ///< of the file, before room is taken for it; again where it is replanned
-  std::function<void()> before_commit;  ///< the last call before the output appears; what it throws keeps it from that
-  bool pads_file = true;        ///< false: of a trial, whose file is not filled up to the size that was asked for
-  BlockCoder* coder = nullptr;  ///< surveys and encodes packed blocks, where there is one; the bytes are the same
-  Trace* trace = nullptr;       ///< gets the passes, and what each thread reads, surveys, encodes and writes in them
+      planned;  ///< the file's size, before its disk space is reserved; called again if the file is replanned
+  std::function<void()>
+      before_commit;            ///< last call before the output appears; if it throws, the output does not appear
+  bool pads_file = true;        ///< false for a trial: its file is not padded to the requested size
+  BlockCoder* coder = nullptr;  ///< if not null, surveys and encodes packed blocks; the file's bytes are the same
+  Trace* trace = nullptr;       ///< receives the passes, and what each thread reads, surveys, encodes and writes
 };
 
-/// For passes that `control`, which must outlive them, watches and stops.
+/// Returns stream options for passes that `control` watches and stops. `control` must outlive the passes.
 StreamOptions stream_options(const ConversionControl& control);
 
-/// The error of a conversion that was asked to stop, in whichever step.
+/// Returns the error of a conversion that was asked to stop. It is the same error in every step.
 Error interrupted_error();
 
-/// Throws interrupted_error() where `control` says so.
+/// Throws interrupted_error() if control.cancel is set.
 void check_cancel(const ConversionControl& control);
 
-/// Announces a pass over so many voxels; throws as check_cancel.
+/// Announces the pass `name` over `voxels` voxels. Throws as check_cancel() does.
 void start_pass(const ConversionControl& control, const std::string& name, std::uint64_t voxels);
 
 }  // namespace weir

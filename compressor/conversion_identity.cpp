@@ -12,8 +12,8 @@
 namespace weir {
 namespace {
 
-// What no copy of the file shares with it, whatever its size and time. The device's number may be another one after the
-// machine was started again.
+// Returns a digest of the inodes, sizes and times of `files`. No copy of a file shares them, even if size and
+// modification time agree. The device's number is left out because it may change when the machine restarts.
 std::string states_of(std::span<const FileState> files) {
   DigestStream states;
   for (const FileState& file : files) {
@@ -62,7 +62,7 @@ ConversionIdentity identify_conversion(const SourceInfo& source, const Conversio
   std::string index;
   for (const std::int64_t i : source.index) index += cat(i, ' ');
   ConversionIdentity identity{
-      // Another working directory may hold another file of that name, size and time.
+      // Absolute: another working directory may hold another file of the same name, size and time.
       {"source", absolute_real_path(source.path)},
       {"source bytes", cat(source.file_bytes)},
       {"source modified (ns)", cat(source.mtime_ns)},

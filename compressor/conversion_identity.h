@@ -1,4 +1,4 @@
-// What decides the bytes of a conversion, as text, to recognise an interrupted one.
+// Everything that decides a conversion's bytes, as text. By it an interrupted conversion is recognised.
 #pragma once
 
 #include <map>
@@ -10,18 +10,19 @@
 
 namespace weir {
 
-/// Of the options of a command line, as Sidecar::Weir has them, those that change the volume's bytes: not memory,
-/// threads and places.
+/// Returns the command-line `options` (as in Sidecar::Weir) without options that leave the volume's bytes as they are,
+/// for example memory, threads and paths.
 std::map<std::string, std::string> deciding_options(std::map<std::string, std::string> options);
 
-/// What decides which values a scene shows, and so where an error target is met: the file may change under its path.
+/// Returns, as text, the parts of `scene` that decide which values it shows, and so where an error target is met. The
+/// scene's path alone does not tell, because the scene file may change.
 std::string visible_values(const Scene& scene);
 
-/// Of visible_values, for the sidecar (Sidecar::Visible::scene_digest); 32 hex digits.
+/// Returns the digest of visible_values() as 32 hex digits, for the sidecar (Sidecar::Visible::scene_digest).
 std::string scene_digest(const Scene& scene);
 
-/// Source (path, size, modification time, inodes and states of its files, dataset, type, extent), all of `options` that
-/// has a say, and the program.
+/// Returns the identity of a conversion: the source (path, size, modification time, inodes and states of its files,
+/// dataset, type, extent), every option that decides bytes, and the program's version and commit.
 ConversionIdentity identify_conversion(const SourceInfo& source, const ConversionOptions& options);
 
 }  // namespace weir

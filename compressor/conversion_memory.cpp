@@ -16,7 +16,8 @@
 namespace weir {
 namespace {
 
-// Most for values that are cached: three quarters of what is left by a conversion that has all it needs to be quick.
+// Returns the most bytes for cached values: three quarters of the memory that is left beside a conversion at full
+// speed.
 std::uint64_t bytes_to_cache(std::uint64_t ceiling, std::uint64_t resident, const Box& domain) {
   constexpr std::uint64_t kLeastEnough = std::uint64_t{64} << 20U;
   constexpr std::uint64_t kEnough = std::uint64_t{512} << 20U;
@@ -26,8 +27,8 @@ std::uint64_t bytes_to_cache(std::uint64_t ceiling, std::uint64_t resident, cons
   return std::min(LeafCache::whole_bytes(leaves), ceiling > needed ? (ceiling - needed) / 4 * 3 : 0);
 }
 
-// Whether values of what is read may be kept: not of a sample, not of what lies in memory already, there or on a
-// device, and not of coarse cells, whose values come once for many voxels.
+// Returns whether the survey may cache the values that it reads. It may not for a sample, for a source that already
+// lies in memory or on a device, or for coarse cells, because a coarse cell's value is read once for many voxels.
 bool may_cache(VolumeSource& source, const ReadingPlan& reading) {
   if (reading.reading != Reading::ahead || source.resident() != nullptr || source.places() != nullptr) return false;
   const BlockPlan& plan = reading.survey;
@@ -38,7 +39,8 @@ bool may_cache(VolumeSource& source, const ReadingPlan& reading) {
   return true;
 }
 
-// Whether a plan that caches values decodes chunks as seldom as one that does not, and holds as many records.
+// Returns whether `keeping`, a plan that caches values, decodes chunks no more often than `shares`, which does not,
+// and holds at least as many bytes of records.
 bool takes_nothing_away(const MemoryShares& keeping, const MemoryShares& shares) {
   return keeping.reading.encode.amplification <= shares.reading.encode.amplification &&
          keeping.memory.record_bytes >= shares.memory.record_bytes;
@@ -48,7 +50,7 @@ bool takes_nothing_away(const MemoryShares& keeping, const MemoryShares& shares)
 
 std::uint64_t record_bytes(const ConversionOptions& options, const Box& domain) {
   std::uint64_t of_leaf = sizeof(LeafRow) + sizeof(LeafRecord);
-  std::uint64_t of_region = 2 * sizeof(LeafChoices);  // of two plans, between which is chosen
+  std::uint64_t of_region = 2 * sizeof(LeafChoices);  // selection chooses between two plans
   if (options.encoding == Encoding::packed) {
     of_leaf += sizeof(PackedLadder);
     of_region += 2 * sizeof(PlannedStreams);

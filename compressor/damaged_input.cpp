@@ -16,7 +16,7 @@
 namespace weir {
 namespace {
 
-// The sidecar of this very file.
+// Returns the sidecar if it can be read and describes the file at `path`. Otherwise tells `notice` why not.
 std::optional<Sidecar> certificate_of(const std::string& path, const std::string& sidecar, const Notice& notice) {
   const auto say = [&](const std::string& why) {
     if (notice) notice(cat(why, "; whether ", path, " is damaged is not known"));

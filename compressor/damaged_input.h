@@ -1,4 +1,4 @@
-// Volumes of weir's own as inputs: their bytes against the certificate that lies beside them.
+// weir's own volumes as inputs: their bytes are checked against the certificate (sidecar) that lies beside them.
 #pragma once
 
 #include <cstdint>
@@ -10,18 +10,19 @@
 
 namespace weir {
 
-/// What a caller is told, and can stop.
+/// The callbacks by which a caller watches and stops the check.
 struct DamageWatch {
-  Notice notice;                                           ///< where a sidecar is there and says nothing of the file
-  std::function<void(std::uint64_t bytes)> started;        ///< before that many are read
-  std::function<void(std::uint64_t done_bytes)> advanced;  ///< may throw
+  Notice notice;                                     ///< told if there is a sidecar that does not describe the file
+  std::function<void(std::uint64_t bytes)> started;  ///< called before `bytes` are read
+  std::function<void(std::uint64_t done_bytes)> advanced;  ///< may throw, which stops the check
 };
 
-/// Reads all of the .nvdb file at `path`, and throws Error(input) where its bytes are not those that `certificate`, its
-/// sidecar, says. Throws Error(io) where it cannot be read.
+/// Reads the whole .nvdb file at `path`. Throws Error(input) if its digest differs from the digest in `certificate`,
+/// its sidecar, and Error(io) if it cannot be read.
 void refuse_damaged(const std::string& path, const Sidecar& certificate, const DamageWatch& watch);
 
-/// The same by the sidecar that lies beside it. Of a file without one nothing is known, and nothing read.
+/// Checks the file at `path` in the same way against the sidecar that lies beside it. Without a sidecar nothing is
+/// read.
 void refuse_damaged(const std::string& path, const DamageWatch& watch);
 
 }  // namespace weir

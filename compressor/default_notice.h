@@ -1,4 +1,4 @@
-// What is said of a file whose size nobody asked for, by what it keeps of the values.
+// The notice about a file that was converted without a budget: how much of the values the default kept.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace weir {
 
-/// One line where the default gave more than its rate, since that would have kept less than kDefaultLeastDb, or where
-/// what it gave keeps less than that; else empty. With a scene, of what can be seen.
+/// Returns one line if the default rate would have kept less than kDefaultLeastDb and so a larger file was written, or
+/// if the written file keeps less than kDefaultLeastDb. Otherwise empty. With a scene, only visible voxels count.
 Message default_notice(const Sidecar& sidecar, const std::string& output);
 
 }  // namespace weir

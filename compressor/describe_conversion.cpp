@@ -16,7 +16,7 @@
 namespace weir {
 namespace {
 
-// NaN, which is null in the document, where no value is finite.
+// Returns the value range; NaN, which is null in the document, if no value is finite.
 std::array<double, 2> range_of(const Survey& survey) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   if (survey.finite == 0) return {kNone, kNone};
@@ -60,7 +60,7 @@ void describe_details(const FieldDetails& details, Sidecar::Source& source) {
 }  // namespace
 
 std::string real_path_of(const SourceInfo& info) {
-  if (info.files.empty()) return {};  // the name that a push has
+  if (info.files.empty()) return {};  // a pushed volume: info.path is only its name
   return absolute_real_path(is_there(info.path) ? info.path : info.files.front().path);
 }
 
@@ -76,7 +76,7 @@ std::string grid_name(const std::string& dataset) {
 Sidecar describe_source(const SourceInfo& info, const Survey& survey, const ConversionOptions& options) {
   Sidecar sidecar;
   sidecar.source.path = info.path;
-  // A relative one may be that of two files, in two working directories.
+  // In two working directories, a relative path may name two different files.
   if (std::filesystem::path(info.path).is_relative()) sidecar.source.real_path = real_path_of(info);
   sidecar.source.format = info.format;
   sidecar.source.dataset = info.dataset;

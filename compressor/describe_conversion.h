@@ -1,5 +1,4 @@
-// The certificate of a conversion: what its sidecar says of the source, of the file
-// and of the error between the two.
+// The certificate of a conversion: what its sidecar says about the source, the file and the error between the two.
 #pragma once
 
 #include <string>
@@ -15,18 +14,20 @@
 
 namespace weir {
 
-/// The name of the grid of a volume that its file calls `dataset`: that, or where it has more than kMaxGridNameBytes or
-/// is no UTF-8, which no sidecar can hold, its part after the last slash, or "density".
+/// Returns the grid's name for a volume that its file calls `dataset`. A `dataset` of at most kMaxGridNameBytes of
+/// UTF-8, which is all that a sidecar can hold, is the name. Otherwise its part after the last slash is the name if
+/// that fits, else "density".
 std::string grid_name(const std::string& dataset);
 
-/// Of the file or directory at info.path, absolute and without symbolic links; of files that a pattern names that of
-/// the first one. Empty where the volume lies in no file.
+/// Returns the absolute path, without symbolic links, of the file or directory at info.path. If info.path is a
+/// pattern, returns the path of the first file that it names. Empty if the volume lies in no file.
 std::string real_path_of(const SourceInfo& info);
 
-/// A sidecar with all that is known once the volume is surveyed, but for the source's digest.
+/// Returns a sidecar with everything that is known after the survey, except the source's digest.
 Sidecar describe_source(const SourceInfo& info, const Survey& survey, const ConversionOptions& options);
 
-/// Adds grid, background, budget, selection, errors and macrocells of the encoded file. `shown` is for options.scene.
+/// Adds grid, background, budget, selection, errors and macrocells of the encoded file to `sidecar`. `shown` is what
+/// options.scene shows.
 void describe_file(Sidecar& sidecar, const SourceInfo& info, const Survey& survey, const ConversionOptions& options,
                    const Background& background, const GridHead& head, const EncodedFile& encoded, const Shown& shown);
 

@@ -10,11 +10,11 @@
 namespace weir {
 namespace {
 
-// Sets each of `pieces` in `own`, of a file of `bytes`, to hash(i).
+// Sets pieces[i] to hash(i) for each i in `own`. The file has `bytes` bytes.
 template <typename Hash>
 void hash_pieces(std::vector<Digest>& pieces, const Share& own, std::uint64_t bytes, const DigestAdvanced& advanced,
                  const Hash& hash) {
-  // Pieces between two calls: enough to keep all threads at work.
+  // Pieces between two calls of `advanced`: enough to keep all threads at work.
   const std::int64_t batch = advanced ? 2 * tbb::this_task_arena::max_concurrency() : own.end - own.begin;
   for (std::int64_t begin = own.begin; begin < own.end; begin += batch) {
     const std::int64_t end = std::min(begin + batch, own.end);

@@ -1,4 +1,4 @@
-// The digest of a file, on disk or mapped, its pieces read and hashed by all threads.
+// The digest of a file, on disk or mapped. All threads read and hash its pieces.
 #pragma once
 
 #include <cstddef>
@@ -13,14 +13,15 @@
 
 namespace weir {
 
-/// Called from the calling thread with the bytes that this rank has read so far, where there is one; what it throws
-/// ends the work.
+/// If not empty, called on the calling thread with the bytes that this rank has read so far. An exception that it
+/// throws ends the work.
 using DigestAdvanced = std::function<void(std::uint64_t bytes)>;
 
-/// Of all of `file`, each rank reading its share; nothing is read of one that lies in memory.
+/// Returns the digest of the whole `file`. Each rank reads its share. If the file lies in memory, nothing is read.
 Digest digest_of_file(File& file, Team& team, const DigestAdvanced& advanced = {});
 
-/// Of a file that is mapped, by this process alone; `trace`, where there is one, gets what each thread hashes.
+/// Returns the digest of a mapped file, hashed by this process alone. `trace`, if not null, receives what each thread
+/// hashes.
 Digest digest_of_mapping(std::span<const std::byte> file, Trace* trace, const DigestAdvanced& advanced = {});
 
 }  // namespace weir

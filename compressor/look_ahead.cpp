@@ -12,7 +12,7 @@
 namespace weir {
 namespace {
 
-// Chunks that hold a part of the box.
+// Returns the number of chunks that hold a part of `box`.
 std::int64_t chunks_under(const Box& box, const AccessShape& access) {
   const auto along = [](std::int64_t lo, std::int64_t hi, std::int64_t origin, std::int64_t chunk) {
     return floor_div(hi - 1 - origin, chunk) - floor_div(lo - origin, chunk) + 1;
@@ -22,7 +22,7 @@ std::int64_t chunks_under(const Box& box, const AccessShape& access) {
          along(box.lo.z, box.hi.z, origin.z, access.chunk.z);
 }
 
-// Whether the sample takes a small part of what a pass over the volume decodes.
+// Returns whether the sample decodes at most a quarter of the chunks that a pass over the volume decodes.
 bool is_quick(const VolumeSource& source, const BlockPlan& plan, const std::vector<Box>& sampled) {
   const AccessShape access = source.access();
   if (access.chunk == Index3{}) return true;
@@ -31,7 +31,7 @@ bool is_quick(const VolumeSource& source, const BlockPlan& plan, const std::vect
   return chunks <= chunks_under(source.info().domain(), access) / 4;
 }
 
-// Parts of a row whose values fit a block of the plan.
+// Adds the parts of `row` to `parts`. Each part's values fit a block of `plan`.
 void add_parts(const Box& row, const BlockPlan& plan, std::vector<Box>& parts) {
   constexpr auto kLeafBytes = static_cast<std::uint64_t>(kLeafVoxels) * sizeof(float);
   const auto most = static_cast<std::int64_t>(std::max<std::uint64_t>(1, plan.block_bytes / kLeafBytes));

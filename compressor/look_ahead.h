@@ -1,5 +1,5 @@
-// Before the survey of a volume that is to be packed: its sampled blocks are surveyed by themselves, so that all blocks
-// get only the ladders that the budget can use.
+// The look ahead before the survey of a volume that is to be packed. A sample of its blocks is surveyed first, so that
+// the survey builds only the ladder rungs that the budget can use.
 #pragma once
 
 #include <optional>
@@ -14,9 +14,10 @@
 
 namespace weir {
 
-/// nullopt where that takes longer than it saves: of a small volume, of one whose chunks would nearly all be decoded
-/// for it, where a scene weighs, and where no ladders of many rungs are built. Writes rows and ladders of the sampled
-/// blocks, which the survey writes again. Throws as VolumeSource::read.
+/// Surveys the sampled blocks and returns the outlook for the budget. Returns nullopt if no ladders with rungs are
+/// built, if a scene weighs errors, or if looking ahead takes longer than it saves: for a small volume, or if it
+/// would decode more than a quarter of the chunks. Writes rows and ladders of the sampled blocks, which the survey
+/// writes again. Throws as VolumeSource::read() does.
 std::optional<BudgetOutlook> look_ahead(VolumeSource& source, const ReadingPlan& reading, RowStore& rows,
                                         const ConversionOptions& options, const LadderAim& aim,
                                         const StreamOptions& stream);

@@ -33,7 +33,7 @@ void refuse_non_finite(const Survey& survey, const SourceInfo& info) {
                                         option("nonfinite", "background"), " or ", option("nonfinite", "keep")));
 }
 
-// As a file of `type` has it: the float32 nearest to 1e20 is 1e+20.
+// Returns `value` as text in the precision of `type`: the float32 nearest to 1e20 is 1e+20.
 std::string stored_text(const StoredValue& value, ScalarType type) {
   const bool is_float = std::holds_alternative<double>(value) && type != ScalarType::float64;
   if (!is_float) return stored_value_text(value);

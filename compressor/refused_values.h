@@ -1,5 +1,5 @@
-// Voxels without a number, which a conversion refuses unless something else was asked for, and with one that float32
-// does not hold.
+// The values that a conversion refuses by default: NaN, infinite and missing ones, and values that float32 cannot hold
+// exactly enough.
 #pragma once
 
 #include "compressor/conversion_options.h"
@@ -8,9 +8,9 @@
 
 namespace weir {
 
-/// Throws Error(input) with count, first place and the options to choose from where voxels are NaN or infinite, or hold
-/// no data, and `options` leave it at the error that this is by default. Throws Error(budget) where float32 rounds
-/// values by more than the largest error that `options` allow.
+/// Throws Error(input) with count, first place and the options to choose from if voxels are NaN or infinite, or hold no
+/// data, and the policy in `options` is the default, which is an error. Throws Error(budget) if float32 rounds values
+/// by more than the largest error that `options` allow.
 void refuse_values(const ConversionOptions& options, const Survey& survey, const SourceInfo& info);
 
 }  // namespace weir

@@ -8,7 +8,8 @@
 namespace weir {
 namespace {
 
-// What no certificate counts, where it is not far less than what the file loses or may lose.
+// Returns a line about rounding to float32, which no certificate counts. Empty if the rounding is at most 1 % of the
+// error that the file has or may have.
 Message rounding_notice(const Sidecar& sidecar, const Budget& budget) {
   const Sidecar::ConversionLoss& loss = sidecar.conversion_loss;
   double counted = sidecar.error.max_abs;

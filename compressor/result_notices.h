@@ -1,4 +1,4 @@
-// What is said of a file that was made: what the scene, float32 and the default did to it.
+// The notices about a finished file: what the scene, float32 and the default budget did to it.
 #pragma once
 
 #include "compressor/conversion_options.h"
@@ -7,11 +7,11 @@
 
 namespace weir {
 
-/// Tells `notice`, which may be empty, what float32 lost of the values, where that is not far less than the file's
-/// own error.
+/// Tells `notice`, which may be empty, how much the values lost as float32, unless that is far less than the file's own
+/// error.
 void say_loss(const Sidecar& sidecar, const ConversionOptions& options, const Notice& notice);
 
-/// Gives scene_notice, say_loss and, where nobody asked for a size, default_notice to `notice`, which may be empty.
+/// Gives scene_notice(), say_loss() and, if no budget was asked for, default_notice() to `notice`, which may be empty.
 void say_result(const Sidecar& sidecar, const ConversionOptions& options, const Notice& notice);
 
 }  // namespace weir

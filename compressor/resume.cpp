@@ -11,7 +11,8 @@
 namespace weir {
 namespace {
 
-// Below, a conversion takes two seconds from memory, and what a disk takes for it it would take again.
+// A smaller volume is converted in two seconds from memory. If a disk makes it slower, a continued conversion would
+// wait for the disk again.
 constexpr std::uint64_t kResumableBytes = std::uint64_t{1} << 30U;
 
 bool is_final(const Error& error) {
@@ -38,7 +39,7 @@ std::unique_ptr<Journal> open_journal(const SourceInfo& info, const ConversionOp
   require_lasting_output(options, in_memory);
   if (!is_resumable(info, options, in_memory)) {
     if (remove_leftovers(files, options.output) && control.notice) control.notice(leftovers_notice(options.output));
-    // Unless it is this conversion's WorkDirectory.
+    // The hidden directory stays if it is this conversion's WorkDirectory.
     if (!options.work_dir.empty() || in_memory) remove_if_empty(files, hidden_directory_of(options.output));
     return nullptr;
   }
@@ -49,12 +50,12 @@ std::unique_ptr<Journal> open_journal(const SourceInfo& info, const ConversionOp
 
 namespace {
 
-// Under the lock OUT.nvdb.partial, which stays.
+// Removes everything except the lock, OUT.nvdb.partial, which the caller holds.
 void discard_all_but_lock(FileSystem& files, const std::string& output) {
   const std::string sidecar = sidecar_path(output);
   const std::string previous = previous_path(sidecar);
   if (const std::string unfinished = partial_path(sidecar); files.exists(unfinished)) {
-    files.create(unfinished);  // refuses what is somebody's
+    files.create(unfinished);  // throws if the file belongs to somebody else
     files.remove(unfinished);
   }
   if (files.exists(previous) && belongs_back(files, previous, sidecar, output)) files.rename(previous, sidecar);
@@ -71,8 +72,8 @@ bool discard_all_beside(FileSystem& files, const std::string& output) {
   const bool locked = files.exists(partial);
   const bool other = locked || files.exists(previous_path(sidecar_path(output)));
   if (!other && !files.exists(hidden)) return false;
-  // Neither emptied nor removed before all else is: what it holds says that the output is done (is_committed), should
-  // this be killed, too.
+  // The lock file is neither emptied nor removed before everything else is removed. Its content says that the output
+  // is done (is_committed), and must still say so if this process is killed.
   const std::unique_ptr<File> lock = files.open(partial);
   require_alone(*lock);
   try {
@@ -82,14 +83,14 @@ bool discard_all_beside(FileSystem& files, const std::string& output) {
     throw;
   }
   files.remove(partial);
-  return other || !files.exists(hidden);  // somebody's files may be in it
+  return other || !files.exists(hidden);  // it stays if other files are in it
 }
 
 void clear_after_commit(FileSystem& files, const std::string& output) {
   if (is_committed(files, output)) {
     discard_all_beside(files, output);
   } else if (files.exists(output) && !files.exists(partial_path(output))) {
-    // Without a journal a conversion holds nothing in it that has a name.
+    // A conversion without a journal keeps no named files in the hidden directory.
     remove_if_empty(files, hidden_directory_of(output));
   }
 }
@@ -109,7 +110,7 @@ Error ended_with(const Error& error, Journal& journal) {
     const bool begun = !journal.state.survey.done.empty() || !journal.state.encoded.done.empty();
     if (interrupted && begun) journal.save_now();
   } catch (const Error&) {
-    // What was saved before it counts.
+    // The state that was saved earlier counts.
   }
   if (!journal.resumable()) return error;
   return {error.kind(),

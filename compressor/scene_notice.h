@@ -1,4 +1,4 @@
-// What is said of a scene that leaves nothing of a volume to be seen.
+// The notice about a scene that shows nothing of a volume.
 #pragma once
 
 #include "format/base/message.h"
@@ -6,7 +6,7 @@
 
 namespace weir {
 
-/// One line, where the sidecar's scene shows nothing: then no block matters more than another. Else empty.
+/// Returns one line if the sidecar's scene shows nothing, so that no block matters more than another. Otherwise empty.
 Message scene_notice(const Sidecar& sidecar, const std::string& output);
 
 }  // namespace weir

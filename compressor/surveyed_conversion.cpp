@@ -63,7 +63,7 @@ FileRequest request_for(const ConversionOptions& options, const Survey& survey, 
   return request;
 }
 
-// `background` takes the place of what is not finite.
+// Returns the request for packing. `background` takes the place of values that are not finite.
 PackedRequest packed_request(const ConversionOptions& options, const Survey& survey, const SourceInfo& info,
                              float background) {
   PackedRequest packed;
@@ -84,15 +84,16 @@ PackedRequest packed_request(const ConversionOptions& options, const Survey& sur
   return packed;
 }
 
-// Fewer voxels have trees that take most of what the default rate gives: what it would keep of them is no result. What
-// is weighed by a scene, or chosen by the paper's distances, has no such bound, and FP4 does not reach every one.
+// Returns whether the default rate gives way to a larger file if it keeps too little. With fewer than kSmall voxels,
+// the tree takes most of the default rate's bytes, so that the values kept are no result. Errors that a scene weighs
+// and the paper's metrics have no such bound, and FP4 does not reach every bound.
 bool raises_default(const ConversionOptions& options, const Box& domain) {
   constexpr std::int64_t kSmall = std::int64_t{128} * 128 * 128;
   return options.budget.kind == Budget::Kind::automatic && domain.voxels() < kSmall && !options.scene &&
          options.metric == Metric::sse && options.encoding != Encoding::fp4;
 }
 
-// What the squares over `finite` voxels may sum up to for a PSNR.
+// Returns the squared error, summed over `finite` voxels, that the budget's PSNR allows.
 double allowed_error(const Budget& budget, const Survey& survey, std::uint64_t finite) {
   const double range = static_cast<double>(survey.max) - static_cast<double>(survey.min);
   return range * range * static_cast<double>(finite) / std::pow(10, budget.target / 10);
@@ -157,7 +158,7 @@ class SurveyedConversion {
     sidecar_.timing.survey_s = seconds_since(started_);
     const Clock::time_point encoding = Clock::now();
     EncodedFile encoded = encode(std::move(request));
-    // Most of the file goes to the device while the rest is made.
+    // Most of the file is written to the disk while the rest is made.
     const std::jthread writeback = start_beside([this] { parts_.output.volume().start_writeback(); });
     const std::jthread release = released(stores_.rows.give_up_cache());
     memory_ = beside_resident([](ResidentVolume& resident) { resident.free_memory(); });
@@ -176,7 +177,7 @@ class SurveyedConversion {
   }
 
  private:
-  // Does meanwhile what packing a volume on a device needs; nothing for others.
+  // Does `work` on a thread of its own if the volume lies on a device and is packed. Otherwise does nothing.
   template <class Work>
   std::jthread beside_resident(Work work) {
     ResidentVolume* const resident = parts_.source.resident();
@@ -184,7 +185,7 @@ class SurveyedConversion {
     return start_beside([resident, work = std::move(work)] { work(*resident); });
   }
 
-  // All that selection needs.
+  // Returns the request with everything that selection needs.
   FileRequest prepare() {
     const TraceSpan span(parts_.control.trace, "background");
     prepare_source();
@@ -193,7 +194,7 @@ class SurveyedConversion {
     return request;
   }
 
-  // Refuses values that the options do; finds the background and the source's digest at the same time, and saves.
+  // Throws if the options refuse a value. Finds the background and the source's digest at the same time, then saves.
   void prepare_source() {
     refuse_values(options_, survey_, info_);
     Journal* const journal = parts_.journal;
@@ -205,18 +206,19 @@ class SurveyedConversion {
     const auto digest = [&] { sidecar_.source.digest = source_digest(stores_.rows); };
     if (team_.alone()) {
       tbb::parallel_invoke(find, digest);
-    } else {  // which meet in the same order everywhere
+    } else {  // ranks must meet in the same order everywhere
       find();
       team_.lead(digest);
     }
     if (journal == nullptr) return;
     journal->state.background = background_;
-    // Selection cannot be continued: let it not take the last blocks with it. A short conversion has none to lose.
+    // Selection cannot be continued: this save keeps the last surveyed blocks if selection is interrupted. A short
+    // conversion has no blocks to lose.
     if (journal->resumable()) journal->save();
   }
 
-  // Packed blocks of which the background is a part, and those of which nearly everything is kept. Sets the window of
-  // the request.
+  // Builds the ladders that the survey could not build: of packed blocks that contain the background, and of blocks
+  // that keep nearly everything. Sets the request's window.
   void finish_ladders(FileRequest& request) {
     std::optional<LadderAim> aim = surveyed_ladders(options_, info_);
     if (!aim) return;
@@ -231,7 +233,8 @@ class SurveyedConversion {
     complete(*aim, missing);
   }
 
-  // The cut of the file that was planned lies outside the window of the request: another one is taken, at last none.
+  // Called if the planned file's cut lies outside the request's window. The first call takes a window about `cut`;
+  // later calls take none.
   void move_window(FileRequest& request, double cut) {
     LadderState& state = ladders();
     const auto window = state.moves++ == 0 ? KeyWindow::about(cut, state.width) : std::nullopt;
@@ -251,14 +254,15 @@ class SurveyedConversion {
       aim.near = state.near;
       aim.window = state.window();
     }
-    // What an earlier process saved of them must not be taken for what is built now.
+    // A save before the rebuild: ladders that an earlier process saved must not be taken for the ones that are built
+    // now.
     if (missing.all && parts_.journal != nullptr && parts_.journal->resumable()) parts_.journal->save_now();
     complete_ladders(parts_.source, reading_.survey, stores_.rows, aim, missing, stream_);
   }
 
   LadderState& ladders() { return parts_.journal == nullptr ? stores_.ladders : parts_.journal->state.ladders; }
 
-  // What is asked of the file; where a scene weighs, with what it shows of each leaf.
+  // Returns the request for the file. If a scene weighs errors, the rows also get what the scene shows of each leaf.
   FileRequest make_request() {
     FileRequest request = request_for(options_, survey_, info_, background_.value);
     request.pads_file = parts_.control.pads_file;
@@ -274,7 +278,7 @@ class SurveyedConversion {
     return request;
   }
 
-  // Selection and leaves, as often as the budget takes.
+  // Selects and encodes leaves, repeatedly if the budget needs it.
   EncodedFile encode(FileRequest request) {
     check();
     const auto voxels = static_cast<std::uint64_t>(info_.domain().voxels());
@@ -285,7 +289,7 @@ class SurveyedConversion {
          [&](FileRequest& outside, double cut) { move_window(outside, cut); }, parts_.control.coder, options_.memory},
         std::move(request));
     const Message& notice = encoded.file.size.notice;
-    // Of a lossless file that nobody asked for say_result says all.
+    // say_result() reports a lossless file that the default chose.
     const bool own_choice = options_.budget.kind == Budget::Kind::automatic && encoded.file.size.kind == "lossless";
     if (!notice.empty() && !own_choice && parts_.control.notice) parts_.control.notice(notice);
     return encoded;
@@ -296,7 +300,7 @@ class SurveyedConversion {
     team_.run([&] { start_pass(parts_.control, "encode", voxels); });
   }
 
-  // All of the file but its leaves.
+  // Writes everything in the file except its leaves.
   void write_inner_nodes(const EncodedFile& encoded) {
     const TraceSpan span(parts_.control.trace, "write tree");
     check();
@@ -324,13 +328,14 @@ class SurveyedConversion {
   void digest(const EncodedFile& encoded) {
     const std::uint64_t bytes = encoded.file.size.bytes;
     const TraceSpan span(parts_.control.trace, "digest", bytes);
-    // Of the finished bytes: what is hashed is what the file system holds.
+    // The digest is of the finished bytes: the hashed bytes are the ones that the file system holds.
     sidecar_.file = {bytes, encoded.file.plan.layout.grid, checksum_, digest_of_file(volume_of(encoded), team_).hex()};
   }
 
   File& volume_of(const EncodedFile& encoded) { return encoded.mapped ? *encoded.mapped : parts_.output.volume(); }
 
-  // Of the file as it will be read: blocks that were dropped, and the steps from one block to the next, count too.
+  // Measures the gradient's error in the file as it will be read. Dropped blocks, and the steps from one block to the
+  // next, count too.
   void certify_gradient() {
     const auto voxels = static_cast<std::uint64_t>(info_.domain().voxels());
     const TraceSpan span(parts_.control.trace, "certify", voxels * sizeof(float));
@@ -381,7 +386,7 @@ class SurveyedConversion {
   Shown shown_;
   GridHead head_;
   std::uint32_t checksum_ = 0;
-  std::jthread memory_;  // gets or frees that of the device
+  std::jthread memory_;  // allocates or frees the device's memory
 };
 
 }  // namespace

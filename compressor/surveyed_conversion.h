@@ -1,5 +1,5 @@
-// All of a conversion that comes after the survey: background, selection, the
-// encode pass and the finish, for whoever surveyed the volume.
+// The part of a conversion that comes after the survey: background, selection, the encode pass and the finish. It
+// serves every way in which the volume was surveyed.
 #pragma once
 
 #include <chrono>
@@ -25,40 +25,39 @@
 
 namespace weir {
 
-/// What one conversion works with; all of it outlives its steps.
+/// The objects that one conversion works with. All of them outlive the conversion's steps.
 struct ConversionParts {
   VolumeSource& source;
   const ConversionOptions& options;
   const ConversionControl& control;
   OutputFiles& output;
   WorkDirectory& work;
-  Journal* journal;                       ///< null: what is interrupted is lost
-  const std::optional<Visibility>& seen;  ///< of options.scene
+  Journal* journal;                       ///< null: an interrupted conversion is lost
+  const std::optional<Visibility>& seen;  ///< visibility_of(options, ...)
 };
 
-/// Of options.scene, for a volume over `domain`. Throws Error(usage) where the metric has no use for it, and as
-/// Visibility does.
+/// Returns the visibility by options.scene for a volume over `domain`; nullopt without a scene. Throws Error(usage) if
+/// the metric cannot use a scene, and as Visibility does.
 std::optional<Visibility> visibility_of(const ConversionOptions& options, const Box& domain);
 
-/// Throws where a file that the source lies in is not as it was when it was opened (ingest/files/file_state.h), on all
-/// ranks.
+/// Throws on all ranks if a file of the source has changed since it was opened (ingest/files/file_state.h).
 void check_source(const VolumeSource& source, Team& team);
 
-/// Whether the survey is to look at the widths of quantised leaves (survey.h).
+/// Returns whether the survey looks at the widths of quantised leaves (survey.h).
 bool surveys_widths(const ConversionOptions& options);
 
-/// What the survey is to look for in blocks that are packed; none where none is.
+/// Returns what the survey looks for in packed blocks; nullopt if the encoding is not packed.
 std::optional<LadderAim> surveyed_ladders(const ConversionOptions& options, const SourceInfo& source);
 
 /// The files that a survey fills.
 struct SurveyStores {
   RowStore rows;
-  std::optional<LeafStore<LeafFaces>> faces;  ///< with a scene; given back once it is used
-  LadderState ladders;                        ///< of packed blocks, as the survey built them
+  std::optional<LeafStore<LeafFaces>> faces;  ///< only with a scene; freed after use
+  LadderState ladders;                        ///< how the survey built the ladders of packed blocks
 };
 
-/// Empty ones of those leaves, in the files that `spill` gives for "rows", where a scene weighs "faces", and where
-/// blocks are packed "ladders".
+/// Returns empty stores for `leaves`, in the files that `spill` gives for "rows", for "faces" if `faces` is set (a
+/// scene weighs errors), and for "ladders" if `ladders` is set (blocks are packed).
 inline SurveyStores make_survey_stores(const std::function<std::shared_ptr<File>(const char* name)>& spill,
                                        const NodeLattice& leaves, const SelectionRoom& room, bool faces, bool ladders,
                                        Team& team = no_team()) {
@@ -68,8 +67,8 @@ inline SurveyStores make_survey_stores(const std::function<std::shared_ptr<File>
   return stores;
 }
 
-/// Writes the volume that `survey` and `stores` tell of, and its sidecar, which it returns. `started` is when the
-/// survey was: for Sidecar::Timing.
+/// Writes the volume that `survey` and `stores` describe, and its sidecar. Returns the sidecar. `started` is when the
+/// conversion started, for Sidecar::Timing.
 Sidecar convert_surveyed(const ConversionParts& parts, const ReadingPlan& reading, const Survey& survey,
                          SurveyStores& stores, std::chrono::steady_clock::time_point started);
 

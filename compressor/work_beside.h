@@ -1,4 +1,4 @@
-// Work that may be left undone, by a thread of its own.
+// Starts work on a thread of its own. The work is not done if no thread can be started.
 #pragma once
 
 #include <memory>
@@ -8,7 +8,7 @@
 
 namespace weir {
 
-/// Does it meanwhile; nothing where there is no thread for it.
+/// Does `work` on a new thread. If no thread can be started, does nothing and returns an empty thread.
 template <class Work>
 std::jthread start_beside(Work work) {
   try {
@@ -18,7 +18,8 @@ std::jthread start_beside(Work work) {
   }
 }
 
-/// Frees its memory meanwhile, which takes a second for 5 GB; at once where there is no thread for it.
+/// Frees `memory` on a new thread, because freeing 5 GB takes a second. If no thread can be started, frees it before
+/// returning.
 template <class T>
 std::jthread released(std::unique_ptr<T> memory) {
   if (memory == nullptr) return {};

@@ -11,7 +11,7 @@
 namespace weir {
 namespace {
 
-/// Jobs that are read at once.
+/// Number of jobs that are read at once.
 constexpr std::size_t kReadAtOnce = 250;
 
 }  // namespace

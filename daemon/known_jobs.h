@@ -1,6 +1,7 @@
-// The jobs of a watch that are in the state file when the watch begins, or when its directory is there again. Those
-// that the configuration no longer takes are forgotten, then those whose files are gone. They may be a hundred
-// thousand: they are read and looked at in pieces, between which the service answers.
+// Removes outdated jobs of a watch from the state file. This happens when the watch begins, and again when its
+// directory is back. First the jobs are removed that the configuration no longer accepts, then the jobs whose files
+// are gone. There may be a hundred thousand jobs: they are checked in pieces, and the service answers requests
+// between the pieces.
 #pragma once
 
 #include <chrono>
@@ -14,23 +15,23 @@ namespace weir {
 
 class KnownJobs {
  public:
-  /// Both must outlive the object.
+  /// `watch` and `store` must outlive the object.
   KnownJobs(const WatchConfig& watch, JobStore& store) : watch_(watch), store_(store) {}
 
-  /// How far it is.
+  /// How far the check has come.
   struct Progress {
-    bool looks = false;     ///< all have been compared with the configuration, and their files are looked at
-    std::size_t state = 0;  ///< of kForgottenStates, whose jobs are next
+    bool looks = false;     ///< all jobs were compared with the configuration; now their files are looked at
+    std::size_t state = 0;  ///< index in kForgottenStates of the state that is being checked
     JobListing::SourcePlace place;
   };
   Progress progress() const { return progress_; }
-  /// The steps since `progress` were taken back.
+  /// Goes back to `progress`, because the transaction of the steps since then was rolled back.
   void go_back_to(const Progress& progress) { progress_ = progress; }
   void begin_anew() { progress_ = {}; }
 
   bool over() const { return progress_.looks && progress_.state == kForgottenStates.size(); }
-  /// Goes on for about as long as `time`, a piece or a file at least, inside the caller's transaction. Where the
-  /// directory is not there, no file is looked at and it is over: all would seem to be gone.
+  /// Continues for about `time`, with at least one piece or one file, inside the caller's transaction. If the
+  /// directory is missing, all files would seem to be gone. In this case no file is looked at, and the check ends.
   void step(std::chrono::steady_clock::duration time);
 
  private:
@@ -39,7 +40,7 @@ class KnownJobs {
   void compare_piece();
   void look_at_piece(Time end);
   std::vector<JobListing::Source> piece() const;
-  /// Behind `job`, or at the next state where there is none.
+  /// Moves the position behind `job`, or to the beginning of the next state if `job` is null.
   void go_behind(const JobListing::Source* job);
 
   const WatchConfig& watch_;

@@ -18,9 +18,9 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// The processes of a daemon that was killed die a moment after it.
+/// How long the start waits for output locks: the child processes of a killed daemon die a moment after it.
 constexpr milliseconds kDyingWriters{10'000};
-/// Between two looks at whether the state file's journal is long.
+/// Time between two checks of the length of the state file's journal.
 constexpr milliseconds kCheckpoint{1000};
 
 std::uint64_t monotonic_usec() {
@@ -29,7 +29,7 @@ std::uint64_t monotonic_usec() {
   return static_cast<std::uint64_t>(now.tv_sec) * 1'000'000 + static_cast<std::uint64_t>(now.tv_nsec) / 1000;
 }
 
-// What a running service cannot change.
+// Returns whether `a` and `b` differ in a setting that a running service cannot change.
 bool needs_restart(const ServiceConfig& a, const ServiceConfig& b) {
   return a.state != b.state || a.listen.host != b.listen.host || a.listen.port != b.listen.port ||
          a.control_socket != b.control_socket || a.port_file != b.port_file || a.token != b.token;
@@ -73,8 +73,8 @@ Service::Service(Load load, std::string program, std::string version)
   write_port_file();
 }
 
-// Those whose outputs the configuration `before` did not have, which were cleaned when they came, and in which no job
-// runs: its files are no leftovers.
+// Returns the watches whose outputs must be cleaned. Outputs of the configuration `before` were cleaned when they
+// were added. An output with a running job is left out, because its files are no leftovers.
 std::vector<WatchConfig> Service::watches_to_clean(const DaemonConfig& before) const {
   std::vector<WatchConfig> watches;
   for (const WatchConfig& watch : config_.watches) {
@@ -99,7 +99,7 @@ void Service::clean(const std::vector<WatchConfig>& watches, milliseconds patien
   }
 }
 
-// Written beside and renamed, so that a reader sees the number or nothing.
+// Writes the port to a temporary file and renames it, so that a reader sees the number or nothing.
 void Service::write_port_file() const {
   const std::string& path = config_.service.port_file;
   if (path.empty()) return;
@@ -137,7 +137,7 @@ void Service::run() {
     store_.retry_failed_io();
   } catch (const CorruptDatabase&) {
     throw;
-  } catch (const Error& error) {  // a full disk of the state file, which all wait for from here on
+  } catch (const Error& error) {  // for example, the state file's disk is full; all parts wait for it from here on
     log_.error("state-file-fault", {{"reason", error.what()}});
   }
   runner_.configure(config_);
@@ -155,7 +155,7 @@ void Service::run() {
   runner_.wake();
   try {
     io_.run();
-  } catch (const CorruptDatabase& damage) {  // nothing can be known from here on; what runs ends with the process
+  } catch (const CorruptDatabase& damage) {  // nothing is known for certain any more; running jobs end with the process
     log_.error("end", {{"reason", damage.what()}});
     throw Error(damage.kind(), compose(damage.message(), "; start again, then it is moved aside and rebuilt"));
   }
@@ -180,7 +180,8 @@ void Service::reload() {
   notifier_.send("READY=1");
 }
 
-// None where it is refused: then the log goes on in the file that it has, which may have been renamed.
+// Returns the new configuration; none if it is refused. In this case the log continues under its configured name, in
+// the present file if it cannot be opened anew.
 std::optional<DaemonConfig> Service::load_again() {
   try {
     DaemonConfig config = load_();
@@ -198,7 +199,7 @@ std::optional<DaemonConfig> Service::load_again() {
 void Service::reopen_log() {
   try {
     log_.reopen(config_.service);
-  } catch (const Error& error) {  // the open one goes on
+  } catch (const Error& error) {  // the open log file stays in use
     log_.error("reload-rejected", {{"reason", error.what()}, {"notice", "the log goes on in the file it has"}});
   }
 }
@@ -263,7 +264,7 @@ void Service::checkpoint() {
     store_.checkpoint();
   } catch (const CorruptDatabase&) {
     throw;
-  } catch (const Error&) {  // a full disk, say, of which the next write tells
+  } catch (const Error&) {  // for example a full disk, which the next write reports
   }
 }
 

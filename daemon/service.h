@@ -1,8 +1,9 @@
-// The daemon: what `weir watch CONFIG.toml` is from its first line of log to its
-// last. Puts the parts together and answers signals:
-//   SIGTERM, SIGINT  starts nothing more, ends when what runs is done or the grace time is over; a second one at once
-//   SIGHUP           reads the configuration again and opens the log file anew; one that a start refuses changes
-//   nothing
+// The daemon: everything that `weir watch CONFIG.toml` does, from its first log line to its last. Connects the parts
+// and handles signals:
+//   SIGTERM, SIGINT  starts no more jobs; ends when the running jobs are done or the grace time is over. A second
+//                    signal ends the daemon at once
+//   SIGHUP           reads the configuration again and opens the log file anew. A configuration that a start would
+//                    refuse changes nothing
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -31,11 +32,11 @@ class Service {
  public:
   using Load = std::function<DaemonConfig()>;  ///< reads the configuration; throws Error as load_config does
 
-  /// Cleans the output directories, opens the state file and listens. `program` is the `weir` that converts.
-  /// Throws Error where the service cannot run.
+  /// Cleans the output directories, opens the state file and listens. `program` is the path of the `weir` that
+  /// converts. Throws Error if the service cannot run.
   Service(Load load, std::string program, std::string version);
 
-  /// Watches and converts until a signal ends it.
+  /// Watches and converts until a signal ends the service.
   void run();
 
  private:

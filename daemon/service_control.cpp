@@ -13,7 +13,7 @@ namespace weir {
 namespace {
 
 constexpr std::size_t kRetriesAtOnce = 100;
-constexpr std::chrono::seconds kRetryPause{1};  // where the state file cannot be written
+constexpr std::chrono::seconds kRetryPause{1};  // used if the state file cannot be written
 
 double seconds_of(std::int64_t ms) { return static_cast<double>(ms) / 1000; }
 
@@ -107,7 +107,7 @@ std::optional<JobView> ServiceControl::job(std::int64_t id) {
 JobChange ServiceControl::retry(std::int64_t id, bool force) {
   const std::optional<Job> before = store_.job(id);
   if (!before) return JobChange::no_such_job;
-  // The job would be forgotten, and its results with it.
+  // A retry would forget the job together with its results.
   if (before->state == JobState::done && is_gone(before->source)) return JobChange::no_source;
   if (!store_.retry(id, force)) return JobChange::wrong_state;
   const std::optional<Job> job = store_.job(id);
@@ -118,7 +118,7 @@ JobChange ServiceControl::retry(std::int64_t id, bool force) {
   return JobChange::made;
 }
 
-// A few at a time: thousands at once would keep all others waiting.
+// Retries a few jobs at a time: thousands at once would keep all other requests waiting.
 std::uint64_t ServiceControl::retry_all_failed(const std::string& problem) {
   const std::vector<JobStore::Problem> found = store_.with_problems(problem);
   const bool idle = to_retry_.empty();
@@ -137,7 +137,7 @@ std::uint64_t ServiceControl::retry_all_failed(const std::string& problem) {
   return found.size();
 }
 
-// The first few, in one write.
+// Retries the first few jobs in one transaction.
 void ServiceControl::retry_some() {
   const auto some = static_cast<std::ptrdiff_t>(std::min(to_retry_.size(), kRetriesAtOnce));
   const auto end = to_retry_.begin() + some;
@@ -163,7 +163,7 @@ void ServiceControl::retry_rest(std::chrono::milliseconds pause) {
         retry_some();
       } catch (const CorruptDatabase&) {
         throw;
-      } catch (const Error&) {  // a full disk of the state file, which others say
+      } catch (const Error&) {  // for example, the state file's disk is full, which other parts report
         next = kRetryPause;
       }
       retry_rest(next);
@@ -241,7 +241,7 @@ StatusView ServiceControl::status() {
   return view;
 }
 
-// How fast files come and are converted, and when the queue ends at that.
+// Fills in how fast files arrive and are converted, and when the queue ends at these rates.
 void ServiceControl::add_rates(StatusView& status) const {
   const std::map<std::string, std::uint64_t> waiting = store_.waiting_bytes();
   for (WatchView& watch : status.watches) {

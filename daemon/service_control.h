@@ -1,5 +1,5 @@
-// The answers to the HTTP side, put together from the state file, what runs and
-// what is watched. One thread, that of the io_context.
+// Answers the calls of the HTTP side from the state file, the running jobs and the watches. One thread: the
+// io_context's.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -20,21 +20,21 @@
 
 namespace weir {
 
-/// What the service knows of itself.
+/// Facts about the service itself.
 struct ServiceState {
   std::string version;
   std::string config;  ///< path
   bool stopping = false;
   std::uint64_t reloads = 0;
   std::uint64_t rejected_reloads = 0;
-  int jobs = 1;  ///< at once
+  int jobs = 1;  ///< jobs that run at the same time
 };
 
 using WatchedTrees = std::vector<std::unique_ptr<WatchedTree>>;  ///< in the order of the configuration
 
 class ServiceControl final : public Control {
  public:
-  /// All must outlive the object.
+  /// All arguments must outlive the object.
   ServiceControl(boost::asio::io_context& io, DiskTurns& turns, JobStore& store, JobRunner& runner,
                  const WatchedTrees& trees, JobViewer& viewer, const EventLog& log, const ServiceState& state);
 

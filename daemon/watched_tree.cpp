@@ -16,18 +16,19 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-/// Until the state file is tried again.
+/// Delay before the state file is tried again.
 constexpr milliseconds kRetry{1000};
-/// Between two records of a file that is being written to.
+/// Least time between two records of a file that is being written to.
 constexpr std::chrono::seconds kBetweenRecords{5};
-/// Until a file is looked at again that could not be looked at.
+/// Delay before an unreachable file is looked at again.
 constexpr std::chrono::seconds kUnreachable{5};
-/// A transaction takes as many events and looks as this time holds: few flushes of the disk, and answers meanwhile.
+/// A transaction handles as many events and looks as fit in this time, for few disk flushes and quick answers to
+/// others.
 constexpr milliseconds kTransactionTime{8};
 constexpr std::size_t kLeastBatch = 20;
-constexpr std::size_t kMostBatch = 100;  // what is looked at next may take longer than what was before
+constexpr std::size_t kMostBatch = 100;  // the next looks may take longer than the last ones
 
-// API, page and convert's announcements are text.
+// Returns whether `path` is valid UTF-8. The API, the page and convert's announcements carry only text.
 bool is_text(const std::string& path) {
   try {
     static_cast<void>(nlohmann::json(path).dump());
@@ -37,11 +38,12 @@ bool is_text(const std::string& path) {
   }
 }
 
-// Between two looks at whether a job is over whose source was written to meanwhile.
+// Delay before the next check whether a running job, to whose source a program has written, is over.
 constexpr std::chrono::seconds kAfterRun{1};
 
-// Whether a file that was rewritten after its conversion had begun may have the time that it had before: file systems
-// count in ticks of a few milliseconds, some in whole seconds, FAT in two. As git says of its index, the time is racy.
+// Returns whether the source may have kept its time although it was rewritten after its conversion began. File
+// systems count time in ticks of a few milliseconds, some in seconds, FAT in two seconds. Git calls such a time
+// "racy".
 bool may_hide_a_write(const Job& job) {
   const bool coarse = job.identity.mtime_ns % 1'000'000'000 == 0;
   return job.started_ms <= job.identity.mtime_ns / 1'000'000 + (coarse ? 2000 : 20);
@@ -59,7 +61,7 @@ WatchedTree::WatchedTree(boost::asio::io_context& io, DiskTurns& turns, WatchCon
       reports_(std::move(reports)),
       stores_(io, config_,
               [this](const std::string& head) {
-                if (!tracked_.contains(head)) take({FileEventKind::found, head});  // else it is looked at anyway
+                if (!tracked_.contains(head)) take({FileEventKind::found, head});  // otherwise it is looked at anyway
               }),
       timer_(io) {
   watch_ = make_directory_watch(io, config_,
@@ -95,7 +97,7 @@ void WatchedTree::take(const FileEvent& event) {
     first_events_ = drop_repeated_events(events_, first_events_);
     repeats_dropped_at_ = std::max(kManyEvents, 2 * events_.size());
   }
-  if (store_fault_.empty()) schedule(milliseconds(0));  // else at the time of the next try
+  if (store_fault_.empty()) schedule(milliseconds(0));  // otherwise the next try is scheduled already
 }
 
 void WatchedTree::schedule(milliseconds delay) {
@@ -110,13 +112,14 @@ void WatchedTree::schedule(milliseconds delay) {
   });
 }
 
-// All that is due, in transactions of its own. Where the state file cannot be written, nothing has happened and all
-// is due again.
+// Handles all events and looks that are due, in a transaction. If the state file cannot be written, nothing has
+// changed and all is due again.
 void WatchedTree::work() {
   scheduled_ = false;
   looked_at_.clear();
-  const auto count = static_cast<std::ptrdiff_t>(std::min(events_.size(), batch_ / 2));  // the rest is the agenda's
-  Clock::duration looking{};  // without the flush, which takes as long for few as for many
+  const auto count =
+      static_cast<std::ptrdiff_t>(std::min(events_.size(), batch_ / 2));  // the rest is for looks of the agenda
+  Clock::duration looking{};  // without the flush, whose time hardly depends on the number of looks
   const std::vector<FileEvent> events(events_.begin(), events_.begin() + count);
   const std::size_t first = std::min(events.size(), first_events_);
   const KnownJobs::Progress known = known_.progress();
@@ -137,7 +140,7 @@ void WatchedTree::work() {
     ready_ = false;
     superseded_.clear();
     known_.go_back_to(known);
-    // What was looked at is due again; what was thought to be known is new again. The events themselves are there yet.
+    // Paths that were looked at are due again, and known jobs count as unknown. The events are still in events_.
     for (const FileEvent& event : events) looked_at_.erase(event.path);
     for (const std::string& path : looked_at_) {
       if (tracked_.contains(path)) {
@@ -177,7 +180,7 @@ void WatchedTree::log_look(std::size_t events) const {
 void WatchedTree::fit_batch(Clock::duration looking) {
   const std::size_t looked = looked_at_.size();
   if (looked == 0 || (looking < kTransactionTime && looked < batch_ / 2))
-    return;  // says little of how many there may be
+    return;  // too little work to estimate how much fits
   const double fit = static_cast<double>(looked) * (std::chrono::duration<double>(kTransactionTime) / looking);
   batch_ = static_cast<std::size_t>(std::clamp(fit, double{kLeastBatch}, double{kMostBatch}));
 }
@@ -190,7 +193,7 @@ void WatchedTree::work_off(const std::vector<FileEvent>& events, std::size_t fir
     const FileEvent& event = events[i];
     switch (event.kind) {
       case FileEventKind::overflow:
-        // The close that a file waited for may be among what was lost.
+        // The close event that a file waits for may be among the lost events.
         for (auto& [path, tracked] : tracked_) {
           tracked.completion.happened(FileEventKind::overflow, now);
           track_until(path, now);
@@ -199,7 +202,7 @@ void WatchedTree::work_off(const std::vector<FileEvent>& events, std::size_t fir
       case FileEventKind::root_lost:
       case FileEventKind::root_back:
         if (event.kind == FileEventKind::root_back) known_.begin_anew();
-        ready_ = ready_ || event.kind == FileEventKind::root_back;  // jobs waited for it
+        ready_ = ready_ || event.kind == FileEventKind::root_back;  // jobs waited for the directory
         log_.warn(
             "watch",
             {{"watch", config_.label},
@@ -236,7 +239,7 @@ void WatchedTree::look(const std::string& path, Time now) {
   FileSample sample;
   try {
     sample = sample_file(path, config_.complete == Completion::marker ? config_.marker : "", config_.convert_options);
-  } catch (const Error& error) {  // of this file; the others go on
+  } catch (const Error& error) {  // a fault of this file alone; the others go on
     if (!std::exchange(tracked_.at(path).unreachable, true)) {
       log_.warn("watch", {{"watch", config_.label}, {"notice", error.what()}});
     }
@@ -255,7 +258,8 @@ void WatchedTree::look(const std::string& path, Time now) {
     written_.emplace_back([this, path, id = seen.job.id, bytes = sample.identity.bytes] {
       log_.info("discovered", {{"job", id}, {"source", path}, {"bytes", bytes}});
     });
-  } else if (seen.change == JobStore::Change::changed) {  // it may run, or its thumbnails be rendered
+  } else if (seen.change ==
+             JobStore::Change::changed) {  // the job may be running, or its thumbnails are being rendered
     superseded_.push_back(seen.job.id);
   }
   if (seen.job.state == JobState::running && tracked_.at(path).written && may_hide_a_write(seen.job)) {
@@ -265,7 +269,7 @@ void WatchedTree::look(const std::string& path, Time now) {
   const bool again = tries_again(path, seen.job);
   if (again && seen.job.state == JobState::waiting) ready_ = true;
   if (seen.job.state == JobState::waiting || (seen.job.state != JobState::discovered && !again)) {
-    forget(path);  // known, and as it was
+    forget(path);  // known and unchanged
     return;
   }
   if (!is_text(path)) {
@@ -276,8 +280,9 @@ void WatchedTree::look(const std::string& path, Time now) {
   apply(path, tracked_.at(path).completion.look(sample, now), seen.job);
 }
 
-// A file that is being written to changes up to fifty times a second, and each write to the state file is flushed to
-// its disk: meanwhile that hears of it every few seconds.
+// Returns whether the state file need not hear of the file yet. A file that is being written to may change fifty
+// times a second, and each write to the state file flushes a disk. So a growing file is recorded only every few
+// seconds.
 bool WatchedTree::keeps_growing(const std::string& path, const FileSample& sample, Time now) {
   Tracked& tracked = tracked_.at(path);
   if (is_store_head(path) || !tracked.recorded || now - *tracked.recorded >= kBetweenRecords) return false;
@@ -288,8 +293,7 @@ bool WatchedTree::keeps_growing(const std::string& path, const FileSample& sampl
   return true;
 }
 
-// Gives a job that is known, and whose source looks as it did, its turn once more where there is reason to; whether it
-// did.
+// Lets a known job with an unchanged source run once more if there is a reason. Returns whether it does.
 bool WatchedTree::tries_again(const std::string& path, const Job& job) {
   Tracked& tracked = tracked_.at(path);
   const bool permitted = std::exchange(tracked.permitted, false);
@@ -337,16 +341,17 @@ void WatchedTree::forget(const std::string& path) {
   const auto at = tracked_.find(path);
   if (at == tracked_.end()) return;
   agenda_.erase({at->second.look, path});
-  const auto ended = tracked_.extract(at);  // its end may give a turn to another one
+  const auto ended = tracked_.extract(at);  // its destruction may give a turn to another hierarchy
 }
 
 void WatchedTree::gone(const std::string& path) {
   stores_.forget(path);
   forget(path);
   const auto job = store_.find(config_.label, path);
-  // A done job is the record of its result, and a cancelled one of a decision; a running one finds out by itself.
+  // A done job stays as the record of its result, and a cancelled one as that of a decision. A running job notices
+  // the loss itself.
   if (!job || std::ranges::find(kForgottenStates, job->state) == kForgottenStates.end()) return;
-  if (!is_directory(config_.directory)) return;  // once it is back, the file is found again, or the job forgotten
+  if (!is_directory(config_.directory)) return;  // when it is back, the file is found again or its job is forgotten
   store_.remove(job->id);
   written_.emplace_back([this, path, id = job->id] { log_.info("source-gone", {{"job", id}, {"source", path}}); });
 }

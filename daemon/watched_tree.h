@@ -1,9 +1,8 @@
-// One [[watch]] at work: what happens to its files becomes jobs in the state
-// file, and a job whose file is complete waits to be converted. One thread, that
-// of the io_context.
+// One [[watch]] at work. Events of its files become jobs in the state file. A job becomes "waiting" when its file is
+// complete. One thread: the io_context's.
 //
-// Events are taken together and written in one transaction, so that two thousand
-// files that appear at once cost a few flushes of the disk and not two thousand.
+// Events are collected and written in one transaction, so that two thousand files that appear at once cost a few disk
+// flushes instead of two thousand.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -35,7 +34,7 @@ namespace weir {
 class WatchedTree {
  public:
   struct Reports {
-    std::function<void()> ready;                       ///< a job waits that did not before
+    std::function<void()> ready;                       ///< a job is waiting that was not waiting before
     std::function<void(std::int64_t job)> superseded;  ///< the source of a running job was rewritten
   };
 
@@ -47,19 +46,20 @@ class WatchedTree {
   struct Status {
     std::string method;  ///< "inotify" or "poll"
     bool up = false;
-    std::string reason;  ///< why not: the directory is not there, or the state file cannot be written
+    std::string reason;  ///< why the watch is not up: the directory is missing, or the state file cannot be written
     std::uint64_t overflows = 0;
   };
   Status status() const;
 
-  /// What the file at `path` still waits for before it is taken, in words; empty: it is not waited for.
+  /// Returns in words what the file at `path` still waits for before it is taken; empty if the tree does not wait for
+  /// it.
   std::string waits_for(const std::string& path) const;
-  /// Of the sources that came since the first look at the directory, over the last ten minutes.
+  /// Returns the rates, over the last ten minutes, of the sources that came since the first look at the directory.
   RecentRate::Rates arrivals() const { return arrivals_.at(std::chrono::steady_clock::now()); }
 
-  /// Takes the file as just found: a retry of its job was requested, or its content has changed.
+  /// Treats the file at `path` as just found, because a retry of its job was requested or its content has changed.
   void look_again(const std::string& path);
-  /// The service was told to read its configuration again, and this watch stays as it is.
+  /// Must be called when the service reads its configuration again and this watch stays as it is.
   void reloaded() { watch_->choose_again(); }
 
  private:
@@ -71,17 +71,17 @@ class WatchedTree {
     FileCompletion completion;
     Time look = Time::max();
     std::string waits_for{};         ///< why it was not complete at the last look
-    bool arrived = false;            ///< it came, or was written to, since the first look at the directory
+    bool arrived = false;            ///< the file came, or was written to, since the first look at the directory
     bool written = false;            ///< a program was seen to write to it
-    bool permitted = false;          ///< its mode or owner was set
-    bool unreachable = false;        ///< it could not be looked at, which was said
-    std::optional<Time> recorded{};  ///< when the state file last heard of it, as a source that is not complete
+    bool permitted = false;          ///< the file's mode or owner was set
+    bool unreachable = false;        ///< the file could not be looked at, and the log says so
+    std::optional<Time> recorded{};  ///< when the state file last recorded the file as an incomplete source
   };
 
   void take(const FileEvent& event);
   void schedule(std::chrono::milliseconds delay);
   void work();
-  /// The first `first` of `events` are of the first look at the directory.
+  /// The first `first` of `events` come from the first look at the directory.
   void work_off(const std::vector<FileEvent>& events, std::size_t first);
   void look(const std::string& path, Time now);
   bool keeps_growing(const std::string& path, const FileSample& sample, Time now);
@@ -102,28 +102,30 @@ class WatchedTree {
   const EventLog& log_;
   Reports reports_;
   std::map<std::string, Tracked> tracked_;         ///< files that are not known to be complete
-  std::set<std::pair<Time, std::string>> agenda_;  ///< when to look at which of them
+  std::set<std::pair<Time, std::string>> agenda_;  ///< when to look at each tracked file
   std::deque<FileEvent> events_;
-  std::set<std::string> again_;   ///< of events_, those of look_again: nothing arrived
-  std::size_t first_events_ = 0;  ///< so many of events_ are of the first look at the directory
+  std::set<std::string> again_;   ///< paths in events_ that look_again() added: they are not arrivals
+  std::size_t first_events_ = 0;  ///< this many of events_ come from the first look at the directory
   RecentRate arrivals_{kArrivalWindow, std::chrono::steady_clock::now()};
-  std::set<std::string> looked_at_;               ///< paths, in the last transaction
-  std::size_t batch_ = 100;                       ///< events and looks in the next one, at most
-  std::size_t repeats_dropped_at_ = kManyEvents;  ///< so many events are gone through for equal ones
+  std::set<std::string> looked_at_;               ///< paths that the last transaction looked at
+  std::size_t batch_ = 100;                       ///< upper limit of events and looks in the next transaction
+  std::size_t repeats_dropped_at_ = kManyEvents;  ///< when events_ has this size, repeated events are dropped
   KnownJobs known_{config_, store_};
-  std::string store_fault_;  ///< why what was seen cannot be written down; empty: it can
+  std::string store_fault_;  ///< why the state file cannot be written; empty if it can
   bool scheduled_ = false;
-  /// For after the transaction: what is logged and counted of it, whether a job is ready, which are superseded.
+  /// What the current transaction leaves to do once it is written: log lines and counts, whether a job is ready, and
+  /// which jobs are superseded.
   std::vector<std::function<void()>> written_;
   bool ready_ = false;
   std::vector<std::int64_t> superseded_;
-  /// Not outlived by what is tracked, whose ends would give turns to others.
+  /// Declared after tracked_, so that this object is destroyed first: tracked files that end afterwards give no turns
+  /// to others.
   std::shared_ptr<StoreTurns> store_turns_ =
       std::make_shared<StoreTurns>(kStoresAtOnce, [this](const std::string& head) { has_turn(head); });
   StorePoll stores_;
   boost::asio::steady_timer timer_;
   std::unique_ptr<DirectoryWatch> watch_;
-  std::shared_ptr<void> alive_ = std::make_shared<char>();  ///< a wait that has ended may be called yet
+  std::shared_ptr<void> alive_ = std::make_shared<char>();  ///< a queued handler may outlive the object
 };
 
 }  // namespace weir

@@ -1,5 +1,5 @@
-/* convert_memory: a dense texture in memory, as a renderer has it, becomes a compressed grid in memory, and is sampled
- * in its place. */
+/* convert_memory: converts a dense texture in memory, as a renderer has it, to a compressed grid in memory, and
+ * samples the grid in place. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <weir.h>

@@ -1,7 +1,7 @@
-// weir_bench_decode FILE.nvdb...: how fast the device decodes all blocks of packed files that have a stream into float
-// values in its memory, beside the rate of copies within that memory; and whether the bits are those that the host
-// decodes. "of all": the volume's values, those of blocks without a stream too, in that time. Exits with 1 where bits
-// differ; 2 for anything wrong.
+// weir_bench_decode FILE.nvdb...: measures how fast the device decodes all blocks of packed files that have a stream
+// into float values in its memory, beside the rate of copies within that memory. Also checks that the bits are those
+// that the host decodes. "of all" counts the whole volume's values in that time, including blocks without a stream.
+// Exits with 1 if bits differ, 2 for any other failure.
 #include <cuda_runtime_api.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::size_t kBatch = std::size_t{1} << 18U;  // blocks: 512 MiB of values
 
-/// Of all blocks with a stream, region by region.
+/// Returns all blocks with a stream, region by region.
 std::vector<BlockId> blocks_of(const PackedData& packed) {
   std::vector<BlockId> blocks;
   const NodeLattice& regions = packed.regions();
@@ -37,7 +37,7 @@ std::vector<BlockId> blocks_of(const PackedData& packed) {
   return blocks;
 }
 
-/// How many of the blocks the device decoded to other bits than the host.
+/// Returns the number of blocks that the device decoded to other bits than the host.
 std::size_t differing(const PackedData& packed, const std::vector<BlockId>& blocks, std::size_t first,
                       const std::vector<float>& values) {
   std::size_t different = 0;

@@ -1,8 +1,8 @@
-// weir_bench_encode [EDGE]: how fast the device surveys and encodes the packed blocks of a cloud and of turbulence of
-// EDGE^3 float32 values, 1024 by default and a multiple of 128, that lie in its memory, at rates 20 and 8; beside it
-// the CPU with all cores, the same blocks out of the host's memory through the device, and a plain copy of the values
-// to the host. Each cost, near rung, stream and decoded value is compared with the CPU's. Exits with 1 where one has
-// other bits; 2 for anything wrong.
+// weir_bench_encode [EDGE]: measures how fast the device surveys and encodes the packed blocks of a cloud and of
+// turbulence at rates 20 and 8. Each has EDGE^3 float32 values in the device's memory; EDGE is 1024 by default and a
+// multiple of 128. For comparison it measures the CPU with all cores, the same blocks sent from the host's memory
+// through the device, and a plain copy of the values to the host. Compares each cost, near rung, stream and decoded
+// value with the CPU's. Exits with 1 if bits differ, 2 for any other failure.
 #include <cuda_runtime_api.h>
 
 #include <algorithm>
@@ -58,7 +58,7 @@ class Bench {
     const Surveyed all = survey({});
     say("survey, all rungs, on the device", all.seconds);
     const std::int32_t step = choose_step(all);
-    // As in a conversion that has looked ahead.
+    // The keys of a conversion that has looked ahead.
     const double size = static_cast<double>(step_size(step));
     const SearchKeys keys = KeyWindow(size * size / 2, 1, 1.25).keys();
     const Surveyed about = survey({false, step, {}, keys});
@@ -124,7 +124,7 @@ class Bench {
     return other;
   }
 
-  // Bytes of all streams at a step.
+  // Returns the bytes of all streams at a step.
   double bytes_at(const Surveyed& all, std::int32_t step) const {
     std::atomic<std::uint64_t> bytes{0};
     on_all_cores(field_.blocks(), [&](std::int64_t first, std::int64_t end) {
@@ -137,7 +137,8 @@ class Bench {
     return static_cast<double>(bytes);
   }
 
-  // The coarsest step of all blocks at which they take what the rate gives, or half of what they take at most.
+  // Returns the coarsest step at which the blocks take as many bytes as the rate allows, or half of their most bytes if
+  // that is less.
   std::int32_t choose_step(const Surveyed& all) const {
     const double wanted = std::min(field_.bytes() / rate_, bytes_at(all, kMostStep) / 2);
     std::int32_t low = kLeastStep;
@@ -153,7 +154,7 @@ class Bench {
     return low;
   }
 
-  // Of the finest rung at `step` or coarser; null: a mean is enough, or the block has none.
+  // Returns the cost of the finest rung at `step` or coarser; null if a mean is enough or the block has no rungs.
   static const RungCost* cost_at(const Surveyed& all, std::int64_t b, std::int32_t step, std::int32_t* at = nullptr) {
     const BlockFigures& figures = all.figures[static_cast<std::size_t>(b)];
     const RungCost* found = nullptr;
@@ -308,7 +309,7 @@ class Bench {
     return other;
   }
 
-  // As a conversion does it: boxes of 8 MiB out of pageable memory, by all cores, and figures back.
+  // Surveys as a conversion does: boxes of 8 MiB from pageable memory, by all cores, with the figures copied back.
   void through_host(const RungAsk& ask) const {
     const auto coder =
         make_device_coder(0, [](const Error& error) { std::printf("the coder has failed: %s\n", error.what()); });
@@ -339,7 +340,7 @@ class Bench {
         });
       }
     };
-    pass();  // takes the memory
+    pass();  // allocates the memory
     say("survey of 8 MiB boxes out of the host's memory", seconds_of(pass));
   }
 

@@ -1,6 +1,7 @@
-// weir_bench_frames SOURCE.raw X,Y,Z FILE.nvdb...: frames a second of path tracing with multiple scattering, one sample
-// a pixel each, from a hardware-filtered dense texture of the source (float32) and from files made of it, and their
-// ratio in the same run. All variants march through the first file's macrocells, so that only the lookups differ.
+// weir_bench_frames SOURCE.raw X,Y,Z FILE.nvdb...: measures frames a second of path tracing with multiple scattering,
+// each with one sample a pixel, from a hardware-filtered dense texture of the source (float32) and from files made of
+// it, and their ratio in the same run. All variants march through the first file's macrocells, so that only the lookups
+// differ.
 //   --cells A,B,...   edges of macrocells to try, default 32
 //   --size N          pixels along the picture's edge, default 1024
 //   --pictures DIR    writes each variant's picture of 64 samples there
@@ -30,7 +31,7 @@
 namespace weir {
 namespace {
 
-constexpr float kLeastMilliseconds = 700;  // of a measurement
+constexpr float kLeastMilliseconds = 700;  // least duration of a measurement
 constexpr std::uint32_t kPictureSamples = 64;
 
 struct Options {
@@ -97,7 +98,8 @@ class Event {
   cudaEvent_t event_ = nullptr;
 };
 
-/// Milliseconds of one call of `work(i)`, repeated until it took long enough, after a few calls that do not count.
+/// Returns the milliseconds of one call of work(i). Repeats the calls until they take long enough, after three calls
+/// that do not count.
 template <class Work>
 double time_of(const Work& work) {
   std::uint32_t call = 0;
@@ -142,7 +144,7 @@ class Bench {
     first_ = Image();
   }
 
-  /// The first variant after use_cells is what the others are compared with.
+  /// Runs a variant. The others are compared with the first variant after use_cells().
   template <class Volume>
   void run(const std::string& name, const Volume& volume, std::uint64_t bytes) {
     RenderTask<Volume> task = setup_->bare_task(volume);
@@ -171,7 +173,7 @@ class Bench {
   }
 
  private:
-  // Root mean square difference of the picture from the first variant's, in thousandths of a white.
+  // Returns the root mean square difference of the picture from the first variant's, in thousandths of white.
   template <class Volume>
   double compare(const std::string& name, const RenderTask<Volume>& task, const DeviceArray<Float3>& sums) {
     check_cuda(cudaMemsetAsync(sums.data(), 0, sums.bytes(), cudaStreamPerThread), "clearing");
@@ -227,8 +229,8 @@ void run_file(Bench& bench, const std::string& name, DeviceVolume& volume) {
 void run(const Options& options) {
   use_device(0);
   std::vector<std::unique_ptr<NvdbFile>> files;
-  std::vector<std::unique_ptr<DeviceVolume>> volumes;  // null where packed
-  std::vector<std::unique_ptr<BrickVolume>> packed;    // null where not
+  std::vector<std::unique_ptr<DeviceVolume>> volumes;  // null if the file is packed
+  std::vector<std::unique_ptr<BrickVolume>> packed;    // null if the file is not packed
   for (const std::string& path : options.files) {
     files.push_back(std::make_unique<NvdbFile>(path));
     const NvdbGrid& grid = files.back()->grid();

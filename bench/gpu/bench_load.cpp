@@ -1,6 +1,6 @@
-// weir_bench_load FILE.nvdb: how fast every way brings a file from the page cache to the device, against the rate of
-// copies from page-locked memory, which no way can exceed. Exits with 1 unless the median of the way that the
-// loader takes by itself is at least 0.8 of the median of that rate; 2 for anything wrong.
+// weir_bench_load FILE.nvdb: measures how fast each way brings a file from the page cache to the device, against the
+// rate of copies from page-locked memory, which no way can exceed. Exits with 1 unless the median of the loader's own
+// choice reaches 0.8 of the median of that rate; 2 for any other failure.
 #include <cuda_runtime_api.h>
 #include <fcntl.h>
 #include <unistd.h>
@@ -30,7 +30,7 @@ constexpr double kLeastRatio = 0.8;
 constexpr int kRuns = 5;
 constexpr std::uint64_t kMiB = 1ULL << 20U;
 
-/// Runs of one way, the fastest first.
+/// The runs of one way, the fastest first.
 struct Timing {
   std::vector<LoadReport> runs;
 
@@ -46,7 +46,7 @@ Timing timed(const std::function<LoadReport()>& load) {
   return timing;
 }
 
-/// Runs `work`, and tells its seconds as a report on `bytes`.
+/// Runs `work` and returns its seconds as a report on `bytes`.
 LoadReport clocked(std::uint64_t bytes, const std::function<void()>& work) {
   LoadReport report;
   report.bytes = bytes;
@@ -63,7 +63,8 @@ class Table {
                 "populate", "register", "wait", "drain", "unlock");
   }
 
-  /// GB/s and the ratio to the limit are of the median; stages of the fastest run, in seconds, added over threads.
+  /// Prints a way. GB/s and the ratio to the limit are of the median run; stages are of the fastest run, in seconds,
+  /// summed over threads.
   void row(const std::string& way, const Timing& timing) const {
     const LoadStages& stages = timing.runs.front().stages;
     std::printf("%-38s %8.4f %8.4f %7.2f %6.3f  %8.4f %8.4f %8.4f %8.4f %8.4f\n", way.c_str(), timing.best_s(),
@@ -81,7 +82,7 @@ class Table {
   double limit_s_;
 };
 
-/// `bytes` copied from 1 GiB of page-locked memory, again and again.
+/// Copies `bytes` from 1 GiB of page-locked memory, which is reused.
 Timing pinned_limit(std::uint64_t bytes, std::byte* device) {
   const std::uint64_t piece = std::min(bytes, 1024 * kMiB);
   std::string refusal;
@@ -99,7 +100,7 @@ Timing pinned_limit(std::uint64_t bytes, std::byte* device) {
   });
 }
 
-/// What readGrid and an upload do: the file into ordinary memory, and that to the device.
+/// Loads as readGrid and an upload do: the file into ordinary memory, then that memory to the device.
 Timing stock_way(const std::string& path, std::uint64_t bytes, std::byte* device) {
   return timed([&] {
     return clocked(bytes, [&] {
@@ -115,7 +116,7 @@ Timing stock_way(const std::string& path, std::uint64_t bytes, std::byte* device
   });
 }
 
-/// Loads of the file, mapped anew each time as a series has it, into one buffer.
+/// Loads the file into one buffer, and maps it anew each time as for a series.
 class Loads {
  public:
   explicit Loads(std::string path) : path_(std::move(path)) {}

@@ -1,8 +1,9 @@
-// weir_bench_paging FILE.nvdb [--mode M] [--spp N] [--size N] [--frames N] [--lod BIAS] [--scattered N]: pictures with
-// all bricks of a file on the device, and with caches of a half and a quarter of them: frames a second of a camera that
-// stands still, a picture of N samples, and an orbit with its worst frame, each against all bricks in the same run.
-// With levels of detail, what is compared against sees voxels alone, and the table says how far its picture is off.
-// Pictures of caches must have the bits of all bricks'; exits with 1 where they have not, 2 for anything wrong.
+// weir_bench_paging FILE.nvdb [--mode M] [--spp N] [--size N] [--frames N] [--lod BIAS] [--scattered N]: compares
+// pictures with all bricks of a file on the device to pictures with caches of a half and a quarter of the bricks.
+// Measures frames a second of a still camera, a picture of N samples, and an orbit with its worst frame, each against
+// all bricks in the same run. With levels of detail, the reference still uses only voxels, and the table tells how far
+// the picture is off. Pictures from caches must have the same bits as from all bricks; exits with 1 if not, 2 for any
+// other failure.
 #include <cuda_runtime_api.h>
 
 #include <algorithm>
@@ -118,10 +119,10 @@ class Bench {
   }
   const std::optional<LevelsUsed>& levels() const { return setup_->levels(); }
 
-  /// Whether frames do without what is missing.
+  /// Whether frames do without missing bricks.
   void draft(bool on) { draft_ = on; }
   double pixels() const { return static_cast<double>(options_.size) * options_.size; }
-  /// Samples [first, last) of each pixel, with levels of detail from `finest` on; 0: voxels alone.
+  /// Draws samples [first, last) of each pixel, with levels of detail from `finest` on; 0: only voxels.
   Frame draw(BrickVolume& volume, std::uint32_t first, std::uint32_t last, int finest) {
     if (finest == 0)
       return draw_seen(
@@ -153,7 +154,7 @@ class Bench {
     check_cuda(cudaStreamSynchronize(cudaStreamPerThread), "clearing");
     Frame frame;
     const auto start = Clock::now();
-    if (finest > 0) {  // part of a frame: they change with the camera
+    if (finest > 0) {  // part of a frame, because the cells change with the camera
       levelled_ = volume.levelled_cells(finest, cells_.lattice(), setup_->levels()->choice, draft_);
       levelled_.update(transfer, cudaStreamPerThread);
     }
@@ -189,7 +190,7 @@ class Bench {
   double load_s_ = 0;
 };
 
-/// Seconds of one frame of one sample, camera still, once it has settled.
+/// Returns the seconds of one frame of one sample with a still camera, once the frames have settled.
 double settled(Bench& bench, BrickVolume& volume, int finest) {
   for (std::uint32_t i = 0; i < 4; ++i) bench.draw(volume, i, i + 1, finest);
   std::vector<double> seconds;
@@ -198,7 +199,7 @@ double settled(Bench& bench, BrickVolume& volume, int finest) {
   return seconds[seconds.size() / 2];
 }
 
-/// A cache of about that many bricks.
+/// Returns a cache of about `bricks` bricks.
 std::unique_ptr<BrickVolume> cache_of(Bench& bench, std::uint64_t bricks, std::uint64_t most) {
   std::uint64_t memory = std::min<std::uint64_t>(most, bricks * 1600 + (256U << 20U));
   auto volume = bench.load(memory);
@@ -213,13 +214,13 @@ std::unique_ptr<BrickVolume> cache_of(Bench& bench, std::uint64_t bricks, std::u
   return volume;
 }
 
-/// A camera that goes around, against all bricks; of caches.
+/// Results of a camera that goes around the volume: a cache against all bricks.
 struct Orbit {
-  double ratio = 0;           // of the frames' speed
-  double worst = 1e9;         // of a frame
-  double settled = 1e9;       // of a third frame after one, camera still
-  double missed = 0;          // largest share of the pixels that missed something
-  double missed_settled = 0;  // of such third frames
+  double ratio = 0;           // ratio of the frames' speed
+  double worst = 1e9;         // worst ratio of a frame
+  double settled = 1e9;       // worst ratio of the third further frame of a still camera
+  double missed = 0;          // largest share of the pixels that missed a brick
+  double missed_settled = 0;  // the same for such third frames
 };
 
 Orbit orbit(Bench& bench, BrickVolume& all, BrickVolume& some, int finest, int frames) {
@@ -250,7 +251,7 @@ Orbit orbit(Bench& bench, BrickVolume& all, BrickVolume& some, int finest, int f
   return found;
 }
 
-/// Decibels of the largest value of `expected`, of all channels.
+/// Returns decibels relative to the largest value of `expected`, over all channels.
 double psnr(const std::vector<Float3>& found, const std::vector<Float3>& expected) {
   double squares = 0;
   double peak = 0;

@@ -1,8 +1,8 @@
-// weir_bench_save [EDGE [DIRECTORY]]: what it takes to save a step of EDGE^3 float32 values, 1024 by default, as a
-// packed file in DIRECTORY, /dev/shm by default, or in this process's memory: of values that lie on the device, with
-// all of the selection, the layout and the writing; of the same values in the host's memory by all cores; and a plain
-// copy of them to page-locked memory. For a cloud at rates 20 and 53, and turbulence at rate 8 and 60 dB. Files are
-// compared byte by byte. Exits with 1 where two differ; 2 for anything wrong.
+// weir_bench_save [EDGE [DIRECTORY]]: measures saving a step of EDGE^3 float32 values, 1024 by default, as a packed
+// file in DIRECTORY, /dev/shm by default, or in this process's memory. It measures values that lie on the device, with
+// all of the selection, the layout and the writing; the same values in the host's memory with all cores; and a plain
+// copy of the values to page-locked memory. For a cloud at rates 20 and 53, and turbulence at rate 8 and 60 dB.
+// Compares files byte by byte. Exits with 1 if two files differ, 2 for any other failure.
 #include <cuda_runtime_api.h>
 
 #include <algorithm>
@@ -73,7 +73,7 @@ class Bench {
     const auto best = [&](const std::string& what, const std::string& output, const auto& files, const auto& open) {
       Saved fastest;
       for (int run = 0; run < kRuns; ++run) {
-        remove_pair(output);  // a simulation gives each step a name of its own
+        remove_pair(output);  // a simulation, too, writes each step under a new name
         Saved saved = convert(*files(), output, budget, name_ + ", " + label, open);
         if (run == 0 || saved.seconds < fastest.seconds) fastest = std::move(saved);
       }
@@ -119,7 +119,7 @@ class Bench {
     options.encoding = Encoding::packed;
     options.budget = budget;
     options.resume = Resume::off;
-    options.memory = std::uint64_t{12} << 30U;  // 4.3 GB of which the bench has the values in, for the CPU
+    options.memory = std::uint64_t{12} << 30U;  // for the CPU; the bench's own values take 4.3 GB of it
     ConversionControl control;
     std::unique_ptr<Trace> trace;
     if (const char* const path = std::getenv("WEIR_BENCH_TRACE"))

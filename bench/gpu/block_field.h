@@ -1,4 +1,4 @@
-// Synthetic volumes in the host's memory, their blocks, and loops over these on all cores.
+// Synthetic volumes in the host's memory, their blocks, and loops over the blocks on all cores.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@ inline double seconds_of(const std::function<void()>& work) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-// work(i) for all i below `count`, on all cores.
+// Calls work(first, end) for runs of the indices below `count`, on all cores.
 inline void on_all_cores(std::int64_t count, const std::function<void(std::int64_t first, std::int64_t end)>& work) {
   std::atomic<std::int64_t> next{0};
   constexpr std::int64_t kRun = 64;
@@ -46,9 +46,9 @@ struct Field {
   std::int64_t blocks_along() const { return edge / 8; }
   std::int64_t blocks() const { return blocks_along() * blocks_along() * blocks_along(); }
   double bytes() const { return static_cast<double>(values.size()) * sizeof(float); }
-  /// Of the regions of 128^3.
+  /// Returns the index of the block's region of 128^3.
   std::int64_t region_of(std::int64_t block) const {
-    constexpr std::int64_t kRegion = 16;  // blocks along one
+    constexpr std::int64_t kRegion = 16;  // blocks along a region
     const std::int64_t n = blocks_along();
     const std::int64_t r = n / kRegion;
     return block % n / kRegion + r * (block / n % n / kRegion + r * (block / n / n / kRegion));

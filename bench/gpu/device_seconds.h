@@ -1,4 +1,4 @@
-// How long the device takes.
+// Measures how long the device takes for work.
 #pragma once
 
 #include <cuda_runtime_api.h>
@@ -11,7 +11,7 @@
 
 namespace weir {
 
-/// The median of some runs of what `work` puts into the calling thread's stream.
+/// Returns the median time of several runs of the work that `work` puts into the calling thread's stream.
 inline double device_seconds(const std::function<void()>& work) {
   constexpr int kRuns = 5;
   cudaEvent_t begin{};
@@ -26,7 +26,7 @@ inline double device_seconds(const std::function<void()>& work) {
     check_cuda(cudaEventSynchronize(end), "waiting for the device");
     float ms = 0;
     check_cuda(cudaEventElapsedTime(&ms, begin, end), "reading an event");
-    if (run > 0) seconds.push_back(static_cast<double>(ms) / 1e3);  // the first one loads the kernels
+    if (run > 0) seconds.push_back(static_cast<double>(ms) / 1e3);  // the first run loads the kernels
   }
   cudaEventDestroy(begin);
   cudaEventDestroy(end);

@@ -1,4 +1,4 @@
-// The near rungs of all blocks of a field, looked at on the device and by the CPU.
+// Surveys the near rungs of all blocks of a field on the device and compares them with the CPU's.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace weir {
 
 class NearSurvey {
  public:
-  /// Of values and tables on the device.
+  /// `values`, `tables` and `codes` are on the device.
   NearSurvey(const Field& field, const float* values, const CostTables* tables, const CodeTables* codes,
              const RungAsk& ask)
       : field_(field),
@@ -47,7 +47,7 @@ class NearSurvey {
 
   double seconds() const { return seconds_; }
 
-  /// Blocks for which the CPU finds something else.
+  /// Returns the number of blocks for which the CPU's result differs.
   std::size_t compare() const {
     std::atomic<std::size_t> other{0};
     on_all_cores(field_.blocks(), [&](std::int64_t first, std::int64_t end) {

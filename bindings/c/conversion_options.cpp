@@ -34,7 +34,7 @@ void require_in(std::string_view member, std::int32_t value, std::int32_t first,
   if (value < first || value > last) throw usage(cat(member, " is ", value, ", it must be ", first, " to ", last));
 }
 
-/// The choice of the option `key` that `value` stands for: the enumerators of weir.h are in the order of the table.
+/// Returns the choice of the option `key` for `value`: the enumerators of weir.h are in the order of the table.
 std::string choice(std::string_view key, std::int32_t value) {
   const std::vector<std::string> choices = split(conversion_option(key).argument, '|');
   require_in(key_wording({std::string(key), {}}), value, 0, choices.size());
@@ -69,7 +69,7 @@ void give_budget(const weir_convert_options& o, GivenOptions& given) {
   if (o.at_most != 0) given["at-most"] = "true";
 }
 
-/// What a command line would have said: the record in the sidecar.
+/// Returns the options as a command line would give them; the sidecar records them.
 GivenOptions given_method(const weir_convert_options& o) {
   GivenOptions given;
   give_budget(o, given);
@@ -112,13 +112,13 @@ std::string joined(const T* values, std::size_t count) {
 
 std::optional<StoredValue> missing_of(const char* text) {
   if (text == nullptr) return std::nullopt;
-  if (*text == '\0') throw wrong_option("missing", text, "a number or nan");  // NULL says that there is none
+  if (*text == '\0') throw wrong_option("missing", text, "a number or nan");  // NULL means that there is none
   return read_conversion_request({{"missing", text}}).source.missing;
 }
 
 void give_index(const weir_input_options& o, GivenOptions& given) {
   if (o.index_count == 0) return;
-  constexpr std::size_t kMaxAxes = 32;  // HDF5 has no more
+  constexpr std::size_t kMaxAxes = 32;  // the most that HDF5 has
   if (o.index_count > kMaxAxes) throw usage(cat("index_count is ", o.index_count, ", it must be at most ", kMaxAxes));
   given["index"] = joined(required(o.index, "index"), o.index_count);
 }
@@ -160,7 +160,8 @@ ConversionOptions read_options(const weir_convert_options& o) {
   if (o.overwrite != 0) given["overwrite"] = "true";
   if (o.work_dir != nullptr) given["work-dir"] = o.work_dir;
   ConversionOptions options = read_conversion_request(given).conversion;
-  // Of a library, what it takes besides the process: any size that the volume's own check (plan_memory) lets pass.
+  // In a library, `memory` counts besides what the process has: any size passes that the volume's own check
+  // (plan_memory) accepts.
   if (o.memory > kMaxMemory) throw usage(cat("memory is ", o.memory, " bytes, it must be at most 2^50"));
   if (o.memory != 0) options.memory = o.memory;
   options.provenance = {WEIR_VERSION, build_commit(), {method.begin(), method.end()}};
@@ -259,7 +260,7 @@ void Callbacks::start(const std::string& pass, std::uint64_t total_bytes) {
 
 void Callbacks::advance(std::uint64_t done_bytes) {
   const std::scoped_lock lock(mutex_);
-  // A push has no survey pass of its own, and may still read what it spooled in search of the background.
+  // A push has no survey pass of its own, but may still read its spooled data to find the background.
   if (options_.progress != nullptr && !pass_.empty()) {
     options_.progress(options_.user, pass_.c_str(), std::min(done_bytes, total_bytes_), total_bytes_);
   }

@@ -1,4 +1,4 @@
-// The options structs of weir.h as those of the C++ libraries, checked.
+// Reads and checks the option structs of weir.h and turns them into the structs of the C++ libraries.
 #pragma once
 
 #include <atomic>
@@ -13,34 +13,36 @@
 
 namespace weir::c {
 
-/// All but data and strides. Throws Error(usage) naming the member that is out of its range.
+/// Reads all but data and strides. Throws Error(usage) that names the member that is out of its range.
 DenseArray read_volume(const weir_volume* volume);
 
-/// Null: the defaults. `memory` is as given, besides what the process has; output is left empty.
+/// Reads the options. `memory` stays as given: it counts besides what the process has taken already. The output is left
+/// empty.
 ConversionOptions read_options(const weir_convert_options& options);
-/// *options, or what weir_convert_options_init makes where it is null.
+/// Returns *options, or the defaults of weir_convert_options_init() if `options` is null.
 weir_convert_options options_or_defaults(const weir_convert_options* options);
 
-/// Null: none given.
+/// Reads the input options; null means that none are given.
 SourceOptions read_input_options(const weir_input_options* options);
 
-/// Throws Error(usage) where it is null, empty or a directory, which a rename would refuse after all of the work.
+/// Returns `path`. Throws Error(usage) if it is null, empty or a directory, because a rename would refuse those only
+/// after all the work.
 std::string checked_output(const char* path);
 
-/// Makes output and work directory absolute: those of a push must not move with the program's working directory. Throws
-/// Error(io) where that is gone and a path is relative to it.
+/// Makes the output and the work directory absolute, because those of a push must not move with the program's working
+/// directory. Throws Error(io) if a path is relative and the working directory is gone.
 void keep_places(ConversionOptions& options);
 
-/// The callbacks of one conversion, called one at a time.
+/// The callbacks of one conversion; it calls them one at a time.
 class Callbacks {
  public:
   explicit Callbacks(const weir_convert_options& options) : options_(options) {}
   Callbacks(const Callbacks&) = delete;
   Callbacks& operator=(const Callbacks&) = delete;
 
-  /// For a conversion that this object outlives.
+  /// Returns the control for a conversion, which this object must outlive.
   ConversionControl control();
-  /// Asks whether to go on; where not, whatever looks at control().cancel ends.
+  /// Asks the caller whether to go on; if not, work that checks control().cancel ends.
   void look_for_cancel();
 
  private:

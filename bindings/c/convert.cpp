@@ -28,7 +28,7 @@ struct weir_buffer {
 namespace weir::c {
 namespace {
 
-/// An array of these values.
+/// Opens an array of these values.
 std::unique_ptr<VolumeSource> open_values(const weir_volume* volume, const void* data, const std::int64_t* stride,
                                           const weir_convert_options& given) {
   DenseArray array = read_volume(volume);
@@ -40,7 +40,8 @@ std::unique_ptr<VolumeSource> open_values(const weir_volume* volume, const void*
 }
 
 void convert(VolumeSource& source, ConversionOptions options, ConversionControl control, FileSystem& files) {
-  // What the process has already is the caller's; that the rest is too little is said in the caller's figures.
+  // Memory that the process has already taken is the caller's. plan_memory() reports too little memory in the caller's
+  // figures.
   const Box domain = source.info().domain();
   const std::size_t threads = choose_threads(options.threads, processors_or_all(options.processors), options.memory,
                                              source.working_bytes(), domain, region_bytes(options));

@@ -14,10 +14,10 @@
 
 struct weir_cuda_grid {
   std::optional<weir::DeviceGrid> grid;
-  weir::DeviceBuffer spare;  ///< where there is no grid
-  int device = 0;            ///< of the last load
+  weir::DeviceBuffer spare;  ///< used if there is no grid
+  int device = 0;            ///< the device of the last load
 
-  // As it is, or expanded to another type.
+  // Loads the grid as it is, or expanded to another type.
   void load(const weir::NvdbFile& file, const std::optional<weir::GridType>& as, cudaStream_t stream) {
     device = weir::current_device();
     if (grid) spare = std::move(*grid).take_buffer();
@@ -32,7 +32,7 @@ using namespace weir::c;
 
 namespace {
 
-// What the CUDA runtime says names no file, and no remedy.
+// Adds the file and a remedy to errors of the CUDA runtime, which name neither.
 void load_into(weir_cuda_grid& to, const NvdbFile& file, const std::optional<GridType>& as, void* stream) {
   try {
     to.load(file, as, static_cast<cudaStream_t>(stream));
@@ -88,7 +88,7 @@ double weir_cuda_seconds(const weir_cuda_grid* loaded) {
 void weir_cuda_free(weir_cuda_grid* loaded) {
   if (loaded == nullptr) return;
   free_on(loaded->device, [&] {
-    if (cudaDeviceSynchronize() != cudaSuccess) cudaGetLastError();  // kernels that read it, in whatever stream
+    if (cudaDeviceSynchronize() != cudaSuccess) cudaGetLastError();  // waits for kernels that read it, in any stream
     delete loaded;
   });
 }

@@ -28,7 +28,7 @@ using namespace weir::c;
 
 namespace {
 
-// Makes the call. If it throws, the values that it was to bring never come, so the whole push fails, too.
+// Makes the call. If it throws, the values that it should have brought never come, so the whole push fails too.
 template <typename Call>
 void ending_with_failures(PushedVolume& volume, const Call& call) {
   try {
@@ -39,14 +39,14 @@ void ending_with_failures(PushedVolume& volume, const Call& call) {
   }
 }
 
-/// Slabs of a device.
+/// Slabs that come from a device.
 class DeviceInFlight : public PushInFlight {
  public:
   virtual void add(std::int64_t z0, std::int64_t nz, const DeviceValues& values, cudaStream_t stream) = 0;
   using PushInFlight::add;
 };
 
-/// On their way to `volume`.
+/// Slabs of a device on their way to `volume`.
 class SlabsInFlight : public DeviceInFlight {
  public:
   SlabsInFlight(PushedVolume& volume, std::uint64_t device_bytes)
@@ -71,14 +71,14 @@ class SlabsInFlight : public DeviceInFlight {
   DeviceSlabs slabs_;
 };
 
-// All of a volume on its device, where it is surveyed and encoded.
+// A whole volume on its device, which surveys and encodes it there.
 class ResidentInFlight : public DeviceInFlight {
  public:
-  /// Of slabs that are copied to the current device.
+  /// For slabs that are copied to the current device.
   explicit ResidentInFlight(weir_push& push) : volume_(*push.volume), planes_(std::in_place, volume_.info().extent) {
     take(push, planes_->device(), planes_->values());
   }
-  /// Of `values` of `device`, which stay as they are.
+  /// For `values` on `device`, which stay as they are.
   ResidentInFlight(weir_push& push, int device, const float* values) : volume_(*push.volume) {
     take(push, device, values);
     volume_.expect(0, volume_.info().extent.z);
@@ -116,7 +116,7 @@ class ResidentInFlight : public DeviceInFlight {
   VolumeSource* whole() override { return whole_.get(); }
 
  private:
-  // A slab from the call's beginning to its return.
+  // Counts a slab from the beginning of its call until the call returns.
   class Adding {
    public:
     explicit Adding(std::atomic<int>& count) : count_(count) { ++count_; }
@@ -133,7 +133,7 @@ class ResidentInFlight : public DeviceInFlight {
     whole_ = open_resident(make_resident_volume(device, values, info.domain(), say_device_failure(push.notice)), info);
   }
 
-  // Some rows at a time.
+  // Copies some rows at a time.
   void copy_rows(VolumeSource& slab, std::int64_t z0, std::int64_t nz) {
     const Index3& extent = volume_.info().extent;
     constexpr std::int64_t kPieceValues = std::int64_t{1} << 20U;
@@ -160,7 +160,7 @@ bool may_be_resident(const weir_push& push) {
          push.volume->has_room_for(kResidentHostBytes);
 }
 
-// Slabs of several threads may be the first.
+// The slabs of several threads may come first at the same time, so the lock covers the creation.
 DeviceInFlight& in_flight(weir_push& push) {
   const std::lock_guard lock(push.mutex);
   if (!push.in_flight) {
@@ -168,7 +168,7 @@ DeviceInFlight& in_flight(weir_push& push) {
     const auto bytes = static_cast<std::uint64_t>(volume(info.extent)) * sizeof(float);
     const bool resident = may_be_resident(push) && push.device_memory >= bytes;
     if (resident) push.in_flight = try_resident(push.notice, [&] { return std::make_unique<ResidentInFlight>(push); });
-    // A device without room for the volume has none for slabs that wait either: that would be the volume again.
+    // A device without room for the volume also has none for waiting slabs, which could be the whole volume again.
     const std::uint64_t granted = resident ? 0 : push.device_memory;
     if (!push.in_flight) push.in_flight = std::make_unique<SlabsInFlight>(*push.volume, granted);
   }
@@ -192,7 +192,7 @@ void push_slab(weir_push& push, std::int64_t z0, std::int64_t nz, const void* da
   push_host_slab(push, z0, nz, data, strides);
 }
 
-// Where all of a volume lies on the device as it has to: its values are taken from there.
+// Takes the values in place if the whole volume lies on the device without gaps. Returns whether it has done so.
 bool take_in_place(weir_push& push, const void* data, const std::int64_t* stride, cudaStream_t stream) {
   if (data == nullptr || !may_be_resident(push) || !is_device_memory(data)) return false;
   const DeviceValues values{static_cast<const std::byte*>(data), slab_stride(*push.volume, stride), sizeof(float)};

@@ -70,7 +70,8 @@ weir_grid_info describe(const weir_grid& handle) {
   return info;
 }
 
-/// Throws Error(usage) where a corner is beyond the 32 bits of NanoVDB's coordinates, or `count` is not the voxels'.
+/// Throws Error(usage) if a corner is beyond the 32 bits of NanoVDB's coordinates, or if `count` is not the number of
+/// voxels.
 Box checked_box(const std::int64_t* min, const std::int64_t* max, std::size_t count) {
   constexpr std::int64_t kLimit = std::int64_t{1} << 31U;
   const Box box{{min[0], min[1], min[2]}, {max[0], max[1], max[2]}};

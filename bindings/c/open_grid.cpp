@@ -16,7 +16,7 @@ weir_grid::weir_grid(const std::string& path) : file_(path) {
     const std::span<const std::byte> bytes = sidecar.bytes();
     take_sidecar({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
   } catch (const Error&) {
-    // A volume without its sidecar is a volume all the same: it certifies nothing.
+    // A volume without its sidecar is still a volume: it only has no certificate.
   }
 }
 
@@ -27,12 +27,12 @@ weir_grid::weir_grid(std::span<const std::byte> bytes, const char* sidecar) : me
 void weir_grid::take_sidecar(std::string text) {
   try {
     Sidecar sidecar = parse_sidecar(text, "sidecar");
-    // That of another volume, after a crash between two renames say, certifies nothing either.
+    // A sidecar of another volume, for instance after a crash between two renames, certifies nothing either.
     if (!(file_ ? is_of(sidecar, *file_) : is_of(sidecar, grid()))) return;
     sidecar_ = std::move(sidecar);
     text_ = std::move(text);
   } catch (const Error&) {
-    // As if there were none.
+    // Continues as if there were no sidecar.
   }
 }
 

@@ -1,4 +1,4 @@
-// What a weir_grid handle is: a grid in a mapped file or in the caller's memory, and what its sidecar certifies.
+// The weir_grid handle: a grid in a mapped file or in the caller's memory, and the sidecar that certifies it.
 #pragma once
 
 #include <cstddef>
@@ -12,20 +12,20 @@
 #include "format/sidecar/sidecar.h"
 #include "gpu/volume/grid_samples.h"
 
-/// Everything but the samples is set by the constructor and then only read.
+/// The constructor sets everything except the samples; afterwards it is only read.
 struct weir_grid {
  public:
-  /// Maps `path`. Throws Error(input).
+  /// Maps the file at `path`. Throws Error(input).
   explicit weir_grid(const std::string& path);
-  /// Of bytes that outlive it. Throws Error(input).
+  /// Reads the grid from `bytes`, which must outlive the object. Throws Error(input).
   weir_grid(std::span<const std::byte> bytes, const char* sidecar);
 
   const weir::NvdbGrid& grid() const { return file_ ? file_->grid() : *memory_; }
   const weir::NvdbFile* file() const { return file_ ? &*file_ : nullptr; }
-  /// Of this very file; null where there is none.
+  /// Returns the sidecar of this very file; null if there is none.
   const weir::Sidecar* sidecar() const { return sidecar_ ? &*sidecar_ : nullptr; }
   const char* sidecar_text() const { return sidecar_ ? text_.c_str() : nullptr; }
-  /// Built by the first call. Thread-safe.
+  /// Returns the samples, which the first call builds. Thread-safe.
   weir::GridSamples& samples() const;
 
  private:

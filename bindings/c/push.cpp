@@ -13,7 +13,7 @@ namespace weir::c {
 
 std::unique_ptr<weir_push> begin_push(const weir_volume* volume, const weir_convert_options* options,
                                       const char* output) {
-  refuse_forked();  // before slabs are taken, which the end could not convert
+  refuse_forked();  // before slabs are taken that the end could not convert
   SourceInfo info = array_info(read_volume(volume));
   const weir_convert_options given = options_or_defaults(options);
   auto made = std::make_unique<weir_push>(given);

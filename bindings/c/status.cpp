@@ -31,7 +31,7 @@ weir_status end_with_exception(weir_error* error) noexcept {
   } catch (const Error& e) {
     try {
       return end_call(error, e.exit_code(), one_line(e.message().worded(c_wording)).c_str());
-    } catch (const std::bad_alloc&) {  // no memory for its words
+    } catch (const std::bad_alloc&) {  // no memory for the worded message
       return end_call(error, e.exit_code(), e.what());
     }
   } catch (const std::bad_alloc&) {

@@ -1,4 +1,4 @@
-// How the C functions end: whatever is thrown becomes a status and a line.
+// How the C functions end: every exception becomes a status and a one-line message.
 #pragma once
 
 #include <string>
@@ -9,12 +9,12 @@
 
 namespace weir::c {
 
-/// Sets *error, where there is one, and returns `status`.
+/// Sets *error, if there is one, and returns `status`.
 weir_status end_call(weir_error* error, weir_status status, const char* message) noexcept;
-/// The same of the exception in flight.
+/// Does the same for the exception in flight.
 weir_status end_with_exception(weir_error* error) noexcept;
 
-/// Runs `call`, in weir's floating-point mode; nothing that it throws leaves.
+/// Runs `call` in weir's floating-point mode; no exception leaves this function.
 template <typename Call>
 weir_status guarded(weir_error* error, const Call& call) noexcept {
   const FloatMode mode;
@@ -28,14 +28,14 @@ weir_status guarded(weir_error* error, const Call& call) noexcept {
 
 Error usage(const std::string& message);
 
-/// `pointer`, which must not be null; `name` is the parameter's.
+/// Returns `pointer`. Throws Error(usage) if it is null; `name` is the parameter's name.
 template <typename T>
 T* required(T* pointer, const char* name) {
   if (pointer == nullptr) throw usage(std::string(name) + " is a null pointer");
   return pointer;
 }
 
-/// A path, which must not be empty either.
+/// Returns a path. Throws Error(usage) if it is null or empty.
 inline const char* required_path(const char* path, const char* name) {
   if (*required(path, name) == '\0') throw usage(std::string(name) + " is empty; name a file");
   return path;

@@ -1,4 +1,4 @@
-// Structs that a program may have been compiled with in an older or a newer form.
+// Reads and writes structs of a program that was compiled with an older or a newer version of them.
 #pragma once
 
 #include <algorithm>
@@ -11,10 +11,10 @@
 
 namespace weir::c {
 
-/// More is no struct of any version, but memory that was never set up.
+/// The largest struct_size; a larger one is not a struct of any version, but memory that was never set up.
 inline constexpr std::size_t kMaxStructBytes = 4096;
 
-/// What the first version of the library had; a struct that grows gets a number of its own here.
+/// Bytes of the struct in the first version of the library. A struct that has grown gets a number of its own here.
 template <typename T>
 inline constexpr std::size_t kFirstBytes = sizeof(T);
 
@@ -24,7 +24,7 @@ inline constexpr std::size_t kFirstBytes<weir_convert_options> = offsetof(weir_c
 template <>
 inline constexpr std::size_t kFirstBytes<weir_input_options> = offsetof(weir_input_options, component);
 
-/// Zeros but for struct_size.
+/// Sets all to zero except struct_size.
 template <typename T>
 weir_status init_struct(T* target, std::size_t bytes) noexcept {
   if (target == nullptr || bytes < kFirstBytes<T> || bytes > kMaxStructBytes) return WEIR_ERROR_USAGE;
@@ -33,8 +33,8 @@ weir_status init_struct(T* target, std::size_t bytes) noexcept {
   return WEIR_OK;
 }
 
-/// *given in this library's form, what an older header does not have being 0; `name` is for messages. Throws
-/// Error(usage) where it is null, was not set up, or sets what a newer header has and this library does not know.
+/// Returns *given in this library's form; members that an older header lacks become 0. `name` is for messages. Throws
+/// Error(usage) if `given` is null, was not set up, or sets members of a newer header that this library does not know.
 template <typename T>
 T read_struct(const T* given, const char* name) {
   const std::size_t bytes = required(given, name)->struct_size;
@@ -51,7 +51,7 @@ T read_struct(const T* given, const char* name) {
   return known;
 }
 
-/// Writes what the header of `target`, which read_struct has accepted, knows of `source`.
+/// Writes the members of `source` that the header of `target` has; read_struct() has accepted `target`.
 template <typename T>
 void write_struct(T source, T* target) {
   source.struct_size = target->struct_size;

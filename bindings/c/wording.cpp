@@ -10,7 +10,7 @@ namespace weir::c {
 namespace {
 
 constexpr std::array<std::string_view, 5> kBudgets{"rate", "size", "psnr", "max-error", "lossless"};
-/// Whose values weir.h has as WEIR_KEY_VALUE.
+/// Options with values that weir.h names WEIR_KEY_VALUE.
 constexpr std::array<std::string_view, 12> kChoices{"encoding",  "preview",        "metric",  "fill",
                                                     "nonfinite", "missing-policy", "certify", "levels",
                                                     "upsample",  "missing-chunks", "endian",  "backend"};

@@ -1,4 +1,4 @@
-// Options as weir.h names them.
+// Words options with the names of weir.h.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace weir::c {
 
-/// "budget (WEIR_BUDGET_PSNR)", "WEIR_ENCODING_FLOAT", "extent", "memory 64.0 MiB": budgets and choices by their
-/// enumerators, everything else by its member.
+/// Returns "budget (WEIR_BUDGET_PSNR)", "WEIR_ENCODING_FLOAT", "extent" or "memory 64.0 MiB": budgets and choices by
+/// their enumerators, everything else by its member.
 std::string c_wording(const OptionName& option);
 
 }  // namespace weir::c

@@ -24,7 +24,7 @@ constexpr const char* kCopyingBox = "copying a box from the device";
 
 class DeviceArraySource final : public VolumeSource {
  public:
-  /// `device` is current.
+  /// `device` is the current device.
   DeviceArraySource(const DenseArray& array, int device)
       : array_(array),
         context_(device),
@@ -67,7 +67,7 @@ class DeviceArraySource final : public VolumeSource {
   }
 
  private:
-  // One of the pieces of page-locked memory, for as long as the object lives.
+  // One of the pieces of page-locked memory, held while the object lives.
   class Slot {
    public:
     explicit Slot(DeviceArraySource& source) : source_(source) {
@@ -124,7 +124,7 @@ class DeviceArraySource final : public VolumeSource {
   const std::uint64_t piece_bytes_;
   std::optional<PinnedMemory> pinned_;
   std::atomic<std::uint64_t> bytes_read_{0};
-  std::mutex mutex_;  // of what follows
+  std::mutex mutex_;  // guards the members below
   std::condition_variable freed_;
   std::vector<std::size_t> free_;
 };

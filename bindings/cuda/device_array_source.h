@@ -1,5 +1,5 @@
-// A dense array in the memory of a CUDA device, as a source: boxes of it cross the bus when they are read, as they are
-// stored.
+// A dense array in the memory of a CUDA device, as a source: a box crosses the bus, in the stored type, when it is
+// read.
 #pragma once
 
 #include <memory>
@@ -8,14 +8,14 @@
 
 namespace weir {
 
-/// The device that can read `address`. Throws Error(usage) where it is no memory of a device, or there is none.
+/// Returns the device that can read `address`. Throws Error(usage) if it is not memory of a device, or if there is
+/// none.
 int device_of(const void* address);
 
-/// A source that reads `array`, whose data lie on `device`, which have been computed and must stay unchanged for as
-/// long as the source exists. Whichever thread reads it works in the calling thread's context, where that is of
-/// `device`. Page-locked host memory that it takes is that of DeviceSlabs, where no row is longer than a piece. Throws
-/// what array_info throws, Error(usage) where the address or a stride is no multiple of the bytes of a value, and
-/// Error(io) where there is no memory to lock.
+/// Returns a source that reads `array`. Its data lie on `device`, are complete, and must not change while the source
+/// exists. Threads that read it work in the calling thread's context if that belongs to `device`. It uses the
+/// page-locked host memory of DeviceSlabs if no row is longer than a piece. Throws as array_info(), Error(usage) if the
+/// address or a stride is not a multiple of the bytes of a value, and Error(io) if there is no memory to lock.
 std::unique_ptr<VolumeSource> open_device_array(const DenseArray& array, int device);
 
 }  // namespace weir

@@ -1,4 +1,4 @@
-// Whether a volume that lies on a device is surveyed and encoded where it is.
+// Decides whether a volume that lies on a device is surveyed and encoded there.
 #pragma once
 
 #include <algorithm>
@@ -13,8 +13,8 @@
 
 namespace weir {
 
-/// Whether the device can do so: it was chosen for that (`coder` is not null), the conversion may take `memory` bytes
-/// of the host besides what the process had, and the device takes such values.
+/// Returns whether the device can do so: it was chosen for coding (`coder` is not null), the conversion may take
+/// `memory` bytes of the host besides what the process had, and the device accepts this kind of values.
 inline bool may_stay_on_device(const SourceInfo& info, const BlockCoder* coder, std::uint64_t memory) {
   const Index3& extent = info.extent;
   return coder != nullptr && memory >= kLeastMemoryOfDevice && info.type == ScalarType::float32 &&
@@ -22,7 +22,7 @@ inline bool may_stay_on_device(const SourceInfo& info, const BlockCoder* coder, 
          std::max({extent.x, extent.y, extent.z}) <= kLongestAxis;
 }
 
-/// What `make` makes; null, which `notice` is told, where the device has no room for it.
+/// Returns make(); if the device has no room for it, tells `notice` and returns null.
 template <class Make>
 auto try_resident(const Notice& notice, const Make& make) -> decltype(make()) {
   try {

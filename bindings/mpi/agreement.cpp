@@ -15,7 +15,7 @@
 namespace weir {
 namespace {
 
-// Names and values, each ended by a zero byte.
+// Packs names and values, each ended by a zero byte.
 std::string packed(const ConversionIdentity& said) {
   std::string text;
   for (const auto& [name, value] : said) text += cat(name, '\0', value, '\0');
@@ -29,7 +29,7 @@ ConversionIdentity unpacked(const std::string& text) {
   return said;
 }
 
-// What `said` has by that name: "--rate 4", or "no --rate".
+// Returns the value of `name` in `said` for a message: "--rate 4", or "no --rate".
 std::string saying(const ConversionIdentity& said, const std::string& name) {
   const auto found = said.find(name);
   return found == said.end() || found->second.empty() ? cat("no ", name) : cat(name, ' ', found->second);
@@ -62,7 +62,7 @@ Digest sampled_bytes(std::span<const FileState> files) {
   constexpr std::uint64_t kPieceBytes = 4096;
   DigestStream pieces;
   for (const FileState& state : files.first(std::min(files.size(), kMostFiles))) {
-    if (state.bytes == 0) continue;  // or it is missing
+    if (state.bytes == 0) continue;  // empty or missing
     InputFile file(state.path, DirectIo::off);
     std::vector<std::byte> piece(std::min(kPieceBytes, state.bytes));
     for (std::uint64_t i = 0; i < kPieces; ++i) {

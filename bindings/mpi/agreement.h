@@ -1,4 +1,4 @@
-// Whether the processes of a conversion were told the same.
+// Checks that all processes of a conversion were given the same arguments.
 #pragma once
 
 #include <span>
@@ -13,16 +13,16 @@
 
 namespace weir {
 
-/// What all processes of a conversion must be told alike, by name. Not times and numbers of the source's files: nodes
-/// may see others of the same file, whose attributes they cache.
+/// Returns, by name, the values that all processes of a conversion must share. Times and numbers of the source's files
+/// are left out, because nodes cache file attributes and may see different ones.
 ConversionIdentity said_by_all(const SourceInfo& info, const ConversionOptions& options);
 
-/// Of pieces of 4 KiB that are spread over each of these files, or the first 64 of them: a stale copy of a file may
-/// have the size and the times of the file itself, but hardly its bytes. Throws Error(input) where one cannot be read.
+/// Returns a digest of pieces of 4 KiB that are spread over each of `files`, or over the first 64 of them. A stale copy
+/// of a file may have the file's size and times, but hardly its bytes. Throws Error(input) if a file cannot be read.
 Digest sampled_bytes(std::span<const FileState> files);
 
-/// All ranks call it. Throws Error(usage), "WHERE: process 1 of 2 has --rate 4 where process 0 has --rate 2; ...", on
-/// all of them where one says something else than the leading one; WHERE is that one's.
+/// Compares `said` on all ranks; all ranks call it. If one differs from the leading rank, throws Error(usage) on all,
+/// "WHERE: process 1 of 2 has --rate 4 where process 0 has --rate 2; ..."; WHERE is that of the rank that differs.
 void require_alike(Team& team, const std::string& where, const ConversionIdentity& said);
 
 }  // namespace weir

@@ -15,11 +15,11 @@
 namespace weir {
 namespace {
 
-constexpr std::size_t kMostFileBytes = std::size_t{1} << 30U;  // of a call: counts are int
+constexpr std::size_t kMostFileBytes = std::size_t{1} << 30U;  // per call, because counts are int
 
 class MpiFile final : public File {
  public:
-  // `own` is the leading rank's, which made or opened the file; `mode` is MPI_MODE_RDWR or MPI_MODE_RDONLY.
+  // `own` is the leading rank's file, which that rank made or opened; `mode` is MPI_MODE_RDWR or MPI_MODE_RDONLY.
   MpiFile(MpiTeam& team, std::string path, std::unique_ptr<File> own, int mode)
       : team_(team), path_(std::move(path)), own_(std::move(own)) {
     const std::lock_guard lock(team_.calls());
@@ -89,7 +89,7 @@ class MpiFile final : public File {
   }
 
  private:
-  // All of `bytes`, by as many calls as that takes.
+  // Transfers all of `bytes`, in as many calls as needed.
   template <typename Call>
   void transfer(std::span<const std::byte> bytes, const char* action, const char* done, const Call& call) const {
     for (std::size_t at = 0; at < bytes.size();) {
@@ -118,7 +118,7 @@ class MpiFileSystem final : public FileSystem {
     team_.lead([&] { own = files_.create(path); });
     try {
       return shared(path, std::move(own));
-    } catch (const Error&) {  // some process does not find it: nothing of it may stay
+    } catch (const Error&) {  // some process does not find the file: nothing of it may stay
       team_.lead([&] { files_.remove(path); });
       throw;
     }
@@ -129,12 +129,14 @@ class MpiFileSystem final : public FileSystem {
     return shared(path, std::move(own));
   }
   std::unique_ptr<File> open_to_read(const std::string& path) override {
-    if (!exists(path)) throw io_error(path, "open for reading", ENOENT);  // on all ranks, so that all know that
+    if (!exists(path))
+      throw io_error(path, "open for reading", ENOENT);  // all ranks ask, so that all learn of a
+                                                         // missing file
     std::unique_ptr<File> own;
     team_.lead([&] { own = files_.open_to_read(path); });
     return shared(path, std::move(own), MPI_MODE_RDONLY);
   }
-  // With a name until all have it open: one without cannot be opened by others.
+  // The file has a name until all ranks have opened it, because other ranks cannot open a file without a name.
   std::unique_ptr<File> create_unnamed(const std::string& directory) override {
     const std::string name = cat("/.weir.", ::getpid(), '.', unnamed_++);
     std::vector<char> leading(name.begin(), name.end());
@@ -187,7 +189,7 @@ class MpiFileSystem final : public FileSystem {
     return answer;
   }
 
-  // `own` is the leading rank's.
+  // `own` is the leading rank's file.
   std::unique_ptr<File> shared(const std::string& path, std::unique_ptr<File> own, int mode = MPI_MODE_RDWR) {
     std::unique_ptr<File> file;
     team_.run([&] { file = std::make_unique<MpiFile>(team_, path, std::move(own), mode); });

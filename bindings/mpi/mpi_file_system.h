@@ -1,5 +1,5 @@
-// Files that all processes of a team write together, by MPI-IO: what one process
-// does of a conversion with the system's files, a team does with these.
+// Files that all processes of a team write together, through MPI-IO. They take the place of the system's files, which a
+// single process uses.
 #pragma once
 
 #include <memory>
@@ -9,11 +9,11 @@
 
 namespace weir {
 
-/// Names are given and taken by the leading rank, by `files` (which only it needs to have, and which must outlive the
-/// result), so that locks are held and a disk's room is reserved once. All ranks call the functions of the file system,
-/// and preallocate and clear of its files, in the same order; the other functions of files concern the calling rank
-/// alone, and what they wrote is seen by others after Team::publish. All paths must name the same files everywhere: a
-/// shared file system.
+/// Only the leading rank creates, renames and removes files, through `files`, so that locks are taken and space is
+/// reserved once. Only that rank needs `files`, which must outlive the result. All ranks call the functions of the file
+/// system, and its files' preallocate() and clear(), in the same order. The other functions of files concern only the
+/// calling rank; other ranks see what they wrote after Team::publish(). All paths must name the same files on all
+/// ranks: a shared file system.
 std::unique_ptr<FileSystem> make_mpi_file_system(MpiTeam& team, FileSystem& files);
 
 }  // namespace weir

@@ -14,12 +14,12 @@ namespace weir {
 namespace {
 
 constexpr int kTag = 1;
-constexpr std::size_t kMostBytes = std::size_t{1} << 30U;  // of a message: counts are int
+constexpr std::size_t kMostBytes = std::size_t{1} << 30U;  // per message, because counts are int
 
-// Whether a rank is unwinding, as a part's last byte.
+// Returns the last byte of a part: whether the rank is unwinding.
 std::byte unwinding() { return static_cast<std::byte>(std::uncaught_exceptions() > 0 ? 1 : 0); }
 
-// A part in pieces that fit a message, each by `call(first byte, count)`.
+// Calls call(first byte, count) for each piece of a part that fits a message.
 template <typename Part, typename Call>
 void for_each_message(Part& part, const std::string& action, const Call& call) {
   for (std::size_t at = 0; at < part.size(); at += kMostBytes) {
@@ -98,13 +98,13 @@ void MpiTeam::merge(Bytes& part, const Merge& both) {
     merge_in_tree(part, both);
   } catch (const Error&) {
     throw;
-  } catch (const std::exception& error) {  // of this process alone, in the midst of what all do
+  } catch (const std::exception& error) {  // it hit this process alone, in the middle of a call of all
     end_all(error.what());
   }
 }
 
 void MpiTeam::merge_in_tree(Bytes& part, const Merge& both) const {
-  // A tree: rank 0 hears of 1, 2, 4 ..., each of which has heard of those up to the next.
+  // Merges in a tree: rank 0 receives from ranks 1, 2, 4 ...; each of them has merged the ranks up to the next one.
   part.push_back(unwinding());
   for (int step = 1; step < size_; step *= 2) {
     if (rank_ % (2 * step) != 0) {

@@ -12,7 +12,7 @@
 #include "compressor/conversion_memory.h"
 #include "format/base/text.h"
 
-/// What outlives a PushedBoxes comes before it.
+/// A member that must outlive `boxes` comes before it.
 struct weir_mpi_push {
   explicit weir_mpi_push(MPI_Comm communicator) : team(communicator) {}
 
@@ -22,7 +22,7 @@ struct weir_mpi_push {
   std::array<std::int64_t, 3> extent{};
   weir::ScalarType type{};
   std::unique_ptr<weir::PushedBoxes> boxes;
-  bool ended = false;  // with success
+  bool ended = false;  // ended with success
 };
 
 namespace weir::c {
@@ -33,7 +33,7 @@ weir_mpi_push& running(weir_mpi_push* push) {
   return *push;
 }
 
-// Three members of `name`, each at least `least` and small enough to be added.
+// Returns three members of `name`, each at least `least` and small enough to be added.
 Index3 index_of(const int64_t* values, const char* name, int64_t least) {
   required(values, name);
   for (int i = 0; i < 3; ++i) {
@@ -53,7 +53,7 @@ weir_status weir_mpi_push_begin(MPI_Comm comm, const weir_volume* volume, const 
                                 const char* output, weir_mpi_push** push, weir_error* error) {
   return guarded(error, [&] {
     if (comm == MPI_COMM_NULL) throw usage("comm is MPI_COMM_NULL");
-    // What is wrong in one process alone is told to all, which would wait for it.
+    // A fault of one process is told to all, because the others would wait for it.
     auto made = std::make_unique<weir_mpi_push>(comm);
     SourceInfo info;
     ConversionOptions conversion;
@@ -73,7 +73,7 @@ weir_status weir_mpi_push_begin(MPI_Comm comm, const weir_volume* volume, const 
     });
     require_alike(made->team, info.path, said_by_all(info, conversion));
     conversion.processors = made->team.own_cores();
-    // At the end it would be said too late: all boxes would have been taken.
+    // Checked now, because at the end it would be too late: all boxes would have been taken.
     made->team.run([&] { check_memory(conversion, info.domain(), 0); });
     made->boxes = std::make_unique<PushedBoxes>(std::move(info), conversion, made->control, made->team);
     *push = made.release();

@@ -18,7 +18,7 @@
 namespace weir {
 namespace {
 
-constexpr std::uint64_t kGatheredBytes = std::uint64_t{4} << 20U;  // gathered before they are written
+constexpr std::uint64_t kGatheredBytes = std::uint64_t{4} << 20U;  // bytes gathered before they are written
 
 std::string box_text(const Box& box, const Index3& origin) {
   const Index3 lo = box.lo - origin;
@@ -26,7 +26,7 @@ std::string box_text(const Box& box, const Index3& origin) {
   return cat(lo.x, ':', hi.x, ',', lo.y, ':', hi.y, ',', lo.z, ':', hi.z);
 }
 
-// Calls visit(part) for parts of `box` that end at borders of leaves, where they do not end with it, of about
+// Calls visit(part) for parts of `box`. Parts end at borders of leaves or at the end of `box`, and have about
 // kGatheredBytes or one row of leaves each.
 template <typename Visit>
 void for_each_piece(const Box& box, std::size_t value_bytes, const Visit& visit) {
@@ -44,8 +44,8 @@ void for_each_piece(const Box& box, std::size_t value_bytes, const Visit& visit)
   }
 }
 
-// In a scope that all ranks leave by a failure, or none. Where one fails alone, the others would wait for it in what
-// they do: it meets them here, so that the team ends them all.
+// Guards a scope that either all ranks or none leave by a failure. If one rank fails alone, the others would wait for
+// it inside the scope. The destructor meets them with a call of the team, which then ends all ranks.
 class FailingTogether {
  public:
   explicit FailingTogether(Team& team) : team_(team) {}
@@ -54,7 +54,7 @@ class FailingTogether {
     try {
       team_.run([] {});
     } catch (const std::exception&) {
-      // The failure that led here is the one to report.
+      // The earlier failure is the one to report.
     }
   }
   FailingTogether(const FailingTogether&) = delete;
@@ -120,7 +120,7 @@ void PushedBoxes::box(const Box& box, const void* data, const std::array<std::in
   }
 }
 
-// Each voxel once.
+// Checks that each voxel was given exactly once.
 void PushedBoxes::check_complete() {
   std::vector<Box> all = given_;
   team_.concatenate(all);

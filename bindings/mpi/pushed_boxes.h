@@ -1,10 +1,8 @@
-// A volume that the processes of an MPI job hold in pieces and hand over, each the
-// boxes that are its own; in the end, one file, the same as a conversion of all
-// of it.
+// A volume that the processes of an MPI job hold in pieces. Each hands over its own boxes; the result is one file, the
+// same as from a conversion of the whole volume.
 //
-// Voxels go to one spool that all processes share (compressor/push/leaf_spool.h), where
-// the leaves that several of them have a part in come together; nobody ever holds
-// the volume.
+// Voxels go to one spool that all processes share (compressor/push/leaf_spool.h). There the leaves are put together
+// to which several processes contribute; no process ever holds the volume.
 #pragma once
 
 #include <array>
@@ -23,25 +21,27 @@
 
 namespace weir {
 
-/// All ranks make one of the same volume and options, end it and destroy it together; `box` concerns one rank alone.
+/// All ranks make one object for the same volume and options, end it and destroy it together; box() concerns only one
+/// rank.
 class PushedBoxes {
  public:
-  /// `info` as for PushedVolume; options.memory is what weir takes in each process besides what that holds. Takes the
-  /// output's lock and removes what an interrupted conversion of it had left, with a notice. Throws Error as
-  /// convert_volume does.
+  /// `info` is as for PushedVolume; options.memory is the memory that weir takes in each process, besides what the
+  /// process holds. Takes the output's lock and removes what an interrupted conversion of it has left, with a notice.
+  /// Throws Error as convert_volume().
   PushedBoxes(SourceInfo info, const ConversionOptions& options, const ConversionControl& control, MpiTeam& team);
   PushedBoxes(const PushedBoxes&) = delete;
   PushedBoxes& operator=(const PushedBoxes&) = delete;
 
-  /// Takes the voxels of `box`, counted from the volume's first: `data` is its lowest one, of info's type in this
-  /// machine's byte order, `stride` the bytes from one voxel to the next along x, y, z. One call at a time. Throws
-  /// Error(usage), and nothing is taken, where the box is empty or not in the volume, data is null, or the strides lead
-  /// out of the address space; Error(io) where the disk fails, Error(interrupted) where control.cancel is set, which
-  /// then is the answer of end() too.
+  /// Takes the voxels of `box`, counted from the volume's first voxel. `data` is the box's lowest voxel, of info's type
+  /// in this machine's byte order; `stride` is the bytes from one voxel to the next along x, y, z. One call at a time.
+  /// Throws Error(usage), and takes nothing, if the box is empty or not in the volume, if data is null, or if the
+  /// strides lead out of the address space. Throws Error(io) if the disk fails, and Error(interrupted) if
+  /// control.cancel is set; end() then throws the same.
   void box(const Box& box, const void* data, const std::array<std::int64_t, 3>& stride);
 
-  /// Writes the volume and its sidecar, which it returns. Throws Error(usage) naming a box that two processes gave, or
-  /// one that nobody gave: it can still be given. Any other Error is final, and of the output nothing is left.
+  /// Writes the volume and its sidecar, and returns the sidecar. Throws Error(usage) that names a box that two
+  /// processes gave, or a box that nobody gave, which can still be given. Any other Error is final and leaves nothing
+  /// of the output.
   Sidecar end();
 
  private:
@@ -58,7 +58,7 @@ class PushedBoxes {
   std::shared_ptr<File> values_;
   std::shared_ptr<File> states_;
   LeafSpool spool_;
-  std::vector<Box> given_;  // by this rank, in index space
+  std::vector<Box> given_;  // boxes that this rank gave, in index space
   std::optional<Error> failure_;
 };
 

@@ -1,4 +1,4 @@
-// `weir-mpi convert`: one conversion by all processes of an MPI job.
+// `weir-mpi convert`: one conversion, shared by all processes of an MPI job.
 #include <mpi.h>
 #include <spdlog/spdlog.h>
 
@@ -54,14 +54,14 @@ void add_convert(CLI::App& app, Arguments& a) {
   weir::add_input_options(command, a.options);
   weir::add_method_options(command, a.options);
   weir::add_run_options(command, a.options, a.progress);
-  // Which all processes share, too.
+  // All processes share these two as well.
   weir::add_option(command, weir::conversion_option("work-dir"), a.options);
   weir::add_option(command, weir::conversion_option("overwrite"), a.options);
   command.add_flag("--json", a.json, "print the sidecar on stdout");
   weir::add_log_level(command);
 }
 
-// Parses on all ranks. What --help or --version prints, of the lowest rank that has it; empty: none has.
+// Parses on all ranks. Returns the output of --help or --version from the lowest rank that has it; empty if none has.
 std::string parse(CLI::App& app, int argc, char** argv, weir::MpiTeam& team) {
   std::ostringstream asked;
   team.run([&] {
@@ -90,7 +90,7 @@ void convert(const CLI::App& command, const Arguments& a, weir::MpiTeam& team) {
     weir::ConversionRequest request = weir::command_request(a.options);
     options = std::move(request.conversion);
     options.output = a.output;
-    options.resume = weir::Resume::off;  // what is interrupted is lost, by one process as by many
+    options.resume = weir::Resume::off;  // an interrupted conversion is lost, by one process as by many
     options.processors = processors;
     options.provenance = {WEIR_VERSION, weir::build_commit(), weir::given_options(command, a.options)};
     if (!team.leads()) request.source.notice = {};
@@ -126,7 +126,7 @@ int fail(const std::string& message, int code, bool says) {
   return code;
 }
 
-// What ends in an Error ends so on all ranks; one of them says it.
+// An Error ends all ranks; only rank 0 prints it.
 int run(int argc, char** argv, int rank) {
   const bool says = rank == 0;
   CLI::App app("Converts one volume with all processes of an MPI job.", kProgram);
@@ -162,14 +162,14 @@ int main(int argc, char** argv) {
   int code = static_cast<int>(weir::ErrorKind::internal);
   try {
     code = run(argc, argv, rank);
-  } catch (const std::exception& error) {  // of this process alone: the others would wait
+  } catch (const std::exception& error) {  // only this process fails: the others would wait for it
     const weir::Fault fault = weir::fault_of(error, "--memory");
     MPI_Abort(MPI_COMM_WORLD, fail(weir::cat("process ", rank, ": ", fault.message), fault.exit_code, true));
   }
   try {
     weir::finish_stdout();
   } catch (const weir::Error& error) {
-    if (code == 0) code = fail(error.what(), error.exit_code(), true);  // else its own error was said
+    if (code == 0) code = fail(error.what(), error.exit_code(), true);  // otherwise its own error was printed already
   }
   MPI_Finalize();
   return code;

@@ -38,7 +38,7 @@ namespace py = pybind11;
 
 namespace {
 
-/// What a call asks for. No interpreter is needed from here on.
+/// Returns the request of a call. No interpreter is needed from here on.
 ConversionRequest make_request(const std::string& output, const GivenOptions& given) {
   ConversionRequest request = read_conversion_request(given);
   request.conversion.output = output;
@@ -47,7 +47,7 @@ ConversionRequest make_request(const std::string& output, const GivenOptions& gi
   return request;
 }
 
-/// Given what watches the conversion, and who codes its blocks.
+/// Opens a source, given the control that watches the conversion and has the coder of its blocks.
 using OpenSource = std::function<std::unique_ptr<VolumeSource>(const ConversionControl&)>;
 
 Sidecar convert(ConversionOptions options, const OpenSource& open, const py::object& progress) {
@@ -62,7 +62,7 @@ Sidecar convert(ConversionOptions options, const OpenSource& open, const py::obj
     const std::unique_ptr<BlockCoder> coder =
         choose_coder(options.backend, options.encoding == Encoding::packed, options.memory, control.notice);
     control.coder = coder.get();
-    // The program's own data are in the process as well, and none of the conversion's business.
+    // The program's own data are in the process too, and do not count as the conversion's memory.
     options.memory += resident_bytes();
     const std::unique_ptr<FileSystem> files = make_posix_file_system();
     const std::unique_ptr<VolumeSource> source = open(control);
@@ -71,7 +71,7 @@ Sidecar convert(ConversionOptions options, const OpenSource& open, const py::obj
   return *std::move(sidecar);
 }
 
-// Of axes z, y, x.
+// `shape` and `strides` are of the axes z, y, x.
 DenseArray dense_array(const void* data, const std::array<std::int64_t, 3>& shape,
                        const std::array<std::int64_t, 3>& strides, const std::string& type,
                        const SourceOptions& options) {
@@ -96,7 +96,7 @@ std::string text_at(const py::dict& dict, const char* key) {
   return dict.contains(key) ? dict[key].cast<std::string>() : "";
 }
 
-// What `meaning` says of the values and axes, for the sidecar.
+// Adds the description of values and axes in `meaning`, for the sidecar.
 void add_meaning(const py::dict& meaning, DenseArray& array) {
   array.units = text_at(meaning, "units");
   array.details.long_name = text_at(meaning, "long_name");

@@ -10,13 +10,13 @@
 
 namespace weir::python {
 
-/// Waits for the work queued in `stream` (a cudaStream_t as a number) of the device that `data` lie on. The calling
-/// thread is to be the program's, since stream 2 is each thread's own. Throws as open_device_source.
+/// Waits for the work queued in `stream` (a cudaStream_t as a number) of the device that holds `data`. Call it on the
+/// program's own thread, because stream 2 is different in each thread. Throws as open_device_source().
 void wait_for_stream(const void* data, std::uint64_t stream);
 
-/// A source of `array`, whose data lie on a device and have been computed. Where the device does the work of `request`,
-/// they are coded where they are; what keeps it from that is said to control.notice. Throws Error(usage) where this
-/// build or this machine has no device, or the address is of none, and Error(io).
+/// Returns a source of `array`; its data lie on a device and are complete. If the device does the work of `request`,
+/// the data are encoded in place; control.notice gets the reason if they cannot be. Throws Error(usage) if this build
+/// or this machine has no device, or if the address is not of a device, and Error(io).
 std::unique_ptr<VolumeSource> open_device_source(const DenseArray& array, const ConversionRequest& request,
                                                  const ConversionControl& control);
 

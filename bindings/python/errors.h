@@ -1,5 +1,5 @@
-// weir's errors as Python's: the classes of weir/errors.py, by kind, with messages that name keywords where the command
-// line's name options.
+// weir's errors as Python exceptions: the classes of weir/errors.py, by kind, with messages that name keywords instead
+// of the command line's options.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -8,10 +8,10 @@
 
 namespace weir::python {
 
-/// From here on an Error becomes an exception of weir.errors.
+/// From this call on, an Error becomes an exception of weir.errors.
 void translate_errors();
 
-/// `message` with keywords for options ("max_error") as Python's text: paths in it may hold any bytes.
+/// Returns `message` as Python's text, with keywords for options ("max_error"); paths in it may hold any bytes.
 pybind11::str python_text(const Message& message);
 
 }  // namespace weir::python

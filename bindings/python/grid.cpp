@@ -33,21 +33,21 @@ namespace {
 Triple triple(const Index3& i) { return {i.x, i.y, i.z}; }
 Index3 index3(const Triple& i) { return {std::get<0>(i), std::get<1>(i), std::get<2>(i)}; }
 
-/// [z, y, x].
+/// Returns an array [z, y, x].
 py::array_t<float> make_array(const Index3& extent) { return py::array_t<float>({extent.z, extent.y, extent.x}); }
 
 std::span<float> values_of(py::array_t<float>& array) {
   return {array.mutable_data(), static_cast<std::size_t>(array.size())};
 }
 
-// Of a file of several grids the first, as everywhere in weir where none is asked for by name.
+// Selects the first grid of a file of several grids, as everywhere in weir if no grid is named.
 SourceOptions first_grid(const NvdbFile& file) {
   SourceOptions options;
   if (all_nvdb_segments(file.bytes(), file.path()).size() > 1) options.dataset = file.grid().name();
   return options;
 }
 
-// Of the file itself, should the working directory be another one later.
+// Returns an absolute path, so that it stays valid if the working directory changes.
 std::string absolute_path(const std::string& path) {
   std::error_code error;
   const std::filesystem::path found = std::filesystem::absolute(path, error);

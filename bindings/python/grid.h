@@ -1,5 +1,5 @@
-// An open NanoVDB file as Python sees it. Methods hold the interpreter's lock; the long ones let go of it. Arrays that
-// are handed out own their values.
+// An open NanoVDB file as Python sees it. Methods hold the interpreter's lock; the long ones release it. Returned
+// arrays own their values.
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -25,7 +25,7 @@
 
 namespace weir::python {
 
-/// x, y, z. A tuple: so is what Python gets.
+/// x, y, z as a tuple, so that Python gets a tuple.
 using Triple = std::tuple<std::int64_t, std::int64_t, std::int64_t>;
 using Position = std::tuple<double, double, double>;
 
@@ -33,14 +33,14 @@ class Grid {
  public:
   /// Maps and checks the file; reads no values. Throws as NvdbFile and open_source.
   explicit Grid(const std::string& path);
-  /// A packed file elsewhere: `fetch` is called with a list of (offset, bytes) and returns as many `bytes` objects, or
-  /// raises; `interrupt` makes calls of it that are under way raise; `cache` as of RemoteGrid, "256MiB". What `fetch`
-  /// raises goes on to whoever called. Throws as RemoteGrid, and Error(usage) where `cache` is no size.
+  /// Opens a packed file elsewhere. `fetch` is called with a list of (offset, bytes) and returns as many `bytes`
+  /// objects, or raises; its exceptions reach the caller. `interrupt` makes running calls of `fetch` raise. `cache` is
+  /// as for RemoteGrid, "256MiB". Throws as RemoteGrid, and Error(usage) if `cache` is not a size.
   Grid(const std::string& url, const pybind11::function& fetch, const pybind11::function& interrupt,
        const std::string& cache);
 
-  /// Lets go of the file. Everything but closed() throws Error(usage) from then on; calls of other threads that are
-  /// under way end as if it were open.
+  /// Releases the file. Afterwards everything but closed() throws Error(usage); running calls of other threads end as
+  /// if it were open.
   void close() { file_.reset(); }
   bool closed() const { return file_ == nullptr; }
 
@@ -56,62 +56,64 @@ class Grid {
   std::uint64_t bytes() const;
   int levels() const;
 
-  /// The sidecar's JSON; nullopt where there is none. Throws Error(input) where it is of another file, and Error(usage)
-  /// where the grid lies elsewhere.
+  /// Returns the sidecar's JSON; nullopt if there is none. Throws Error(input) if the sidecar belongs to another file,
+  /// and Error(usage) if the grid is remote.
   std::optional<std::string> sidecar() const;
-  /// The same of its text, read from `path`.
+  /// Checks and returns the sidecar `text`, which was read from `path`. Throws as sidecar().
   std::string checked_sidecar(const std::string& text, const std::string& path) const;
-  /// float32 [z, y, x] of the box at a level: levels.h.
+  /// Returns float32 [z, y, x] of the box at a level: levels.h.
   pybind11::array_t<float> read(const Triple& lo, const Triple& hi, int level) const;
-  /// float32 [z, y, x] of `count` voxels along each axis, from `first` on in steps of `step`: strided_read.h.
+  /// Returns float32 [z, y, x] of `count` voxels along each axis, from `first` on in steps of `step`: strided_read.h.
   pybind11::array_t<float> read_strided(const Triple& first, const Triple& step, const Triple& count) const;
-  /// float32 values at `points` (N x 3: x, y, z in voxels from the lowest corner): volume_sampler.h.
+  /// Returns float32 values at `points` (N x 3: x, y, z in voxels from the lowest corner): volume_sampler.h.
   pybind11::array_t<float> sample(const pybind11::array_t<float, pybind11::array::c_style>& points,
                                   bool trilinear) const;
-  /// Voxels along a cell, voxel position of the first cell's corner, and float32 [z, y, x] of minima and maxima.
+  /// Returns the voxels along a cell, the voxel position of the first cell's corner, and float32 [z, y, x] of minima
+  /// and maxima.
   std::tuple<std::int64_t, Triple, pybind11::array_t<float>, pybind11::array_t<float>> macrocells() const;
-  /// The picture that `weir render` makes with `options`: uint8 sRGB or, where linear, float32 radiance, [y, x, RGB].
+  /// Returns the picture that `weir render` makes with `options`: uint8 sRGB or, if linear, float32 radiance, [y, x,
+  /// RGB].
   pybind11::array render(const GivenOptions& options, bool linear, const pybind11::object& progress) const;
-  /// name, found, expected, ok of all checks of `weir verify`.
+  /// Returns name, found, expected, ok of all checks of `weir verify`.
   std::vector<std::tuple<std::string, std::string, std::string, bool>> verify(const pybind11::object& progress) const;
 
  private:
-  /// What calls share; the last one of them closes the file.
+  /// The data that calls share; the last call that uses it closes the file.
   struct Opened {
-    std::shared_ptr<const NvdbFile> file;  ///< null where it lies elsewhere
-    std::unique_ptr<RemoteGrid> remote;    ///< else null
+    std::shared_ptr<const NvdbFile> file;  ///< null if the grid is remote
+    std::unique_ptr<RemoteGrid> remote;    ///< null if the grid is in a file
     std::unique_ptr<VolumeSource> source;
-    std::function<void()> interrupt;  ///< ends what is waited for, of what lies elsewhere; else empty
+    std::function<void()> interrupt;  ///< ends the waits of a remote grid; otherwise empty
     std::once_flag samples_made;
-    std::optional<GridSamples> samples;  ///< of a file
+    std::optional<GridSamples> samples;  ///< only of a file
 
     const NvdbGrid& grid() const { return file != nullptr ? file->grid() : remote->grid(); }
-    /// Throws Error(input) where the file was written to or cut since it was opened: its mapping may have other values,
-    /// or end the process. One that was replaced by a rename is as it was. Of what lies elsewhere the reader tells. One
-    /// call of the system, which may wait for a server: without the interpreter's lock.
+    /// Throws Error(input) if the file was written to or truncated since it was opened: its mapping may then have other
+    /// values, or end the process. A file that was replaced by a rename is still intact. For a remote grid the reader
+    /// detects changes. Makes one system call, which may wait for a server, so call it without the interpreter's lock.
     void require_unchanged() const;
-    /// Throws Error(input) where `path` does not lead to the file that is open.
+    /// Throws Error(input) if `path` does not lead to the file that is open.
     void require_at(const std::string& path) const;
-    /// Calls `use` while what touches boxes(), in voxels from the lowest one, can be read from `source`; of a file
-    /// nobody asks for them.
+    /// Calls `use` while all that touches boxes(), in voxels from the lowest one, can be read from `source`. For a
+    /// file, boxes() is not called.
     void with_boxes(const std::function<std::vector<Box>()>& boxes, const std::function<void()>& use) const;
-    /// Calls `use` with one part after the other of `count` planes, [first, end), and the part of `values` that is
-    /// theirs, while what touches boxes(first, end) can be read: of a file elsewhere parts of `thickness` planes where
-    /// all of them are more than its cache, else all.
+    /// Calls `use` for one part after the other of `count` planes: with the planes [first, end) and their part of
+    /// `values`, while all that touches boxes(first, end) can be read. A remote grid uses parts of `thickness` planes
+    /// if all planes exceed its cache; otherwise there is a single part.
     void with_planes(std::span<float> values, std::int64_t count, std::int64_t thickness,
                      const std::function<std::vector<Box>(std::int64_t first, std::int64_t end)>& boxes,
                      const std::function<void(std::int64_t first, std::int64_t end, std::span<float> part)>& use) const;
   };
 
   Opened& opened() const;
-  // Throws Error(input) where the sidecar, read from `path`, is of another file.
+  // Throws Error(input) if the sidecar, read from `path`, belongs to another file.
   std::string text_of(const Sidecar& sidecar, const std::string& path) const;
-  // Throws Error(usage) where the grid lies elsewhere; `what` needs a file.
+  // Throws Error(usage) if the grid is remote; `what` needs a file.
   std::shared_ptr<Opened> with_file(const char* what) const;
   std::shared_ptr<Opened> shared() const;
 
-  std::string path_;      ///< as it was given, for messages
-  std::string absolute_;  ///< the file's, whatever the working directory is later; empty where it lies elsewhere
+  std::string path_;      ///< as the caller gave it, for messages
+  std::string absolute_;  ///< the file's absolute path, valid if the working directory changes; empty for a remote grid
   std::shared_ptr<Opened> file_;
 };
 

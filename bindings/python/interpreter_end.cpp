@@ -17,22 +17,22 @@ namespace py = pybind11;
 struct CallUnderWay::State {
   std::function<void()> stop;
   std::atomic<bool> ended{false};
-  pid_t process = ::getpid();  ///< a process that is forked has none of the threads of its calls
+  pid_t process = ::getpid();  ///< a forked process has none of the threads of its calls
 };
 
 namespace {
 
-/// How long the end of the interpreter waits for calls, which stop within a fraction of a second but for a few.
+/// The longest time that the end of the interpreter waits for calls; nearly all stop within a fraction of a second.
 constexpr std::chrono::seconds kLongestWait{10};
 constexpr std::chrono::milliseconds kBetweenLooks{5};
 
-/// The thread that ends the interpreter; none before.
+/// The thread that ends the interpreter; none before that.
 std::atomic<std::thread::id>& ending_thread() {
   static std::atomic<std::thread::id> thread;
   return thread;
 }
 
-/// All calls under way. The interpreter's lock is this list's, too.
+/// All running calls. The interpreter's lock guards this list.
 std::vector<std::shared_ptr<CallUnderWay::State>>& calls_under_way() {
   static std::vector<std::shared_ptr<CallUnderWay::State>> calls;
   return calls;
@@ -47,8 +47,8 @@ bool another_thread_ends() {
   while (true) ::pause();
 }
 
-/// What `call` returns, which takes the interpreter's lock. Stands directly around it, so that nothing is unwound where
-/// that ends the thread.
+/// Returns call(), which takes the interpreter's lock. Must be directly around that call, so that nothing is unwound if
+/// the interpreter ends the thread there.
 template <class Call>
 auto survived(const Call& call) {
   try {
@@ -88,7 +88,7 @@ void stop_all_calls() {
   const auto until = std::chrono::steady_clock::now() + kLongestWait;
   for (auto running = running_calls(); !running.empty(); running = running_calls()) {
     for (const auto& call : running) {
-      if (!call->ended && call->stop) call->stop();  // an earlier one's may have let this one end
+      if (!call->ended && call->stop) call->stop();  // stopping an earlier call may have let this one end
     }
     if (std::chrono::steady_clock::now() > until) return;
     {

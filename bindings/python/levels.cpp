@@ -11,7 +11,7 @@ namespace weir::python {
 
 namespace {
 
-/// Level 0 is read in layers of about so many values, between two looks at the flag.
+/// Level 0 is read in layers of about this many values; the flag is checked between layers.
 constexpr std::int64_t kLayerValues = std::int64_t{1} << 24;
 
 void stop_if(const std::atomic<bool>& cancelled) {
@@ -29,11 +29,11 @@ void read_voxels(VolumeSource& source, const Box& box, std::span<float> values, 
   }
 }
 
-/// The rows of means of one leaf row or more: those that lie in the same 8 x 8 voxels in y and z or, where a cube is
-/// larger than that, one row.
+/// The rows of means of one leaf row or more: the rows in the same 8 x 8 voxels in y and z or, if a cube is larger than
+/// that, a single row.
 class MeanRows {
  public:
-  /// `rows`: values of the level, from the volume's corner.
+  /// `rows` is a box of values of the level, from the volume's corner.
   MeanRows(VolumeSource& source, int level, const Box& rows)
       : source_(source),
         level_(level),
@@ -56,7 +56,7 @@ class MeanRows {
     }
   }
 
-  /// Writes the means of rows_ into `values`, which are those of `box`.
+  /// Writes the means of rows_ into `values`, which hold `box`.
   void write(const Box& box, std::span<float> values) const {
     const Index3 extent = source_.info().extent;
     for_each_index(rows_, [&](const Index3& cube) {
@@ -68,7 +68,7 @@ class MeanRows {
   }
 
  private:
-  // The values of voxels from the volume's corner, x fastest; their first one along x begins a cube.
+  // Adds the values of voxels, counted from the volume's corner, x fastest; the first voxel along x begins a cube.
   void add(const Box& voxels, const float* value) {
     for (std::int64_t z = voxels.lo.z; z < voxels.hi.z; ++z) {
       for (std::int64_t y = voxels.lo.y; y < voxels.hi.y; ++y) {
@@ -106,7 +106,7 @@ void read_level(VolumeSource& source, int level, const Box& box, std::span<float
     read_voxels(source, {lo + box.lo, lo + box.hi}, values, cancelled);
     return;
   }
-  const std::int64_t rows = std::max<std::int64_t>(kLeafDim >> level, 1);  // along y and z that share leaves
+  const std::int64_t rows = std::max<std::int64_t>(kLeafDim >> level, 1);  // rows along y and z that share leaves
   const NodeLattice groups = make_lattice(Box{{0, box.lo.y, box.lo.z}, {1, box.hi.y, box.hi.z}}, rows);
   tbb::parallel_for(std::int64_t{0}, groups.size(), [&](std::int64_t i) {
     Box part = groups.voxels(groups.position(i));

@@ -1,5 +1,5 @@
-// weir._core: what the Python files of bindings/python/weir are written with. They have the documentation and the
-// keywords; here are bytes for paths and options as texts.
+// weir._core: the compiled functions that the Python files of bindings/python/weir use. The Python files have the
+// documentation and the keywords; the functions here take bytes for paths and texts for options.
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
@@ -10,8 +10,8 @@
 
 namespace py = pybind11;
 
-// pybind11's own entry gets another name: in an interpreter beside the main one it waits for itself. (Python from 3.13
-// on calls it in the main one first.)
+// pybind11's own entry gets another name, because in a subinterpreter it waits for itself. (From Python 3.13 on it is
+// called in the main interpreter first.)
 #define PyInit__core init_in_main_interpreter
 
 PYBIND11_MODULE(_core, m) {

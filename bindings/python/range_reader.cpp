@@ -14,7 +14,7 @@ namespace py = pybind11;
 
 namespace {
 
-/// A reference that any thread may drop, without the interpreter's lock.
+/// Returns a reference that any thread may drop, without the interpreter's lock.
 std::shared_ptr<py::function> shared_function(const py::function& function) {
   return {new py::function(function), [](py::function* kept) {
             const Locked locked;

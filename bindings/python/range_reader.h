@@ -1,4 +1,4 @@
-// Bytes of a remote file, by a function of Python.
+// Reads bytes of a remote file through a Python function.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -9,12 +9,12 @@
 
 namespace weir::python {
 
-/// Calls `fetch` with a list of (offset, bytes), and takes as many objects with a buffer of that length each. May be
-/// called and destroyed by any thread, without the interpreter's lock. Throws what `fetch` raises, and Error(io) where
-/// it returns something else.
+/// Returns a reader that calls `fetch` with a list of (offset, bytes) and takes as many objects, each with a buffer of
+/// that length. Any thread may call and destroy it, without the interpreter's lock. It throws what `fetch` raises, and
+/// Error(io) if `fetch` returns something else.
 RangeReader python_range_reader(const pybind11::function& fetch);
 
-/// Calls `function`. May be destroyed by any thread; its caller holds the interpreter's lock.
+/// Returns a function that calls `function`. Any thread may destroy it; its caller holds the interpreter's lock.
 std::function<void()> python_call(const pybind11::function& function);
 
 }  // namespace weir::python

@@ -1,4 +1,4 @@
-// The voxels of a remote grid, as any source has them: of the blocks that are there (remote_grid.h).
+// A remote grid as a source: it reads voxels from the blocks that are held (remote_grid.h).
 #pragma once
 
 #include <cstdint>
@@ -11,12 +11,12 @@ namespace weir::python {
 
 class RemoteSource final : public VolumeSource {
  public:
-  /// `grid` must outlive it.
+  /// `grid` must outlive the source.
   explicit RemoteSource(const RemoteGrid& grid);
 
   const SourceInfo& info() const override { return info_; }
   AccessShape access() const override;
-  /// To be called within RemoteGrid::with_blocks of a box that holds `box`.
+  /// Call it within RemoteGrid::with_blocks() for a box that holds `box`.
   ConversionLoss read(const Box& box, std::span<float> values) override;
   std::uint64_t bytes_read() const override { return 0; }
 

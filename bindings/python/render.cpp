@@ -1,4 +1,4 @@
-// Grid::render: a picture by the renderer of `weir render`, as an array.
+// Grid::render(): a picture from the renderer of `weir render`, as an array.
 #include <algorithm>
 #include <cstdint>
 #include <memory>

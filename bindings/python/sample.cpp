@@ -1,4 +1,4 @@
-// Grid::sample: filtered values at many positions.
+// Grid::sample(): filtered values at many positions.
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
@@ -15,10 +15,10 @@ namespace py = pybind11;
 
 namespace {
 
-/// Positions between which a thread may change; a look-up takes some 50 ns.
+/// Positions per task of a thread; a look-up takes some 50 ns.
 constexpr std::size_t kGrain = 4096;
 
-// `positions`: x, y, z of one after the other.
+// `positions` holds x, y, z of one position after the other.
 template <class Volume>
 void sample_part(const Volume& volume, std::span<const float> positions, const tbb::blocked_range<std::size_t>& part,
                  float* values) {

@@ -8,7 +8,7 @@
 namespace weir::python {
 namespace {
 
-// The lower of the two voxels along an axis that a look-up at `p` may touch; the other is the next one.
+// Returns the lower of the two voxels along an axis that a look-up at `p` may touch; the other is the next voxel.
 std::int64_t lower_voxel(float p, std::int64_t extent) {
   const auto last = static_cast<float>(extent - 1);
   return std::min(static_cast<std::int64_t>(std::clamp(p - 0.5F, 0.0F, last)), extent - 1);

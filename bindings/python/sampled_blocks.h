@@ -1,4 +1,4 @@
-// The blocks that samples at given positions look at, decoded: for grids of which not all blocks are there.
+// Decodes the blocks that samples at given positions need, for grids that hold only some of their blocks.
 #pragma once
 
 #include <array>
@@ -14,26 +14,26 @@
 
 namespace weir::python {
 
-/// The blocks of 8^3 voxels that filtered look-ups at `positions` touch, each once, in voxels from the lowest one of
-/// `domain`, and cut to it. Positions as of volume_sampler.h: x, y, z of one after the other.
+/// Returns the blocks of 8^3 voxels that filtered look-ups at `positions` touch, each once, cut to `domain`, in voxels
+/// from its lowest one. Positions are as in volume_sampler.h: x, y, z of one after the other.
 std::vector<Box> sampled_blocks(std::span<const float> positions, const Box& domain);
 
-/// What FilteredVolume looks voxels up in.
+/// The volume in which FilteredVolume looks up voxels.
 class DecodedBlocks {
  public:
-  /// `blocks` of sampled_blocks. Throws as NvdbGrid::decode_block.
+  /// `blocks` are from sampled_blocks(). Throws as NvdbGrid::decode_block().
   DecodedBlocks(const NvdbGrid& grid, std::span<const Box> blocks);
 
   Int3 extent;
 
-  /// Of a block that was decoded; voxels from the lowest one.
+  /// Returns a voxel of a decoded block; `i` counts from the lowest voxel.
   float voxel(const Int3& i) const;
-  /// The eight voxels from `i` up, x fastest, those beyond the extent clamped. False: all are set.
+  /// Reads the eight voxels from `i` up, x fastest, clamped to the extent. Returns false: all are set.
   bool taps(const Int3& i, float (&c)[8]) const;
 
  private:
   using Values = std::array<float, kLeafVoxels>;
-  // By block; shared, since a FilteredVolume holds a copy.
+  // by block; shared, because a FilteredVolume holds a copy of this object
   std::shared_ptr<std::unordered_map<std::int64_t, Values>> blocks_;
   Index3 origin_;
   NodeLattice lattice_;

@@ -11,17 +11,17 @@ namespace weir::python {
 
 namespace {
 
-/// Positions first ... last - 1 of a Stride, which one read covers.
+/// The positions first ... last - 1 of a Stride; one read covers them.
 struct StrideGroup {
   std::int64_t first = 0;
   std::int64_t last = 0;
 
-  /// The lowest voxel of the group, and one past the highest.
+  /// Return the lowest voxel of the group, and one past the highest.
   std::int64_t low(const Stride& stride) const { return std::min(stride.at(first), stride.at(last - 1)); }
   std::int64_t high(const Stride& stride) const { return std::max(stride.at(first), stride.at(last - 1)) + 1; }
 };
 
-/// The positions in groups that share a row of leaves. `origin`: index of the volume's lowest voxel.
+/// Returns the positions in groups that share a row of leaves. `origin` is the index of the volume's lowest voxel.
 std::vector<StrideGroup> groups_of_leaves(const Stride& stride, std::int64_t origin) {
   std::vector<StrideGroup> groups;
   std::int64_t leaf = 0;
@@ -34,10 +34,10 @@ std::vector<StrideGroup> groups_of_leaves(const Stride& stride, std::int64_t ori
   return groups;
 }
 
-/// Along x, y and z.
+/// Returns the groups along x, y and z.
 std::array<std::vector<StrideGroup>, 3> groups_of(const std::array<Stride, 3>& axes, const Index3& origin) {
   const auto& [x, y, z] = axes;
-  // Rows of leaves along x are read whole where every leaf of theirs has a voxel that is asked for.
+  // Rows of leaves along x are read whole if every leaf of the row has a voxel that is asked for.
   const bool whole_rows = std::abs(x.step) <= kLeafDim;
   return {whole_rows ? std::vector<StrideGroup>{{0, x.count}} : groups_of_leaves(x, origin.x),
           groups_of_leaves(y, origin.y), groups_of_leaves(z, origin.z)};

@@ -15,7 +15,7 @@ namespace py = pybind11;
 
 namespace {
 
-/// How long Ctrl-C may go unseen.
+/// The longest time until Ctrl-C is noticed.
 constexpr std::chrono::milliseconds kPause{50};
 
 void deliver(Watch& watch, const py::object& progress) {
@@ -30,7 +30,7 @@ void deliver(Watch& watch, const py::object& progress) {
   }
 }
 
-// What it raises, a further KeyboardInterrupt for instance, must not keep the work's thread from being joined.
+// An exception of `interrupt`, for instance another KeyboardInterrupt, must not prevent joining the work's thread.
 void interrupt_quietly(const std::function<void()>& interrupt) {
   try {
     if (interrupt) interrupt();
@@ -130,7 +130,8 @@ void run_watched(const py::object& progress, const std::function<void(Watch&)>& 
       if (!ended) interrupt_quietly(interrupt);
       continue;
     }
-    const bool settling = watch.settling();  // before its events are taken: all that came before are among them
+    const bool settling = watch.settling();  // read before the events are taken, so that they include everything before
+                                             // the wait
     try {
       if (!ended && PyErr_CheckSignals() != 0) throw py::error_already_set();
       deliver(watch, progress);

@@ -1,5 +1,5 @@
-// Work that a Python program waits for: it runs on a thread of its own without the interpreter's lock, while the
-// calling thread, which alone runs Python code, hands on progress and looks for Ctrl-C.
+// Runs work that a Python program waits for, on a thread of its own without the interpreter's lock. The calling thread,
+// the only one that runs Python code, passes on progress and checks for Ctrl-C.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -17,7 +17,7 @@
 
 namespace weir::python {
 
-/// What the work tells, and is told. Thread-safe.
+/// The channel between the work and the calling thread. Thread-safe.
 class Watch {
  public:
   struct Event {
@@ -31,21 +31,21 @@ class Watch {
   void advance(std::uint64_t done);
   void notice(const Message& line);
   const std::atomic<bool>& cancelled() const { return cancelled_; }
-  /// Throws Error(interrupted) where `cancel` was called.
+  /// Throws Error(interrupted) if cancel() was called.
   void stop_if_cancelled() const;
 
-  /// Waits until all that was told before has been handed on; throws as stop_if_cancelled. For the work's thread.
+  /// Waits until everything reported before has been passed on; throws as stop_if_cancelled(). For the work's thread.
   void settle();
 
   void cancel() { cancelled_ = true; }
   void finish();
-  /// Waits for the end of the work, or until it settles, that long at most; whether it has ended.
+  /// Waits until the work has ended or settles, at most that long. Returns whether the work has ended.
   bool wait(std::chrono::milliseconds at_most);
-  /// Whether the work's thread waits in settle().
+  /// Returns whether the work's thread waits in settle().
   bool settling();
-  /// Ends its wait.
+  /// Ends the wait in settle().
   void delivered();
-  /// What was told since the last call: of each pass the last state only.
+  /// Returns what was reported since the last call: for each pass only its last state.
   std::vector<Event> take();
 
  private:
@@ -55,17 +55,17 @@ class Watch {
   std::atomic<bool> cancelled_{false};
   bool finished_ = false;
   bool settling_ = false;
-  bool changed_ = false;  // pass_ since the last take()
+  bool changed_ = false;  // pass_ has changed since the last take()
   Event pass_;
   std::vector<Event> earlier_;
 };
 
-/// Runs `work` and rethrows what it throws. `progress`, None or called as progress(pass, done, total), and the
-/// interpreter's signal handlers run meanwhile; where one raises, the work is cancelled, and what was raised goes on
-/// after it has ended. `interrupt` is called by the calling thread, again and again from then on until the work has
-/// ended, and makes what the work waits for fail. Notices go to the logger "weir". The caller holds the interpreter's
-/// lock; `work` must not touch a Python object. Where the interpreter ends meanwhile, the work is cancelled, and this
-/// does not return.
+/// Runs `work` and rethrows its exceptions. While it runs, the calling thread calls `progress`, unless it is None, as
+/// progress(pass, done, total), and runs the interpreter's signal handlers. If one of them raises, the work is
+/// cancelled, and the exception goes on after the work has ended. From then on the calling thread calls `interrupt`
+/// repeatedly until the work has ended; `interrupt` makes whatever the work waits for fail. Notices go to the logger
+/// "weir". The caller holds the interpreter's lock; `work` must not touch a Python object. If the interpreter ends in
+/// the meantime, the work is cancelled, and this function does not return.
 void run_watched(const pybind11::object& progress, const std::function<void(Watch&)>& work,
                  const std::function<void()>& interrupt = {});
 

@@ -19,20 +19,20 @@
 namespace weir {
 namespace {
 
-/// Lower nodes whose leaves are compared before their pages are let go: 9 MiB each where all leaves are float32.
+/// Number of lower nodes to compare before their pages are released: 9 MiB each if all leaves are float32.
 constexpr std::int64_t kRegionsAtATime = 4;
 
-/// What one thread has seen; the order of merging does not matter.
+/// The tally of one thread. Tallies can be merged in any order.
 class DifferenceTally {
  public:
-  // `marks_missing`: a source voxel may be missing_value().
+  // `marks_missing` says whether a source voxel may be missing_value().
   void add_leaf(const Block& block, const NvdbGrid& grid, const NodeLattice& leaves, const Index3& leaf,
                 bool marks_missing) {
     const Box node = leaves.node_box(leaf);
     const Box inside = leaves.voxels(leaf);
     gather_leaf(block.values, block.voxels, node, inside, 0.0F, source_);
     grid.decode_block(grid.block_at(node.lo), decoded_);
-    // Voxels outside the domain become equal, so that they add nothing.
+    // Makes voxels outside the domain equal, so that they add no error.
     if (inside != node) decoded_ = inside_only(decoded_, source_, node, inside);
     const LeafDifference difference = difference_of(source_, decoded_);
     squared_error_.add(difference.squared_error);
@@ -43,7 +43,7 @@ class DifferenceTally {
     zeros_lost_ += difference.zeros_lost;
     zeros_ += zeros_inside(node, inside);
     if (marks_missing && difference.nonfinite > 0) count_missing(node, inside);
-    // Voxels outside are zeros, which would widen the range.
+    // Voxels outside the domain are zeros, which would widen the range.
     widen(inside == node ? difference.range : range_inside(node, inside));
     if (difference.max_abs > 0.0 && difference.max_abs >= max_abs_) {
       offer_maximum(difference.max_abs, first_maximum(node, inside, difference.max_abs));
@@ -159,7 +159,7 @@ class DifferenceTally {
   LeafValues decoded_{};
 };
 
-// The leaves of `leaf_box` (lattice positions) lower node by lower node, a few nodes at a time.
+// Calls visit(leaf) for the leaves of `leaf_box` (lattice positions) and after_some() after every few lower nodes.
 template <typename Visit>
 void for_each_leaf(const NodeLattice& leaves, const Box& leaf_box, const std::function<void()>& after_some,
                    const Visit& visit) {

@@ -20,17 +20,17 @@ Box with_margin(const Box& box, const PairMargin& margin, const Box& domain) {
   return intersect({box.lo - cube(margin.below), box.hi + cube(margin.above)}, domain);
 }
 
-/// Blocks, and each with its margin.
+/// The blocks to stream, and the box of each with its margin.
 struct PairPlan {
-  NodeLattice lattice;       ///< of blocks of 8^3
-  std::vector<Box> leaves;   ///< lattice positions of each block of the plan
-  std::vector<Box> boxes;    ///< its voxels and those around it
+  NodeLattice lattice;       ///< lattice of leaves, 8^3 voxels each
+  std::vector<Box> leaves;   ///< lattice positions of the leaves of each block
+  std::vector<Box> boxes;    ///< voxels of each block with its margin
   std::int64_t largest = 0;  ///< voxels of the largest box
-  std::int64_t voxels = 0;   ///< of all blocks, without what is around them
+  std::int64_t voxels = 0;   ///< voxels of all blocks without margins
 };
 
-// Margins of small blocks are larger than they: blocks are halved until boxes are below twice `block_bytes`, or have
-// become as small as they can be of use.
+// Halves the blocks until no box is larger than twice `block_bytes`, or until the blocks are down to 64 KiB. The margin
+// of a small block is larger than the block itself, so that smaller ones would not help.
 PairPlan plan_pairs(const VolumeSource& source, const PairMargin& margin, std::uint64_t block_bytes, const Team& team) {
   constexpr std::uint64_t kLeast = std::uint64_t{64} << 10U;
   const Box domain = source.info().domain();
@@ -52,8 +52,7 @@ PairPlan plan_pairs(const VolumeSource& source, const PairMargin& margin, std::u
   }
 }
 
-/// Decodes boxes of grids, and has pages released before more than CompareOptions::page_bytes of them are
-/// resident.
+/// Decodes boxes of grids. Releases pages before more than CompareOptions::page_bytes of them are resident.
 class Decoder {
  public:
   explicit Decoder(const CompareOptions& options)
@@ -73,7 +72,7 @@ class Decoder {
 
  private:
   static constexpr std::int64_t kPiece = 16;  // leaves along x
-  // The system maps 64 KiB around a page that is looked at, where they are in the page cache, or more, as those lie
+  // The system maps the 64 KiB around a page that is read, if they are in the page cache, or more if more pages lie
   // together there: 161 KiB were seen.
   static constexpr std::uint64_t kPagesOfLeaf = std::uint64_t{256} << 10U;
 
@@ -85,7 +84,7 @@ class Decoder {
 
   const CompareOptions& options_;
   std::int64_t most_;
-  std::atomic<std::int64_t> leaves_{0};  // decoded since the pages were released
+  std::atomic<std::int64_t> leaves_{0};  // leaves decoded since pages were last released
 };
 
 }  // namespace

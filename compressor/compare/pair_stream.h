@@ -1,4 +1,4 @@
-// A volume and what a file reads, side by side, block by block.
+// Streams a volume and the decoded values of a file side by side, block by block.
 #pragma once
 
 #include <cstdint>
@@ -13,16 +13,16 @@
 
 namespace weir {
 
-/// Voxels around a block that its values have in addition, where the volume has them.
+/// Number of voxels around a block that are streamed with it, as far as the volume has them.
 struct PairMargin {
   std::int64_t below = 0;
   std::int64_t above = 0;
 };
 
-/// Reads the volume in blocks with `margin` around each, decodes the same voxels of `grid`, whose box is the volume's,
-/// and calls `visit(values, part)` for each block of 8^3 voxels, cut to the volume, from several threads at once; of a
-/// `team` each rank for its own. Three buffers of at most twice options.block_bytes exist. Throws what reading and
-/// decoding throw, and Error(interrupted).
+/// Reads the volume in blocks with `margin` around each and decodes the same voxels of `grid`, which must have the
+/// volume's box. Calls `visit(values, part)` for each block `part` of 8^3 voxels, cut to the volume, from several
+/// threads at once. Each rank of `team` visits its own blocks. Three buffers of at most twice options.block_bytes
+/// exist. Throws what reading and decoding throw, and Error(interrupted).
 void stream_pairs(VolumeSource& source, const NvdbGrid& grid, const PairMargin& margin, const CompareOptions& options,
                   const std::function<void(const ValuePair&, const Box&)>& visit, const Team& team = no_team());
 
@@ -32,8 +32,8 @@ struct PairedVolume {
   const NvdbGrid& grid;
 };
 
-/// The same of several pairs, all over the domain of the first, whose blocks are read ahead: `visit` gets the values of
-/// all of them. There are three buffers for the first pair and two for each other one.
+/// The same for several pairs, all over the domain of the first pair. `visit` gets the values of all pairs. Only the
+/// blocks of the first pair are read ahead. There are three buffers for the first pair and two for each other pair.
 void stream_pairs(std::span<const PairedVolume> volumes, const PairMargin& margin, const CompareOptions& options,
                   const std::function<void(std::span<const ValuePair>, const Box&)>& visit,
                   const Team& team = no_team());

@@ -1,4 +1,4 @@
-// A box of a volume's values and of what a file reads there, as the derived errors look at them.
+// The values of a box of a volume and the decoded values of a file there, for the derived errors.
 #pragma once
 
 #include <cmath>
@@ -9,9 +9,9 @@
 
 namespace weir {
 
-/// Both x fastest over `box` (index space), which lies in `domain`.
+/// Source and decoded values, both x fastest over `box` (index space), which lies in `domain`.
 struct ValuePair {
-  Box domain;  ///< of the volume
+  Box domain;  ///< index box of the volume
   Box box;
   std::span<const float> source;
   std::span<const float> decoded;

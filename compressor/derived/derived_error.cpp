@@ -10,7 +10,7 @@
 namespace weir {
 namespace {
 
-/// Of the windows that begin at the last voxel of a block.
+/// The margin for the neighbours of a block, and for windows that begin at its last voxel.
 constexpr PairMargin kWithWindows{1, SimilarityTally::kWindow - 1};
 constexpr PairMargin kNeighbours{1, 1};
 
@@ -66,7 +66,7 @@ GradientError gradient_error(VolumeSource& source, const NvdbGrid& grid, const C
   });
   std::vector<GradientTally> total{none};
   for (const GradientTally& tally : tallies) total.front().merge(tally);
-  team.concatenate(total);  // one of each rank
+  team.concatenate(total);  // one tally per rank
   for (std::size_t i = 1; i < total.size(); ++i) total.front().merge(total[i]);
   return total.front().result();
 }

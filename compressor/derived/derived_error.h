@@ -1,5 +1,5 @@
-// Errors of what people derive from a volume, beside the error of its values: how |error| is distributed, the error of
-// the gradient, and structural similarity. Streams both, as compare_volumes does.
+// Errors beyond those of the values themselves: the distribution of |error|, the error of the gradient, and the
+// structural similarity. Streams the source and the file, as compare_volumes does.
 #pragma once
 
 #include <array>
@@ -17,19 +17,20 @@ namespace weir {
 struct DerivedErrors {
   static constexpr std::array<double, 4> kShares{0.5, 0.9, 0.99, 0.999};
 
-  std::array<double, 4> quantiles{};  ///< of |error| over finite voxels, for kShares; error_histogram.h
-  ErrorHistogram::Octaves octaves;    ///< of |error|
+  std::array<double, 4> quantiles{};  ///< quantiles kShares of |error| over finite voxels (error_histogram.h)
+  ErrorHistogram::Octaves octaves;    ///< distribution of |error|
   GradientError gradient;             ///< per world unit
   Similarity similarity;
 };
 
-/// What `compared`, the result of compare_volumes for the same two with the same options, does not say. Reads both once
-/// more. Results depend on neither block size nor threads. Throws as compare_volumes.
+/// Finds the derived errors of `grid` against `source`. `compared` is the result of compare_volumes for the same two
+/// with the same options. Reads both once more. Results depend on neither block size nor threads. Throws as
+/// compare_volumes.
 DerivedErrors derive_errors(VolumeSource& source, const NvdbGrid& grid, const Comparison& compared,
                             const CompareOptions& options);
 
-/// DerivedErrors::gradient alone: what a sidecar certifies. The ranks of `team` divide the work, and all have the
-/// result.
+/// Returns DerivedErrors::gradient alone, which a sidecar certifies. The ranks of `team` divide the work, and all get
+/// the result.
 GradientError gradient_error(VolumeSource& source, const NvdbGrid& grid, const CompareOptions& options,
                              Team& team = no_team());
 

@@ -1,4 +1,4 @@
-// How |error| is distributed: counts in bins that are narrow in proportion, so that quantiles of any volume take one
+// The distribution of |error|: counts in bins with a small relative width, so that quantiles of any volume take one
 // pass and little memory.
 #pragma once
 
@@ -7,22 +7,23 @@
 
 namespace weir {
 
-/// 256 bins to an octave from 2^-150 to 2^130, which differences of two float32 lie between, and one for 0.
+/// Has 256 bins per octave from 2^-150 to 2^130, the range of differences of two float32, and one bin for 0.
 class ErrorHistogram {
  public:
   ErrorHistogram() : counts_(kBins) {}
 
-  /// `size` is finite and not negative.
+  /// Adds an absolute error, which must be finite and not negative.
   void add(double size);
   void add(const ErrorHistogram& other);
 
   std::uint64_t count() const { return count_; }
-  /// A size that the share `share` of all, 0 < share <= 1, rounded up to whole ones, do not exceed: the end of its bin,
-  /// at most 0.4 % above the smallest such size, and never above `largest`. 0 where nothing was added.
+  /// Returns a size that the share `share` of all added sizes does not exceed. 0 < share <= 1; the number of sizes is
+  /// rounded up. The result is the end of a bin, at most 0.4 % above the smallest possible size, and never above
+  /// `largest`. Returns 0 if nothing was added.
   double quantile(double share, double largest) const;
 
-  /// How many sizes are 0, and how many lie in [2^(first + i), 2^(first + i + 1)), the first and the last of which are
-  /// not none.
+  /// The number of sizes that are 0, and in counts[i] the number that lies in [2^(first + i), 2^(first + i + 1)). The
+  /// first and the last count are above 0.
   struct Octaves {
     std::uint64_t zeros = 0;
     int first = 0;

@@ -1,5 +1,5 @@
-// The error of a volume's gradient: central differences, at the faces of the volume those to the next voxel, as
-// numpy.gradient has them.
+// The error of a volume's gradient. The gradient uses central differences, and at the faces of the volume differences
+// to the next voxel, as numpy.gradient does.
 #pragma once
 
 #include <array>
@@ -13,14 +13,15 @@ namespace weir {
 
 using GradientError = Sidecar::GradientError;
 
-/// For one thread; sums do not depend on order and grouping.
+/// The tally of one thread. Sums do not depend on the order and the grouping of the parts.
 class GradientTally {
  public:
   GradientTally() = default;
-  /// `spacing`: world units per voxel.
+  /// `spacing` is in world units per voxel.
   explicit GradientTally(const std::array<double, 3>& spacing) : spacing_(spacing) {}
 
-  /// The voxels `part`, a block of 8^3 cut to the volume; `values` has a voxel more on each side that the volume has.
+  /// Adds the voxels `part`, a block of 8^3 cut to the volume. `values` has one voxel more on each side, as far as the
+  /// volume reaches.
   void add(const ValuePair& values, const Box& part);
   void merge(const GradientTally& other);
   GradientError result() const;

@@ -1,5 +1,5 @@
-// Between which voxels the difference at a voxel is taken: central differences, at the faces of the volume those to the
-// next voxel, as numpy.gradient has them.
+// The pairs of voxels for the differences at a voxel: central differences, and at the faces of the volume differences
+// to the next voxel, as numpy.gradient takes them.
 #pragma once
 
 #include <array>
@@ -9,15 +9,14 @@
 
 namespace weir {
 
-/// The two voxels along an axis (ValuePair::at), and the length from one to the other in world units: 0 along an axis
-/// of one voxel.
+/// The two voxels along an axis (ValuePair::at) and their distance in world units; 0 along an axis of one voxel.
 struct Neighbours {
   std::size_t low;
   std::size_t high;
   double length;
 };
 
-/// Of voxel `i`, along x, y and z; `spacing`: world units per voxel.
+/// Returns the neighbours of voxel `i` along x, y and z. `spacing` is in world units per voxel.
 inline std::array<Neighbours, 3> neighbours_of(const ValuePair& values, const Index3& i,
                                                const std::array<double, 3>& spacing) {
   const auto along = [&](const Index3& step, bool at_low, bool at_high, double distance) {

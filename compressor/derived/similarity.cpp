@@ -11,7 +11,7 @@ WindowBegins windows_along(std::int64_t extent) {
   return {extent, std::min(extent, SimilarityTally::kWindow), std::min(extent, SimilarityTally::kStride)};
 }
 
-/// Sums over a window, of values less the middle of the range: then the differences of squares stay small.
+/// Sums over a window. The middle of the range is subtracted from all values to keep differences of squares small.
 struct WindowSums {
   double a = 0;
   double b = 0;

@@ -14,7 +14,7 @@
 namespace weir {
 namespace {
 
-/// derivatives[c][a]: of component c along axis a.
+/// derivatives[c][a] is the derivative of component c along axis a.
 using Derivatives = std::array<std::array<double, 3>, 3>;
 
 double squared_vorticity(const Derivatives& d) {
@@ -29,7 +29,7 @@ double squared_divergence(const Derivatives& d) {
   return sum * sum;
 }
 
-/// Squares of a quantity at many voxels.
+/// Sums of a quantity's squares over many voxels.
 struct QuantityTally {
   ExactSum error;
   ExactSum source;
@@ -52,7 +52,7 @@ struct QuantityTally {
   }
 };
 
-/// For one thread; sums do not depend on order and grouping.
+/// The tally of one thread. Sums do not depend on the order and the grouping of the parts.
 class VectorTally {
  public:
   explicit VectorTally(const std::array<double, 3>& spacing) : spacing_(spacing) {}
@@ -85,7 +85,7 @@ class VectorTally {
   VectorErrors result() const { return {vorticity_.result(voxels_), divergence_.result(voxels_), voxels_, left_out_}; }
 
  private:
-  /// Of one block of 8^3.
+  /// Sums over one block of 8^3.
   struct Sums {
     double error = 0;
     double source = 0;
@@ -103,7 +103,7 @@ class VectorTally {
     }
   };
 
-  // False where a value is not finite.
+  // Finds the derivatives at voxel `i`. Returns false if a value is not finite.
   bool differentiate(std::span<const ValuePair> values, const Index3& i, Derivatives& error,
                      Derivatives& source) const {
     const std::array<Neighbours, 3> axes = neighbours_of(values.front(), i, spacing_);

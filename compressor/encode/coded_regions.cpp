@@ -7,11 +7,11 @@
 namespace weir {
 namespace {
 
-// Blocks whose values, codes and streams a batch has at most, but for what one region has: 16 MiB of values.
+// The most blocks of a batch: 16 MiB of values. A batch has at least one region.
 constexpr std::size_t kMostBlocks = 8192;
 constexpr std::size_t kRegionBlocks = 4096;
 
-// Of a stream that was planned; nullopt where the caller encodes it.
+// Returns the kind of a planned stream to ask for; nullopt if the caller must encode the stream.
 std::optional<StreamAskKind> kind_of(const PackedTarget& packed, std::int16_t step, std::uint32_t bytes) {
   if (PlannedStreams::transforms(step)) return StreamAskKind::transform;
   if (PlannedStreams::is_near(step)) return StreamAskKind::rounded;
@@ -56,7 +56,7 @@ void CodedBatch::add(const EncodeTarget& target, const Box& leaf_box, std::int64
   const Box box = intersect(target.tree.leaf_box(region), leaf_box);
   CodedRegion coded(box, asks_, made_);
   const StreamPlaces& streams = *places.streams;
-  // In the order of the streams in the file, so that those of a layer lie together.
+  // Asks in the order of the streams in the file, so that the streams of a layer lie together.
   for_each_in_file_order(box, [&](const Index3& leaf) {
     const std::size_t position = target.tree.mask_position(leaf);
     const std::int16_t step = streams.plan().steps[position];

@@ -1,5 +1,5 @@
-// The streams that a block coder writes of the kept blocks of a box, some regions at a time: while those of one batch
-// are taken, it works on the next.
+// The streams that a block coder writes for the kept blocks of a box, in batches of regions. The coder works on the
+// next batch while the streams of the current one are taken.
 #pragma once
 
 #include <cstddef>
@@ -15,8 +15,8 @@
 
 namespace weir {
 
-/// One block's: as many bytes as planned, and what they decode to, in the order of a leaf; of a resident one instead
-/// its record and the digest of its values.
+/// The stream of one block. `bytes` has the planned length. A loaded block also has its decoded values, in the order of
+/// a leaf. A resident block instead has its record and the digest of its source values.
 struct CodedStream {
   std::span<const std::byte> bytes;
   std::span<const float> decoded;
@@ -24,21 +24,21 @@ struct CodedStream {
   const Digest* source;
 };
 
-/// Of one region, as far as it lies in a box.
+/// The coded streams of one region, as far as the region lies in a box.
 class CodedRegion {
  public:
-  /// All but the box must outlive the object.
+  /// `asks` and `made` must outlive the object.
   CodedRegion(const Box& box, const std::vector<StreamAsk>& asks, const std::optional<MadeStreams>& made)
       : box_(box), ask_of_(static_cast<std::size_t>(box.voxels()), kNone), asks_(asks), made_(made) {}
 
-  /// `leaf` lies in the box, and asks[ask] is for its stream.
+  /// Records that asks[ask] asks for the stream of `leaf`, which must lie in the box.
   void set(const Index3& leaf, std::size_t ask) { ask_of_[at(leaf)] = static_cast<std::int32_t>(ask); }
-  /// Nullopt where the caller has to encode it.
+  /// Returns the stream of `leaf`, or nullopt if the caller has to encode the leaf.
   std::optional<CodedStream> find(const Index3& leaf) const;
-  /// Of a resident region: its chunk from the first group on, up to the last stream that was asked for. What is not of
-  /// those that were coded the caller has to set. Empty where nothing was.
+  /// Returns the chunk of a resident region, from the first group to the last stream that was asked for. The caller
+  /// must set all bytes that belong to no coded stream. Empty if nothing was coded.
   std::span<std::byte> chunk() const { return made_ ? made_->bytes : std::span<std::byte>(); }
-  /// Of a resident region: the records of those that were asked for, in the order of the file.
+  /// Returns the records of the leaves of a resident region that were asked for, in the order of the file.
   std::span<const LeafRecord> records() const { return made_ ? made_->records : std::span<const LeafRecord>(); }
 
  private:
@@ -53,17 +53,18 @@ class CodedRegion {
   const std::optional<MadeStreams>& made_;
 };
 
-/// Regions of a box whose streams are written together. Neither copied nor moved.
+/// Regions of a box that get their streams written together. Cannot be copied or moved.
 class CodedBatch {
  public:
-  /// Which blocks are asked for: none, all that are transformed, or, of resident ones, those that lie wholly in the
-  /// volume and are no corners of a preview: these come as they lie in the region's chunk.
+  /// Which kept blocks the coder is asked for, among those with a stream of a kind that it writes. `none`: no block.
+  /// `loaded`: all blocks. `resident`: the blocks of a device that lie wholly in the volume and are no corner of a
+  /// preview; their streams come as they lie in the region's chunk.
   enum class Blocks { none, loaded, resident };
-  /// Begins with some of `regions`, which have kept leaves in `leaf_box`, whose values are `blocks`; both must outlive
-  /// the object.
+  /// Begins to code the first few of `regions`. Each has kept leaves in `leaf_box`, and `blocks` holds the values of
+  /// that box. `target` and `blocks` must outlive the object.
   CodedBatch(const EncodeTarget& target, const Box& leaf_box, std::span<const std::int64_t> regions,
              LoadedBlocks& blocks, Blocks which = Blocks::loaded);
-  /// Of one region, of which nothing is asked.
+  /// Makes a batch of one region and asks for no stream.
   CodedBatch(const EncodeTarget& target, const Box& leaf_box, std::int64_t region);
   CodedBatch(const CodedBatch&) = delete;
   CodedBatch& operator=(const CodedBatch&) = delete;
@@ -74,10 +75,10 @@ class CodedBatch {
     Box box;  ///< its leaves in the leaf box
     CodedRegion coded;
   };
-  /// Of the first ones, so many.
+  /// Returns the regions of this batch: the first ones of the constructor's `regions`.
   std::span<const Region> regions() const { return regions_; }
 
-  /// Waits for their streams.
+  /// Waits for the streams of the batch.
   void wait() {
     if (pending_) made_ = pending_->wait();
   }

@@ -20,7 +20,7 @@
 namespace weir {
 namespace {
 
-// Regions under a box of leaf-lattice positions, as a box of region-lattice positions.
+// Returns the regions under a box of leaf-lattice positions, as a box of region-lattice positions.
 Box regions_under(const TreeRegions& tree, const Box& leaf_box) {
   const Index3 lo = floor_div(tree.leaves.first + leaf_box.lo, kLowerLeaves) - tree.region_lattice.first;
   const Index3 last =
@@ -28,7 +28,7 @@ Box regions_under(const TreeRegions& tree, const Box& leaf_box) {
   return {lo, last + Index3{1, 1, 1}};
 }
 
-// The rows of `block` (lattice positions) that hold kept leaves.
+// Returns the part of `block` (lattice positions) to read: the rows along x that hold kept leaves.
 Box trim_to_kept(const TreeRegions& tree, const ChoiceStore& store, const Box& block) {
   RowsToRead kept(block);
   for_each_index(regions_under(tree, block), [&](const Index3& at) {
@@ -46,13 +46,14 @@ std::unique_ptr<LayerEncoder> make_encoder(const EncodeTarget& target) {
   return target.packed != nullptr ? make_packed_encoder(target) : make_leaf_encoder(target);
 }
 
-// The values of a block where a coder is to look at them; null where there is none.
+// Loads the values of a block into the coder; returns null if there is no coder.
 std::unique_ptr<LoadedBlocks> load_block(const EncodeTarget& target, const Block& block, const Box& leaf_box) {
   if (target.packed == nullptr || target.packed->coder == nullptr) return nullptr;
   return target.packed->coder->load(block.values, block.voxels, target.tree.leaves.nodes_box(leaf_box));
 }
 
-// for_each_layer(), by batches of regions whose streams a coder writes: the next while those of one are taken.
+// Does what for_each_layer() does, in batches of regions. A coder writes the streams of the next batch while this
+// function visits the layers of the current one.
 template <typename ForEach, typename Visit>
 void for_each_coded_layer(const EncodeTarget& target, const SourceInfo& info, const Box& leaf_box, LoadedBlocks& loaded,
                           const ForEach& for_each, const Visit& visit) {
@@ -83,8 +84,8 @@ void for_each_coded_layer(const EncodeTarget& target, const SourceInfo& info, co
   }
 }
 
-// Calls visit(region, places, surveyed, x, coded) for every x layer of every region of a block that holds kept leaves;
-// `for_each(begin, end, action)` is the loop to use. `coded` may be null.
+// Calls visit(region, places, surveyed, x, coded) for every x layer of every region of a block that holds kept leaves.
+// `for_each(begin, end, action)` is the loop to use. `visit` may get a null `coded`.
 template <typename ForEach, typename Visit>
 void for_each_layer(const EncodeTarget& target, const SourceInfo& info, const Block& block, const Box& leaf_box,
                     const ForEach& for_each, const Visit& visit) {
@@ -104,7 +105,7 @@ void for_each_layer(const EncodeTarget& target, const SourceInfo& info, const Bl
   });
 }
 
-// The leaves of a block, by the calling thread.
+// Encodes the leaves of a block on the calling thread.
 void encode_alone(const EncodeTarget& target, const SourceInfo& info, const Block& block, const Box& leaf_box,
                   LayerEncoder& encoder) {
   const auto in_turn = [](std::int64_t begin, std::int64_t end, const auto& action) {
@@ -121,7 +122,7 @@ void encode_alone(const EncodeTarget& target, const SourceInfo& info, const Bloc
 
 using LayerEncoders = tbb::enumerable_thread_specific<std::unique_ptr<LayerEncoder>>;
 
-// The same by TBB's workers, too.
+// Encodes the leaves of a block on TBB's workers, too.
 void encode_shared(const EncodeTarget& target, const SourceInfo& info, const Block& block, const Box& leaf_box,
                    LayerEncoders& encoders) {
   const auto in_parallel = [](std::int64_t begin, std::int64_t end, const auto& action) {
@@ -137,14 +138,14 @@ void encode_shared(const EncodeTarget& target, const SourceInfo& info, const Blo
                  });
 }
 
-// What is left to be encoded. Boxes are of leaf-lattice positions, but for voxel_boxes.
+// What is left to be encoded. All boxes hold leaf-lattice positions, except `voxel_boxes`.
 struct EncodeWork {
-  std::vector<Box> parts;            // what is not done
-  std::vector<Box> leaf_boxes;       // what of that holds kept leaves
-  std::vector<Box> voxel_boxes;      // its voxels
-  std::vector<std::size_t> part_of;  // by leaf box
+  std::vector<Box> parts;            // the boxes that are not done
+  std::vector<Box> leaf_boxes;       // the parts, each cut to the rows with kept leaves
+  std::vector<Box> voxel_boxes;      // the voxels of each leaf box
+  std::vector<std::size_t> part_of;  // the index in `parts` of each leaf box
 
-  // Parts that are done once the first `boxes` boxes are.
+  // Returns how many parts are done when the first `boxes` leaf boxes are done.
   std::size_t parts_done(std::size_t boxes) const { return boxes == part_of.size() ? parts.size() : part_of[boxes]; }
 };
 
@@ -203,7 +204,7 @@ void encode_leaves(VolumeSource& source, const BlockPlan& plan, const EncodeTarg
     for (const std::unique_ptr<LayerEncoder>& encoder : encoders) known.sums.add(encoder->sums());
   };
   StreamOptions stream = options;
-  stream.in_parts = target.packed == nullptr || target.packed->coder == nullptr;  // a coder is given all voxels
+  stream.in_parts = target.packed == nullptr || target.packed->coder == nullptr;  // a coder needs all voxels
   if (pauses.due) {
     stream.at_rest = [&](std::size_t boxes_done) {
       if (!pauses.due()) return;

@@ -17,7 +17,7 @@
 namespace weir {
 namespace {
 
-// Of all that decides where which leaf lies and what it holds, once the survey and the options are given.
+// Returns a digest of everything that decides, for a given survey and options, where each leaf lies and what it holds.
 Digest plan_digest(const FilePlan& file) {
   DigestStream digest;
   const auto regions = static_cast<std::int64_t>(file.tree->regions.size());
@@ -36,8 +36,8 @@ Digest plan_digest(const FilePlan& file) {
   return digest.digest();
 }
 
-// What an earlier process wrote counts if it was of this very plan. If not, that is saved before the first of its bytes
-// is overwritten.
+// Keeps what an earlier process encoded if it had this very plan. If not, discards it and saves the journal before the
+// first of its bytes is overwritten.
 void adopt_plan(Journal& journal, const Digest& plan) {
   Checkpoint& state = journal.state;
   if (state.plan == plan) return;
@@ -47,10 +47,10 @@ void adopt_plan(Journal& journal, const Digest& plan) {
   journal.save_now();
 }
 
-// The files that the leaves and their records go to, empty but for what counts.
+// Opens the files for the leaves and their records. Clears them unless they hold encoded leaves of this plan.
 std::shared_ptr<File> open_targets(const EncodeJob& job, const FilePlan& file) {
   if (job.journal == nullptr) {
-    job.rows.team().publish(job.output.volume());  // nothing of an earlier attempt comes after this one's
+    job.rows.team().publish(job.output.volume());  // waits until no bytes of an earlier attempt can arrive any more
     job.output.clear_for(file.size.bytes);
     return job.work.spill_records();
   }
@@ -64,7 +64,7 @@ std::shared_ptr<File> open_targets(const EncodeJob& job, const FilePlan& file) {
   return records;
 }
 
-// What an earlier process wrote counts if its files are as it wrote them.
+// Keeps what an earlier process encoded if its files are still as it wrote them. Otherwise clears the files.
 void check_written(const EncodeJob& job, const EncodeTarget& target, File& records) {
   Checkpoint& state = job.journal->state;
   if (state.encoded.done.empty()) return;
@@ -93,15 +93,15 @@ FilePlan select_file(const EncodeJob& job, FileRequest& request) {
   }
 }
 
-// Whether a region's part of the tree is written once it is encoded, and no records are kept. The macrocells of all
-// regions are held meanwhile, for which there is room where there is for records.
+// Returns whether each region's part of the tree is written as soon as the region is encoded, so that no records are
+// kept. The macrocells of all regions then stay in memory. They fit if the records would fit.
 bool finishes_regions(const EncodeJob& job, const FilePlan& file) {
   return job.work.holds_records() &&
          encodes_by_regions(job.source, file.packed.has_value(), job.rows.team(), job.journal != nullptr);
 }
 
-// For all that is written of a volume on a device to a memory file system, whose space is reserved. Null where what is
-// left of the memory would not hold it, beside the records.
+// Maps the output file if the volume lies on a device and the file lies on a memory file system with its space
+// reserved. Returns null otherwise, and if the rest of the memory would not hold the file and the records.
 std::unique_ptr<MappedWrites> mapped_writes(const EncodeJob& job, const FilePlan& file) {
   if (job.source.resident() == nullptr || !job.rows.team().alone()) return nullptr;
   constexpr std::uint64_t kBeside = std::uint64_t{256} << 20U;
@@ -176,12 +176,12 @@ EncodedFile encode_once(const EncodeJob& job, FileRequest& request) {
   return encoded;
 }
 
-// Squared error over the finite voxels that can be seen, of what the file decodes to.
+// Returns the squared error of the decoded file over the finite voxels that can be seen.
 double seen_error(const EncodedFile& encoded) {
   return encoded.file.plan.seen_tiles.squared + encoded.seen_errors.squared;
 }
 
-// Whether the file keeps what the budget promises of its values.
+// Returns whether the file keeps the promise that the budget makes about its values.
 bool keeps_promise(const EncodedFile& encoded, const FileRequest& request) {
   const DecodedErrors& tiles = encoded.file.plan.seen_tiles;
   const DecodedErrors& leaves = encoded.seen_errors;
@@ -201,9 +201,9 @@ bool keeps_promise(const EncodedFile& encoded, const FileRequest& request) {
   return true;
 }
 
-// The attempts at one file: what the last one was asked for decides the next.
+// The attempts at one file. The result of each attempt decides the request of the next one.
 struct Attempts {
-  static constexpr int kMostEstimated = 6;  // then comes one that is sure
+  static constexpr int kMostEstimated = 6;  // attempts by estimate; the next one is sure to keep the promise
 
   const FileRequest asked;
   const RowStore& rows;
@@ -212,8 +212,8 @@ struct Attempts {
   int number = 0;
   std::optional<double> met = {};  // the planned error of an earlier file that met the target
 
-  // Whether there has to be another one after `encoded`, which then is set up. Expectations come from the survey's
-  // estimates; decoded values decide. Throws Error(budget) where the encoding asked for has nothing better left.
+  // Returns whether another attempt must follow `encoded`, and sets up its request. Expectations come from the survey's
+  // estimates, but decoded values decide. Throws Error(budget) if the requested encoding cannot do better.
   bool adjust(const EncodedFile& encoded) {
     const bool kept = keeps_promise(encoded, request);
     if (!kept && request.budget.kind == Budget::Kind::automatic) {
@@ -229,7 +229,7 @@ struct Attempts {
       take_float(encoded);
       return true;
     }
-    // Within 3 % of the error asked, 0.13 dB, is small enough.
+    // A file within 3 % (0.13 dB) of the requested error is small enough.
     const double error = seen_error(encoded);
     const bool may_lose_more = number + 1 < kMostEstimated && expects_loss_of_nothing(encoded);
     if (kept && !may_lose_more && (number >= 2 || error >= 0.97 * request.squared_error || !(error > 0))) return false;
@@ -239,7 +239,8 @@ struct Attempts {
     if (may_lose_more) {
       request.planned_error *= 8;
     } else if (number + 1 < kMostEstimated && !exhausted) {
-      // A volume of few leaves has few errors to choose from: the same choice again calls for a longer step.
+      // A volume of few leaves has few errors to choose from. If the last step led to the same choice, takes a longer
+      // one.
       request.planned_error *= request.squared_error / error * (kept ? 0.995 : 1 - std::ldexp(0.002, 2 * number));
     } else if (met) {
       request.planned_error = *met;
@@ -252,19 +253,20 @@ struct Attempts {
     return true;
   }
 
-  // Whether more is asked than by the default, which nobody did.
+  // Returns whether raise_quality() asks for more than the default. The user did not ask for it.
   bool raised() const {
     return asked.budget.kind == Budget::Kind::automatic && request.budget.kind != asked.budget.kind;
   }
 
-  // The default's own file, whatever it keeps, from the first attempt on again.
+  // Begins again with the first attempt, for the file of the default rate, whatever it keeps.
   void keep_default() {
     begin_again();
     request.budget.target = 0;
   }
 
  private:
-  // Where only a bound of the float file's error is known, the file is planned if that does not decide.
+  // Returns whether the file loses more than a float file would. If only a bound of the float file's error is known,
+  // and the bound does not decide, plans the float file.
   bool loses_more_than_float(const EncodedFile& encoded) const {
     const double error = seen_error(encoded);
     if (error <= encoded.file.float_error) return false;
@@ -276,14 +278,14 @@ struct Attempts {
   }
 
   void begin_again() {
-    const auto window = request.packed.window;  // of the ladders that there are
+    const auto window = request.packed.window;  // the window of the existing ladders
     request = asked;
     request.packed.window = window;
     number = -1;
     met.reset();
   }
 
-  // Of a volume that the default rate would destroy more is kept, from the first attempt on again.
+  // Begins again with the first attempt and a higher quality, because the default rate would destroy the volume.
   void raise_quality() {
     begin_again();
     const std::uint64_t dense = float32_bytes(request.domain);
@@ -294,13 +296,13 @@ struct Attempts {
     request.budget.kind = Budget::Kind::psnr;
   }
 
-  // It loses nothing where much was expected, as with voxels without a value, of which an estimate knows too little: a
-  // smaller file may do as well.
+  // Returns whether the file loses nothing although a loss was expected. This happens with voxels without a value,
+  // which an estimate knows too little about. A smaller file may then do as well.
   bool expects_loss_of_nothing(const EncodedFile& encoded) const {
     return !(seen_error(encoded) > 0) && encoded.file.plan.expected_error > 0 && request.planned_error > 0;
   }
 
-  // Every leaf is kept as well as this encoding can.
+  // Returns whether every leaf is already kept as well as this encoding can.
   bool keeps_everything(const EncodedFile& encoded) const {
     return encoded.file.plan.expected_error > request.planned_error || request.planned_error == 0;
   }
@@ -313,11 +315,12 @@ struct Attempts {
   }
 };
 
-// Of the error asked, what the first file is planned for: so much less as estimates are off, or every other file would
-// miss it by that, and be made once more.
+// Returns the share of the requested error that the first file is planned for. It is below 1 by as much as estimates
+// are off. Otherwise every second file would miss the target by that much and be made again.
 double planned_share(Encoding encoding) {
   if (encoding == Encoding::float32) return 1;
-  return encoding == Encoding::packed ? 0.999 : 0.985;  // coefficients' errors are those of values to parts of 10,000
+  // The errors of coefficients match those of values to parts of 10,000.
+  return encoding == Encoding::packed ? 0.999 : 0.985;
 }
 
 }  // namespace
@@ -330,7 +333,7 @@ TreeParts tree_parts(const EncodedFile& encoded, const RowStore& rows) {
 EncodedFile encode_file(const EncodeJob& job, FileRequest request) {
   request.planned_error = planned_share(request.encoding) * request.squared_error;
   Attempts attempts{std::move(request), job.rows, job.work};
-  // A volume that the default may be raised for is small: its attempts begin anew, so that they come to the same file.
+  // A volume that the default may be raised for is small. Its attempts begin anew, so that they end with the same file.
   const bool may_raise = attempts.asked.budget.kind == Budget::Kind::automatic && attempts.asked.budget.target > 0;
   if (!may_raise && job.journal != nullptr && job.journal->state.attempt &&
       job.journal->state.attempt->seen == job.seen) {

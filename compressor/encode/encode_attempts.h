@@ -1,5 +1,4 @@
-// Encodes a surveyed volume into a file whose leaves are written: once for a size, as often as needed for an error
-// target.
+// Encodes the leaves of a surveyed volume into a file: once for a size, as often as needed for an error target.
 #pragma once
 
 #include <memory>
@@ -22,21 +21,21 @@
 
 namespace weir {
 
-/// A file whose leaves are written, and what they lose.
+/// A file with all leaves written, and the errors of these leaves.
 struct EncodedFile {
   FilePlan file;
-  std::unique_ptr<PackedTarget> packed;  ///< of a packed file
+  std::unique_ptr<PackedTarget> packed;  ///< null if the file is not packed
   DecodedErrors errors;
-  DecodedErrors seen_errors;             ///< of those that can be seen
-  std::unique_ptr<MappedWrites> mapped;  ///< the volume, to be written and read by; null where it is not mapped
-  std::unique_ptr<RecordStore> records;  ///< of the leaves; null where `regions` are finished
+  DecodedErrors seen_errors;             ///< errors of the leaves that can be seen
+  std::unique_ptr<MappedWrites> mapped;  ///< the mapped volume file, for writing and reading; null if it is not mapped
+  std::unique_ptr<RecordStore> records;  ///< records of the leaves; null if `regions` has taken them
   std::unique_ptr<FinishedRegions> regions;
 };
 
-/// Of a file whose leaves are written.
+/// Returns the parts from which TreeWriter writes the rest of `encoded`.
 TreeParts tree_parts(const EncodedFile& encoded, const RowStore& rows);
 
-/// What the attempts work with; all of it outlives them.
+/// What encode_file() works with. All that it refers to must outlive the call.
 struct EncodeJob {
   VolumeSource& source;
   const BlockPlan& plan;
@@ -44,20 +43,21 @@ struct EncodeJob {
   const RowStore& rows;
   WorkDirectory& work;
   OutputFiles& output;
-  Journal* journal;  ///< null: what is interrupted is lost
-  std::string seen;  ///< visible_values of the scene; empty without one
+  Journal* journal;  ///< if null, an interrupted conversion cannot be resumed
+  std::string seen;  ///< visible_values of the scene; empty without a scene
   const StreamOptions& stream;
   std::function<void()> pass_started;                ///< may throw Error(interrupted)
   Notice notice;                                     ///< may be empty
   std::function<void(std::uint64_t bytes)> planned;  ///< may be empty
-  /// Called where the cut of a plan lies outside the request's window: builds other ladders and sets their window.
+  /// Called if the cut of a plan lies outside the request's window. Builds other ladders and sets their window.
   std::function<void(FileRequest&, double cut)> move_window;
-  BlockCoder* coder = nullptr;  ///< of packed blocks
-  std::uint64_t memory = 0;     ///< that the process may take
+  BlockCoder* coder = nullptr;  ///< coder for packed blocks; may be null
+  std::uint64_t memory = 0;     ///< bytes that the process may use
 };
 
-/// Plans, encodes and, where an error target is missed or left far behind, does so again with another expected error.
-/// Where the default rate gave way to more than the encoding can keep, it is that rate's file in the end.
+/// Plans and encodes a file. If the file misses an error target, or is far better than the target, plans and encodes it
+/// again with another expected error. If the default rate was raised to a quality that the encoding cannot reach, the
+/// result is the file of the default rate.
 EncodedFile encode_file(const EncodeJob& job, FileRequest request);
 
 }  // namespace weir

@@ -13,7 +13,7 @@
 namespace weir {
 namespace {
 
-// Pieces of a file that follow each other, read many at a time.
+// Sums the checksums of pieces of a file. Reads adjacent pieces together.
 class PieceReader {
  public:
   explicit PieceReader(File& file) : file_(file) {}
@@ -22,7 +22,7 @@ class PieceReader {
     if (!pieces_.empty() && (offset != end() || end() - pieces_.front().offset >= kMostBytes)) finish();
     pieces_.push_back({offset, bytes});
   }
-  /// Adds what is held to the sum.
+  /// Reads the pieces that are held and adds their checksums to the sum.
   void finish() {
     if (pieces_.empty()) return;
     const std::uint64_t begin = pieces_.front().offset;
@@ -49,12 +49,12 @@ class PieceReader {
   std::uint64_t sum_ = 0;
 };
 
-// Of one thread.
+// The sums of one thread.
 class WrittenSums {
  public:
   explicit WrittenSums(const EncodeTarget& target) : target_(target), volume_(target.out) {}
 
-  // Of the leaves of a region in `box`.
+  // Adds the leaves of a region in `box`.
   void add(std::int64_t region, const Box& box) {
     const RegionPlaces places = places_of(target_, region);
     for (std::int64_t x = box.lo.x; x < box.hi.x; ++x) {
@@ -93,7 +93,7 @@ class WrittenSums {
 
   void add_records() {
     if (ordinals_.empty()) return;
-    const auto count = static_cast<std::uint32_t>(ordinals_.back() - ordinals_.front() + 1);  // of one layer
+    const auto count = static_cast<std::uint32_t>(ordinals_.back() - ordinals_.front() + 1);  // records of one layer
     const std::vector<LeafRecord> records = target_.records->read(ordinals_.front(), count);
     for (const std::uint64_t ordinal : ordinals_) {
       records_ += record_checksum(ordinal, records[static_cast<std::size_t>(ordinal - ordinals_.front())]);
@@ -103,7 +103,7 @@ class WrittenSums {
 
   const EncodeTarget& target_;
   PieceReader volume_;
-  std::vector<std::uint64_t> ordinals_;  // of the records of a layer, ascending
+  std::vector<std::uint64_t> ordinals_;  // ordinals of a layer's records, ascending
   std::uint64_t records_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// What the encode pass of an earlier process has written, read back.
+// Reads back what the encode pass of an earlier process has written, to check it.
 #pragma once
 
 #include "compressor/encode/layer_encoder.h"
@@ -6,11 +6,11 @@
 
 namespace weir {
 
-/// Checksums of the leaves or streams, and of the records, that `target` has of the leaves in `done` (positions of the
-/// leaf lattice); on all threads. Throws as File::read_at.
+/// Returns the checksums of what the files of `target` hold for the leaves in `done` (positions of the leaf lattice):
+/// of the leaves or streams, and of the records. Works on all threads. Throws as File::read_at.
 EncodedSums sums_of_written(const EncodeTarget& target, const BoxSet& done);
 
-/// Whether the bytes behind all that a file holds, up to the size that was asked for, are 0: nobody writes them.
+/// Returns whether all bytes between the end of the file's content and the requested size are 0. Nothing writes there.
 bool has_empty_padding(const EncodeTarget& target);
 
 }  // namespace weir

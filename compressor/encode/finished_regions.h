@@ -1,5 +1,5 @@
-// Takes the regions of a volume that are encoded one after the other, each as a whole: sums their errors and writes
-// their part of the tree while their records are in memory.
+// Takes the regions of a volume that is encoded region by region. Sums the errors of each region and writes its part of
+// the tree while its records are still in memory.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,8 @@ namespace weir {
 
 class FinishedRegions final : public RegionSink {
  public:
-  /// As TreeWriter, of parts without records. `seen_by`, which may be null: the choices that tell which leaves can be
-  /// seen.
+  /// `parts` and `out` are as in TreeWriter; `parts` has no records. `seen_by` may be null; otherwise its choices tell
+  /// which leaves can be seen.
   FinishedRegions(const TreeParts& parts, File& out, const ChoiceStore* seen_by)
       : seen_by_(seen_by), errors_(parts.tree.regions.size()), seen_errors_(errors_.size()), tree_(parts, out) {}
 
@@ -29,7 +29,7 @@ class FinishedRegions final : public RegionSink {
     tree_.add(region, records);
   }
 
-  // Once all are taken.
+  // Call errors() and seen_errors() after all regions are taken.
   DecodedErrors errors() const { return sum_errors(errors_); }
   DecodedErrors seen_errors() const { return sum_errors(seen_errors_); }
   TreeWriter& tree() { return tree_; }

@@ -1,4 +1,4 @@
-// What the encode pass hands blocks to, a layer at a time.
+// The interface of encoders: the encode pass hands them blocks, one layer at a time.
 #pragma once
 
 #include <cstdint>
@@ -25,17 +25,17 @@
 
 namespace weir {
 
-/// What packed blocks are encoded with.
+/// The settings with which packed blocks are encoded.
 struct PackedTarget {
   const PlannedStreamsStore& streams;
   PackedRule rule;
   BlockConstants constants;
-  std::optional<Lattice> lattice;   ///< of the whole volume
-  std::optional<double> max_error;  ///< where the budget bounds it
-  BlockCoder* coder = nullptr;      ///< encodes many blocks at a time, where there is one
+  std::optional<Lattice> lattice;   ///< lattice of the whole volume's values, if known
+  std::optional<double> max_error;  ///< the error bound, if the budget has one
+  BlockCoder* coder = nullptr;      ///< encodes many blocks at a time; may be null
 };
 
-/// Takes the records of a region once all of them are there. Thread-safe for different regions.
+/// Takes the records of a region after all of them are made. Thread-safe for different regions.
 class RegionSink {
  public:
   RegionSink() = default;
@@ -43,7 +43,7 @@ class RegionSink {
   RegionSink(const RegionSink&) = delete;
   RegionSink& operator=(const RegionSink&) = delete;
 
-  /// `records` are those of its kept leaves, one at least, in their order.
+  /// `records` are the records of the region's kept leaves, at least one, in the order of the leaves.
   virtual void take(std::int64_t region, std::span<const LeafRecord> records) = 0;
 };
 
@@ -53,20 +53,20 @@ struct EncodeTarget {
   const TreeLayout& layout;
   Fill fill;
   GridType type;  ///< float32 or quantised
-  Fit fit;        ///< of quantised leaves
+  Fit fit;        ///< how quantised leaves are fitted
   File& out;
-  RecordStore* records;  ///< null where `regions` takes them
+  RecordStore* records;  ///< null if `regions` takes the records
   const RowStore& rows;  ///< of the survey; each rank of its team encodes the leaves of its own regions
   Trace* trace = nullptr;
-  const PackedTarget* packed = nullptr;  ///< where blocks are packed; then `type` and `fit` mean nothing
-  bool sums = true;                      ///< whether LayerEncoder::sums() is asked for, as a journal does
-  RegionSink* regions = nullptr;         ///< of a volume on a device: takes the records in place of a store
+  const PackedTarget* packed = nullptr;  ///< set if blocks are packed; `type` and `fit` then have no meaning
+  bool sums = true;                      ///< whether LayerEncoder::sums() will be called, for a journal
+  RegionSink* regions = nullptr;         ///< for a volume on a device: takes the records instead of `records`
 };
 
-/// Where the kept blocks of a region lie.
+/// The places of a region's kept blocks in the file. Exactly one of the members is set.
 struct RegionPlaces {
   std::optional<LeafPlaces> leaves;
-  std::optional<StreamPlaces> streams;  ///< of packed blocks
+  std::optional<StreamPlaces> streams;  ///< for packed blocks
 };
 
 inline RegionPlaces places_of(const EncodeTarget& target, std::int64_t region) {
@@ -81,7 +81,7 @@ inline RegionPlaces places_of(const EncodeTarget& target, std::int64_t region) {
 
 class CodedRegion;
 
-/// One per thread.
+/// Encodes kept leaves. One object per thread.
 class LayerEncoder {
  public:
   LayerEncoder() = default;
@@ -89,14 +89,14 @@ class LayerEncoder {
   LayerEncoder(const LayerEncoder&) = delete;
   LayerEncoder& operator=(const LayerEncoder&) = delete;
 
-  /// The kept leaves of one x layer of one region, as far as they lie in the block. `coded`, where given, has streams
-  /// of some of them.
+  /// Adds the kept leaves of one x layer of one region, as far as they lie in the block. `coded`, if not null, has the
+  /// streams of some of them.
   virtual void add_layer(const Block& block, const Box& leaf_box, std::int64_t region, const RegionPlaces& places,
                          const SurveyedLeaves& surveyed, std::int64_t x, const CodedRegion* coded) = 0;
-  /// Writes what is still held; call before the thread turns to another block.
+  /// Writes what is still held. Call it before the thread turns to another block.
   virtual void finish() = 0;
 
-  /// Checksums of all that it has written, after finish(). Only where the target says that they are asked for.
+  /// Returns the checksums of everything that was written. Call it after finish(), and only if EncodeTarget::sums.
   virtual EncodedSums sums() const = 0;
 };
 

@@ -17,8 +17,8 @@
 namespace weir {
 namespace {
 
-// Gathers kept leaves, computes their statistics a batch at a time, and writes runs of leaves that
-// follow each other in the file. One per thread.
+// Gathers kept leaves, computes their statistics in batches, and writes runs of leaves that are adjacent in the file.
+// One object per thread.
 class LeafEncoder final : public LayerEncoder {
  public:
   explicit LeafEncoder(const EncodeTarget& target) : target_(target) {}
@@ -70,9 +70,9 @@ class LeafEncoder final : public LayerEncoder {
   EncodedSums sums() const override { return sums_; }
 
  private:
-  static constexpr std::size_t kHeldLeaves = 256;  // 570 KiB with their records
+  static constexpr std::size_t kHeldLeaves = 256;  // 570 KiB together with their records
 
-  // A kept leaf's place in the file.
+  // The place of a kept leaf in the file.
   struct Leaf {
     std::uint64_t ordinal;
     std::uint64_t offset;
@@ -110,8 +110,8 @@ class LeafEncoder final : public LayerEncoder {
     if (leaves_.size() >= kHeldLeaves) finish();
   }
 
-  // Of a leaf some of whose voxels are missing, the others. The first and the last voxel of the domain are always
-  // active: the box of active voxels is the domain.
+  // Returns the active voxels of a leaf if some of its voxels are missing. The first and the last voxel of the domain
+  // are always active, so that the box of the active voxels is the domain.
   std::optional<LeafMask> active_voxels(const LeafValues& source, const Box& node, const Box& inside) const {
     LeafMask mask;
     for_each_inside(node, inside, [&](std::size_t i) { mask[i] = !is_missing(source[i]); });
@@ -163,17 +163,17 @@ class LeafEncoder final : public LayerEncoder {
   }
 
   const EncodeTarget& target_;
-  std::size_t batch_ = 0;  // leaves gathered and not yet encoded: the last ones of leaves_
+  std::size_t batch_ = 0;  // number of leaves that are gathered but not yet encoded: the last ones of leaves_
   std::array<LeafValues, kLeafBatch> values_{};
-  std::array<LeafValues, kLeafBatch> sources_{};  // before non-finite values were replaced; where there are any
+  std::array<LeafValues, kLeafBatch> sources_{};  // values before non-finite ones, if any, were replaced
   std::array<bool, kLeafBatch> finite_{};
-  std::array<std::optional<LeafMask>, kLeafBatch> masks_{};  // of the active voxels, where some in the domain are not
+  std::array<std::optional<LeafMask>, kLeafBatch> masks_{};  // active voxels, if some voxels in the domain are inactive
   std::array<QuantisedLeaf, kLeafBatch> quantised_{};
   std::array<Box, kLeafBatch> nodes_{};
   std::array<Box, kLeafBatch> insides_{};
   std::array<LeafRepeats, kLeafBatch> repeats_{};
   std::array<NodeStatistics, kLeafBatch> statistics_{};
-  std::vector<Leaf> leaves_;  // held, encoded or not
+  std::vector<Leaf> leaves_;  // all held leaves, encoded or not
   std::vector<std::byte> bytes_;
   std::vector<LeafRecord> records_;
   EncodedSums sums_;

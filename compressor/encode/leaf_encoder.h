@@ -1,4 +1,4 @@
-// Encodes kept leaves, float or quantised.
+// Encodes kept leaves as float or quantised leaves.
 #pragma once
 
 #include <memory>
@@ -7,8 +7,8 @@
 
 namespace weir {
 
-/// Gathers kept leaves, computes their statistics a batch at a time, and writes runs of leaves that follow each other
-/// in the file. `target` must outlive it.
+/// Returns an encoder that gathers kept leaves, computes their statistics in batches, and writes runs of leaves that
+/// are adjacent in the file. `target` must outlive the encoder.
 std::unique_ptr<LayerEncoder> make_leaf_encoder(const EncodeTarget& target);
 
 }  // namespace weir

@@ -20,7 +20,7 @@ DecodedErrors sum_region_errors(std::span<const LeafRecord> records, const LeafC
   if (seen_by == nullptr) {
     for (const LeafRecord& record : records) add(record);
   } else {
-    std::size_t next = 0;  // records are in the order of the masks
+    std::size_t next = 0;  // records are in the order of the mask's positions
     for (std::size_t i = 0; i < LeafChoices::kLeaves; ++i) {
       if (!seen_by->kept(i)) continue;
       const LeafRecord& record = records[next++];

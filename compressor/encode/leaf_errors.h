@@ -1,4 +1,4 @@
-// The error of all kept leaves together, as they decode.
+// The decoded error of all kept leaves together.
 #pragma once
 
 #include <span>
@@ -11,15 +11,15 @@
 
 namespace weir {
 
-/// Sums the records of a region's kept leaves, or of those that can be seen by its choices `seen_by`: in their order,
-/// compensated.
+/// Sums the errors of a region's kept leaves in their order, with compensation. If `seen_by` (the region's choices) is
+/// given, sums only the leaves that can be seen.
 DecodedErrors sum_region_errors(std::span<const LeafRecord> records, const LeafChoices* seen_by = nullptr);
 
-/// Sums those of all regions, in the tree's order, compensated.
+/// Sums the errors of all regions in the tree's order, with compensation.
 DecodedErrors sum_errors(std::span<const DecodedErrors> by_region);
 
-/// Both, of the records of all kept leaves, or of those that can be seen by the choices `seen_by`: neither threads nor
-/// blocks matter.
+/// Returns the errors of all kept leaves by their records, or only of the leaves that can be seen by the choices
+/// `seen_by`. The result does not depend on threads or blocks.
 DecodedErrors sum_leaf_errors(const TreeRegions& tree, const RecordStore& records, const ChoiceStore* seen_by = nullptr,
                               Team& team = no_team());
 

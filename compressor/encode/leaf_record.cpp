@@ -12,7 +12,7 @@ namespace {
 static_assert(kMacrocell == 2 * kLeafDim && kMacrocellApron == 1,
               "a leaf must face out of its macrocell on exactly one side of each axis, by one layer");
 
-// Layer [lo, hi) of one axis, in the leaf, that faces out of the macrocell.
+// The layer [lo, hi) of the leaf along one axis that faces out of the macrocell.
 struct Layer {
   std::int64_t lo;
   std::int64_t hi;
@@ -23,7 +23,7 @@ Layer outward_layer(std::int64_t node_lo) {
   return up ? Layer{kLeafDim - 1, kLeafDim} : Layer{0, 1};
 }
 
-// The least and largest of several rows along z, voxel by voxel.
+// The minimum and the maximum of several rows along z, voxel by voxel.
 struct RowBounds {
   Floats8 min;
   Floats8 max;
@@ -40,14 +40,14 @@ MinMax all_of(const RowBounds& rows) {
   return bounds;
 }
 
-// Where a leaf faces out of its macrocell along each axis: 0 or 7.
+// The voxel layer, 0 or 7 along each axis, with which a leaf faces out of its macrocell.
 struct Sides {
   std::size_t x;
   std::size_t y;
   std::size_t z;
 };
 
-// The rows of the layer across x, of that across y, of the edge in both, and all of the leaf.
+// Bounds of the rows in the outward x layer, in the outward y layer, in the edge of both, and in the whole leaf.
 struct LayerRows {
   RowBounds x;
   RowBounds y;
@@ -72,7 +72,7 @@ WEIR_SIMD void bound_rows(const float* values, const Sides& sides, LayerRows& la
   layers = l;
 }
 
-// The layers of a leaf that lies wholly inside the domain.
+// Finds the bounds of the outward layers of a leaf that lies wholly inside the domain.
 void bound_layers(const LeafValues& values, const Sides& sides, std::array<MinMax, 7>& outward) {
   LayerRows layers;
   bound_rows(values.data(), sides, layers);

@@ -1,5 +1,5 @@
-// How the encode pass makes the records of kept leaves (format/leaf/leaf_record.h), and where they are kept: spilled by
-// leaf ordinal.
+// How the encode pass makes the records of kept leaves (format/leaf/leaf_record.h), and the store that spills them to
+// disk by leaf ordinal.
 #pragma once
 
 #include <cstdint>
@@ -16,18 +16,19 @@
 
 namespace weir {
 
-/// Record of a leaf as it will be decoded; `inside` are its in-domain voxels.
+/// Returns the record of a leaf with the decoded values `values`. `inside` are the leaf's in-domain voxels.
 LeafRecord make_leaf_record(const LeafValues& values, const Box& node, const Box& inside,
                             const NodeStatistics& statistics);
 
-/// Tells `record`, made of all in-domain voxels, which of them are active: those of `mask`, with these statistics.
+/// Sets the active voxels of `record`, which was made from all in-domain voxels. `mask` are the active voxels, and
+/// `statistics` are theirs.
 void set_active(LeafRecord& record, const LeafMask& mask, const Box& node, const Box& inside,
                 const NodeStatistics& statistics);
 
-/// Statistics of the active voxels of the leaf at `node`, whose in-domain voxels are `inside`.
+/// Returns the statistics of the active voxels of the leaf at `node` with the in-domain voxels `inside`.
 NodeStatistics active_statistics(const LeafRecord& record, const Box& node, const Box& inside);
 
-/// Of a record with its place.
+/// Returns the checksum of a record that includes its ordinal.
 inline std::uint64_t record_checksum(std::uint64_t ordinal, const LeafRecord& record) {
   return placed_checksum(ordinal, std::as_bytes(std::span(&record, 1)));
 }
@@ -43,7 +44,7 @@ class RecordSink {
   virtual void write(std::uint64_t first, std::span<const LeafRecord> records) = 0;
 };
 
-/// Keeps all of them.
+/// Keeps all records in a file.
 class RecordStore final : public RecordSink {
  public:
   RecordStore(std::shared_ptr<File> file, std::uint64_t leaves) : file_(std::move(file)) {
@@ -57,14 +58,15 @@ class RecordStore final : public RecordSink {
     file_->read_at(first * sizeof(LeafRecord), std::as_writable_bytes(std::span(records)));
     return records;
   }
-  /// The same, once all are written: where they lie in memory, else read into `room`.
+  /// Returns the same records as read(). All records must be written. The span points into the file's memory if the
+  /// file lies in memory, otherwise into `room`.
   std::span<const LeafRecord> view(std::uint64_t first, std::uint32_t count, std::vector<LeafRecord>& room) const {
     const std::span<const std::byte> memory = file_->memory();
     if (!memory.empty()) return {reinterpret_cast<const LeafRecord*>(memory.data()) + first, count};
     room = read(first, count);
     return room;
   }
-  /// After each rank has written those of its leaves.
+  /// Call it after each rank has written the records of its leaves.
   void publish(Team& team) { team.publish(*file_); }
 
  private:

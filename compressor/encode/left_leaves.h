@@ -1,4 +1,4 @@
-// The values of those kept leaves of a region that a device has left to the host.
+// The values of the kept leaves of a region that a device has left to the host.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@ namespace weir {
 
 class LeftLeaves {
  public:
-  /// In a box of lattice positions.
+  /// `box`: lattice positions; all leaves must lie in it.
   explicit LeftLeaves(const Box& box) : box_(box), place_(static_cast<std::size_t>(box.voxels()), kNone) {}
 
   void add(const Index3& leaf) {
@@ -21,10 +21,10 @@ class LeftLeaves {
   }
   const std::vector<Index3>& leaves() const { return leaves_; }
 
-  /// All of them, one after the other, each in the order of a leaf, outside the volume those of the nearest voxel
-  /// inside.
+  /// Returns the values of all leaves, 512 per leaf in the order of a leaf, in the order of add(). A voxel outside the
+  /// volume has the value of the nearest voxel inside. The caller sizes and fills the vector.
   std::vector<float>& values() { return values_; }
-  /// Of one that was added.
+  /// Returns the 512 values of a leaf that add() was given.
   const float* find(const Index3& leaf) const {
     return values_.data() + static_cast<std::size_t>(place_[at(leaf)]) * kLeafVoxels;
   }

@@ -9,7 +9,7 @@
 namespace weir {
 namespace {
 
-constexpr std::int64_t kRegionCells = kLowerDim / kMacrocell;  // along a region
+constexpr std::int64_t kRegionCells = kLowerDim / kMacrocell;  // cells along one axis of a region
 
 }  // namespace
 
@@ -17,7 +17,7 @@ std::uint64_t macrocell_window_bytes(const Box& domain) {
   const Index3 cells = make_lattice(domain, kMacrocell).count;
   const std::int64_t window = std::min(kRegionCells + 2, cells.z);
   const std::int64_t finished = std::min(kRegionCells, cells.z);
-  // The window comes twice while it moves.
+  // Two windows exist while the window moves.
   return static_cast<std::uint64_t>((2 * window + finished) * cells.x * cells.y) * sizeof(MinMax);
 }
 
@@ -31,7 +31,7 @@ MinMax& RegionCells::at(const Index3& cell) {
 }
 
 void RegionCells::add_tile(const Box& voxels, float value) {
-  // A cell is touched by what lies in it or in its apron.
+  // A voxel touches each cell that has the voxel inside or in the apron.
   const Index3 apron{kMacrocellApron, kMacrocellApron, kMacrocellApron};
   const Index3 lo = floor_div(voxels.lo - apron, kMacrocell);
   const Index3 last = floor_div(voxels.hi - Index3{1, 1, 1} + apron, kMacrocell);
@@ -43,7 +43,7 @@ void RegionCells::add_tile(const Box& voxels, float value) {
 }
 
 void RegionCells::add_leaf(const Box& node, const LeafRecord& record) {
-  // Leaves from the first cell on: two to a cell along each axis.
+  // The leaf's position, counted from the first cell: each cell has two leaves along each axis.
   const Index3 leaf = floor_div(node.lo, kLeafDim) - first_ * 2;
   const Index3 cell{leaf.x >> 1, leaf.y >> 1, leaf.z >> 1};
   const auto outward = [](std::int64_t of_leaf, std::int64_t step) { return (of_leaf & 1) != 0 ? step : -step; };
@@ -67,7 +67,7 @@ void MacrocellBuilder::begin_layers(std::int64_t region_z, std::int64_t layers) 
   settled_ = own_first + layers * kRegionCells - 1;
   const std::int64_t end = std::min(lattice_.count.z, settled_ + 2);
   std::vector<MinMax> next(static_cast<std::size_t>(plane() * (end - first)), kNoBounds);
-  // What the regions before have touched of these layers: the last ones of the window.
+  // The last layers of the old window hold what earlier regions have touched of the new layers.
   if (!window_.empty()) std::copy(window_.begin() + plane() * (first - window_first_), window_.end(), next.begin());
   window_first_ = first;
   window_.swap(next);
@@ -105,9 +105,9 @@ void MacrocellBuilder::finish(std::int64_t layer, MinMax* cells) const {
       MinMax bounds = *from++;
       const Box box = lattice_.node_box({x, y, layer});
       if (!lattice_.domain.contains(Box{box.lo - apron, box.hi + apron})) widen(bounds, {background_, background_});
-      // Nothing but NaN in reach: no majorant is asked for, but readers expect min <= max.
+      // Only NaN lies in reach. Such a cell needs no majorant, but readers expect min <= max.
       if (bounds.min > bounds.max) bounds = {background_, background_};
-      // A zero's sign is that of the region merged first: make it one.
+      // The sign of a zero depends on which region was merged first. Adding 0.0 makes every zero positive.
       *cells++ = {bounds.min + 0.0F, bounds.max + 0.0F};
     }
   }

@@ -1,5 +1,6 @@
-// Builds the macrocells of a file from some layers of 128^3 regions after the other: a window of eight cell layers for
-// each, and two more, is held, however deep the volume, and no more than the volume has.
+// Builds the macrocells of a file from 128^3 regions, a few layers of regions at a time. However deep the volume is,
+// the builder holds only a window of cell layers: eight for each layer of regions, plus two, but no more than the
+// volume has.
 #pragma once
 
 #include <cstdint>
@@ -12,18 +13,18 @@
 
 namespace weir {
 
-/// Bytes of cells that a MacrocellBuilder over `domain` and what takes its finished cells hold at once, for one layer
-/// of regions at a time.
+/// Returns the bytes of cells that a MacrocellBuilder over `domain` and the receiver of its finished cells hold at
+/// once, for one layer of regions at a time.
 std::uint64_t macrocell_window_bytes(const Box& domain);
 
-/// Bounds of the cells that one region can touch: its own 8^3 and one more on every side.
+/// Bounds of the cells that one region can touch: its own 8^3 cells and one more cell on every side.
 class RegionCells {
  public:
   explicit RegionCells(const Index3& region_node);
 
-  /// A tile: all of `voxels`, which lie in the region and in the domain, read `value`.
+  /// Adds a tile: all of `voxels`, which must lie in the region and in the domain, have the value `value`.
   void add_tile(const Box& voxels, float value);
-  /// A kept leaf whose box is `node`.
+  /// Adds a kept leaf with the box `node`.
   void add_leaf(const Box& node, const LeafRecord& record);
 
  private:
@@ -32,23 +33,23 @@ class RegionCells {
 
   MinMax& at(const Index3& cell);
 
-  Index3 first_;  // cell coordinates of the lowest one
+  Index3 first_;  // coordinates of the lowest cell
   std::vector<MinMax> cells_;
 };
 
 class MacrocellBuilder {
  public:
-  /// Cells over `domain`; voxels outside it read `background`.
+  /// Makes the cells over `domain`. Voxels outside it have the value `background`.
   MacrocellBuilder(const Box& domain, float background);
 
   const NodeLattice& lattice() const { return lattice_; }
 
-  /// Moves the window to so many layers of regions from `region_z` (node coordinate) on; layers must come in order.
+  /// Moves the window to `layers` layers of regions from `region_z` (node coordinate) on. Layers must come in order.
   void begin_layers(std::int64_t region_z, std::int64_t layers);
   /// Merges one region of the current layers. Thread-safe.
   void merge(const RegionCells& cells);
-  /// Cell layers that no later region can touch, finished: consecutive layers of the lattice from
-  /// `first_layer` on. Call after all regions of the layers; `last` also finishes what is left.
+  /// Returns the finished cell layers, which no later region can touch: consecutive layers of the lattice, from
+  /// `first_layer` on. Call it after all regions of the current layers are merged. `last` also finishes the rest.
   std::vector<MinMax> take_finished(bool last, std::int64_t& first_layer);
 
  private:

@@ -90,8 +90,8 @@ class PackedEncoder final : public PackedLayerEncoder {
  private:
   static constexpr std::size_t kHeldBytes = std::size_t{1} << 18U;
 
-  // Calls visit(leaf, place) for the kept leaves of layer `x` of a region, as far as they lie in `box`, each behind its
-  // end.
+  // Calls visit(leaf, place) for the kept leaves of layer `x` of a region, as far as they lie in `box`. Before the
+  // leaves of a group, appends the ends of the group's streams.
   template <typename Visit>
   void for_each_kept(std::int64_t region, const StreamPlaces& places, const Box& box, std::int64_t x,
                      const Visit& visit) {
@@ -105,7 +105,7 @@ class PackedEncoder final : public PackedLayerEncoder {
     inside_ = target_.tree.leaves.voxels(leaf);
   }
 
-  // Of the leaf's source.
+  // Encodes source_, decodes the stream for the leaf's errors, and appends the stream.
   void add_stream(const Index3& leaf, const KeptPlace& place) {
     const StreamPlaces& places = place.places;
     values_ = source_;
@@ -147,8 +147,8 @@ class PackedEncoder final : public PackedLayerEncoder {
     std::copy_n(scratch.begin(), bytes, stream.begin());
   }
 
-  // What the stream decodes to. Of transformed and rounded values that is known: one in some streams, and all that were
-  // too short for their step, are decoded to see that it is so.
+  // Sets decoded_ to the values that the stream decodes to. For transformed and rounded values they are known without
+  // decoding. One such stream in 64, and each that was too short for its step, is decoded all the same as a check.
   void decode_stream(const Index3& leaf, const KeptPlace& place, std::span<const std::byte> stream) {
     constexpr std::uint64_t kChecked = 64;
     const bool known = know_values(place.places.plan(), place.position);
@@ -163,7 +163,7 @@ class PackedEncoder final : public PackedLayerEncoder {
     }
   }
 
-  // Whether write_stream() has left what the stream decodes to, which is then put there.
+  // Returns whether the decoded values are known from write_stream(), and sets decoded_ to them if so.
   bool know_values(const PlannedStreams& plan, std::size_t position) {
     const std::int16_t step = plan.steps[position];
     shortened_ =
@@ -194,22 +194,22 @@ class PackedEncoder final : public PackedLayerEncoder {
     return {lost.squared_error, lost.max_abs, kept_of(replaced_ && lost.different == 0, every_bit), lost.zeros_lost};
   }
 
-  // Of the in-domain voxels.
+  // Returns the difference between `before` and decoded_ over the in-domain voxels.
   LeafDifference difference_from(const LeafValues& before) const {
     if (inside_ == node_) return difference_of(before, decoded_);
     return difference_of(inside_only(before, decoded_, node_, inside_), decoded_);
   }
 
-  // The chunk that a coder has left its streams in, at `offset` of the file, and the pieces of it that are to be
-  // written: from `written_from` to `written_to`, offsets in the file.
+  // The chunk that holds a coder's streams, at `offset` of the file, and the part of it to be written: from
+  // `written_from` to `written_to`, both offsets in the file.
   struct ChunkPart {
     std::span<std::byte> bytes{};
     std::uint64_t offset = 0;
     std::uint64_t written_from = 0;
-    std::uint64_t written_to = 0;  // 0: nothing is
+    std::uint64_t written_to = 0;  // 0: nothing to write
 
     bool holds(std::uint64_t at, std::size_t size) const { return at - offset + size <= bytes.size(); }
-    // The pieces of a layer follow each other.
+    // Adds a piece. The pieces of a layer are adjacent and come in order.
     void add(std::uint64_t at, std::size_t size) {
       if (written_to == 0) written_from = at;
       written_to = at + size;
@@ -255,18 +255,18 @@ class PackedEncoder final : public PackedLayerEncoder {
   ExactBlock exact_block_;
   Box node_;
   Box inside_;
-  LeafValues source_{};    // outside the domain: anything
-  LeafValues values_{};    // what is packed
-  bool replaced_ = false;  // some of the source were not finite
+  LeafValues source_{};    // values of the source; undefined outside the domain
+  LeafValues values_{};    // the values that are packed
+  bool replaced_ = false;  // whether non-finite values of the source were replaced
   LeafValues decoded_{};
-  LeafValues checked_{};    // decoded once more
+  LeafValues checked_{};    // values of a stream that was decoded as a check
   bool shortened_ = false;  // the stream has fewer coefficients, or a larger quantum, than planned
   std::vector<std::byte> stream_;
   std::vector<std::byte> exact_;
-  ChunkPart chunk_;  // of the region of a layer that a coder has looked at
+  ChunkPart chunk_;  // chunk of the current layer's region, if a coder has looked at it
   std::uint64_t first_byte_ = 0;
   std::vector<std::byte> bytes_;  // to be written from first_byte_ on
-  std::uint64_t volume_sum_ = 0;  // of the checksums of what was appended, and of corners
+  std::uint64_t volume_sum_ = 0;  // sum of the checksums of all appended pieces and corner leaves
   RecordBatch records_;
 };
 

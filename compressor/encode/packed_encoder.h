@@ -11,15 +11,15 @@ namespace weir {
 
 class PackedLayerEncoder : public LayerEncoder {
  public:
-  /// The kept leaves of one x layer of a region that lies on a device; `left` has the values of those that are not
-  /// coded. `records` gets theirs, until finish().
+  /// Adds the kept leaves of one x layer of a region that lies on a device. `left` holds the values of the leaves that
+  /// are not coded. `records` receives the records of the leaves, until finish().
   virtual void add_layer(std::int64_t region, const RegionPlaces& places, const SurveyedLeaves& surveyed,
                          std::int64_t x, const CodedRegion& coded, const LeftLeaves& left, RecordSink& records) = 0;
   using LayerEncoder::add_layer;
 };
 
-/// Writes each kept block's stream as planned, with its end in the directory, and of a file with a preview the two
-/// corner leaves. `target`, which has a packed one, must outlive it.
+/// Returns an encoder that writes the stream of each kept block as planned and its end in the directory. In a file with
+/// a preview it also writes the two corner leaves. `target` must have a packed target and must outlive the encoder.
 std::unique_ptr<PackedLayerEncoder> make_packed_encoder(const EncodeTarget& target);
 
 }  // namespace weir

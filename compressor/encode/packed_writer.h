@@ -1,5 +1,5 @@
-// Writes packed data but for the streams and their ends: header, tables, region table, and of each chunk what comes
-// before its groups.
+// Writes the packed data except the streams and their ends: the header, the tables, the region table, and the part of
+// each chunk that comes before its groups.
 #pragma once
 
 #include <cstddef>
@@ -15,10 +15,11 @@ namespace weir {
 
 void write_packed_head(const PackedTarget& packed, const TreeRegions& tree, const TreeLayout& layout, File& out);
 
-/// The region's entry in the region table: no chunk, all blocks read `value`.
+/// Writes the entry of a region without a chunk to the region table: all its blocks read `value`.
 void write_empty_region(const TreeLayout& layout, std::int64_t region, float value, File& out);
 
-/// The entry of a region with streams, one of `regions`, and the head of its chunk.
+/// Writes the entry of region `index` to the region table, and the head of its chunk if it has streams. `regions` is
+/// the number of regions.
 void write_directory(const TreeLayout& layout, std::size_t regions, std::int64_t index, const Region& region,
                      const StreamPlaces& places, File& out);
 

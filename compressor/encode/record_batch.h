@@ -1,5 +1,5 @@
-// Records of kept leaves in the order of their ordinals, their statistics computed a batch at a time and written by the
-// thousand.
+// Collects the records of kept leaves in the order of their ordinals. Computes their statistics in batches and writes
+// the records by the thousand.
 #pragma once
 
 #include <array>
@@ -13,13 +13,14 @@
 
 namespace weir {
 
-/// One per thread.
+/// One object per thread.
 class RecordBatch {
  public:
-  /// `records` may be null until write_to(); `sums`: whether sum() is asked for.
+  /// `records` receives the records; it may be null until write_to(). `sums` says whether sum() will be called.
   explicit RecordBatch(RecordSink* records, bool sums = true) : records_(records), sums_(sums) {}
 
-  /// Where further ones go, after flush(). What an exception has kept from it is dropped: it is not theirs.
+  /// Sends further records to `records`. Call it after flush(). Drops records that an exception kept from being
+  /// flushed: they do not belong to `records`.
   void write_to(RecordSink& records) {
     records_ = &records;
     count_ = 0;
@@ -28,11 +29,11 @@ class RecordBatch {
   }
   void add(std::uint64_t ordinal, const LeafValues& decoded, const Box& node, const Box& inside,
            const DecodedErrors& loss);
-  /// One that is known already, and stays until flush().
+  /// Adds a finished record, which must stay where it is until flush().
   void add(std::uint64_t ordinal, const LeafRecord& record);
   /// Writes what is still held.
   void flush();
-  /// Of the checksums of all records that were written.
+  /// Returns the sum of the checksums of all written records.
   std::uint64_t sum() const { return sum_; }
 
  private:
@@ -50,7 +51,7 @@ class RecordBatch {
   std::array<DecodedErrors, kLeafBatch> losses_{};
   std::uint64_t first_ = 0;  // ordinal of the first record held
   std::vector<LeafRecord> held_;
-  std::span<const LeafRecord> known_;  // in the place of held ones, which are written first
+  std::span<const LeafRecord> known_;  // finished records to write; while it is not empty, held_ is empty
   std::uint64_t sum_ = 0;
 };
 

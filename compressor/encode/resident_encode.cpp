@@ -22,7 +22,7 @@
 namespace weir {
 namespace {
 
-// The records of one region's leaves.
+// Collects the records of one region's leaves.
 class RegionRecords final : public RecordSink {
  public:
   RegionRecords(std::uint64_t first, std::uint32_t count) : first_(first), records_(count) {}
@@ -36,7 +36,7 @@ class RegionRecords final : public RecordSink {
   std::vector<LeafRecord> records_;
 };
 
-// Where they are had otherwise.
+// Discards the records: the device has made them already.
 class NoRecords final : public RecordSink {
  public:
   void write(std::uint64_t, std::span<const LeafRecord>) override {}
@@ -68,8 +68,8 @@ class ResidentEncode {
   // A region that the device works on.
   struct Part {
     std::int64_t region;
-    Box box;                                 // its leaves
-    std::unique_ptr<ResidentBlocks> blocks;  // null: the host does all of it
+    Box box;                                 // leaves of the region
+    std::unique_ptr<ResidentBlocks> blocks;  // null: the host encodes the whole region
     std::unique_ptr<CodedBatch> batch;
     LeftLeaves left;
     std::optional<SurveyedLeaves> surveyed;
@@ -125,7 +125,7 @@ class ResidentEncode {
   const RegionPlaces& places_of(const Part& part) const { return part.batch->regions().front().places; }
   const CodedRegion& coded_of(const Part& part) const { return part.batch->regions().front().coded; }
 
-  // Waits for its streams, and gets the values of what the device has left.
+  // Waits for the streams of a region, and gets the values of the leaves that the device has left to the host.
   void take(Part& part) {
     if (part.batch) {
       part.batch->wait();

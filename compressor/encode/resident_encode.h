@@ -1,4 +1,5 @@
-// The encode pass of packed blocks of a volume that lies on a device: streams and records come from there, not values.
+// The encode pass for packed blocks of a volume that lies on a device. The device gives streams and records, and values
+// only of the blocks that it leaves to the host.
 #pragma once
 
 #include "compressor/encode/layer_encoder.h"
@@ -8,8 +9,8 @@
 
 namespace weir {
 
-/// What encode_leaves() writes of the same values. What the device has no room for, or fails at, is done by reading
-/// `source`, which has those values. Throws as encode_leaves.
+/// Writes the same bytes as encode_leaves() for the same values. Where the device has no room or fails, the host reads
+/// the values from `source`, which holds the same volume. Throws as encode_leaves.
 void encode_resident(ResidentVolume& resident, VolumeSource& source, const EncodeTarget& target,
                      const StreamOptions& options);
 

@@ -1,5 +1,5 @@
-// The pieces of a packed file that the encode pass writes of a region, in their order: the ends of a group's streams
-// before the first of these, and the streams.
+// The pieces that the encode pass writes for a region of a packed file, in their order: the streams, and before the
+// first stream of each group the ends of the group's streams.
 #pragma once
 
 #include <array>
@@ -15,23 +15,23 @@
 
 namespace weir {
 
-/// Where a kept leaf goes.
+/// The place of a kept leaf.
 struct KeptPlace {
   const StreamPlaces& places;
   std::size_t position;
-  std::uint64_t offset;   ///< of its stream, in the file
-  std::uint64_t ordinal;  ///< of its record
+  std::uint64_t offset;   ///< offset of the leaf's stream in the file
+  std::uint64_t ordinal;  ///< ordinal of the leaf's record
 };
 
-/// Where the chunk of a region lies in the file.
+/// Returns the offset of a region's chunk in the file.
 inline std::uint64_t chunk_offset(const EncodeTarget& target, std::int64_t region_index) {
   const std::vector<Region>& regions = target.tree.regions;
   return target.layout.packed_data + packed::chunks_offset(regions.size()) +
          regions[static_cast<std::size_t>(region_index)].first_byte;
 }
 
-/// Of the kept leaves of layer `x` of a region, as far as they lie in `box`: calls ends(offset, bytes) of a group of
-/// which one is the first, and visit(leaf, place) of each.
+/// Calls visit(leaf, place) for each kept leaf of layer `x` of a region, as far as the leaves lie in `box`. Before the
+/// first kept leaf of a group, calls ends(offset, bytes) with the ends of the group's streams.
 template <typename Ends, typename Visit>
 void for_each_kept_stream(const EncodeTarget& target, std::int64_t region_index, const StreamPlaces& places,
                           const Box& box, std::int64_t x, const Ends& ends, const Visit& visit) {
@@ -62,7 +62,7 @@ void for_each_kept_stream(const EncodeTarget& target, std::int64_t region_index,
   }
 }
 
-/// Where the image of a corner leaf of a preview goes.
+/// Returns the offset in the file of the image of a corner leaf of a preview.
 inline std::uint64_t corner_offset(const TreeLayout& layout, const Index3& leaf) {
   return layout.leaves + (leaf == Index3{0, 0, 0} ? 0 : nvdb::kFloatLeafBytes);
 }

@@ -19,7 +19,7 @@
 namespace weir {
 namespace {
 
-// Statistics of what stands in a table: active tiles first, then children, both in table order.
+// Statistics of a node's table: first its active tiles, then its children, both in table order.
 class TableStatistics {
  public:
   void add_tile(float value, std::int64_t dim, const Index3& origin) {
@@ -42,7 +42,7 @@ class TableStatistics {
 
 }  // namespace
 
-// Writes lower nodes and gathers macrocells: some layers of regions at a time, or of all together.
+// Writes lower nodes and gathers macrocells, for a few layers of regions at a time or for all regions together.
 class TreeWriter::Lowers {
  public:
   Lowers(const TreeParts& parts, File& out)
@@ -55,13 +55,13 @@ class TreeWriter::Lowers {
     if (parts.records == nullptr) macrocells_.begin_layers(lattice.first.z, lattice.count.z);
   }
 
-  // One whose kept leaves have these records; none where it has none.
+  // Adds a region. `records` are the records of its kept leaves; empty if it has no kept leaves.
   void add(std::int64_t index, std::span<const LeafRecord> records) {
     RowBuffers buffers;
     write_region(index, read_region(parts_.rows, parts_.tree.leaf_box(index), buffers), records);
   }
 
-  // Those without kept leaves, once all others were added.
+  // Adds the regions without kept leaves. All other regions must be added before.
   void add_rest() {
     const std::vector<Region>& regions = parts_.tree.regions;
     tbb::parallel_for(std::size_t{0}, regions.size(), [&](std::size_t i) {
@@ -70,10 +70,10 @@ class TreeWriter::Lowers {
     write_macrocells(true);
   }
 
-  // All, by their records in the store.
+  // Adds all regions, with the records of the store.
   void add_all() {
     const NodeLattice& lattice = parts_.tree.region_lattice;
-    constexpr std::int64_t kRegions = 256;  // whose macrocells are 1 MiB: a layer may have more
+    constexpr std::int64_t kRegions = 256;  // their macrocells take 1 MiB; a single layer may have more regions
     const std::int64_t layers = std::max<std::int64_t>(1, kRegions / (lattice.count.x * lattice.count.y));
     for (std::int64_t z = 0; z < lattice.count.z; z += layers) {
       const std::int64_t end = std::min(z + layers, lattice.count.z);
@@ -91,9 +91,9 @@ class TreeWriter::Lowers {
   }
 
   std::uint64_t active_tiles() const { return active_tiles_; }
-  /// Of the lower nodes, by region.
+  /// Returns the statistics of the lower nodes, by region.
   const std::vector<NodeStatistics>& statistics() const { return statistics_; }
-  /// Of all voxels of a packed file.
+  /// Returns the bounds of all decoded voxels of a packed file.
   const MinMax& decoded() const { return decoded_; }
 
  private:
@@ -153,7 +153,7 @@ class TreeWriter::Lowers {
     active_tiles_ += table.active_tiles();
   }
 
-  // The region's directory, and its lower node where the tree has the preview.
+  // Writes the region's directory, and its lower node if the tree has the preview.
   void write_packed(std::int64_t index, const Region& region, const RegionRows& rows,
                     std::span<const LeafRecord> records, RegionCells& cells) {
     const TreeRegions& tree = parts_.tree;
@@ -181,7 +181,7 @@ class TreeWriter::Lowers {
     if (parts_.packed->rule.preview) write_preview(index, region, rows, places, records);
   }
 
-  // Each block's mean, and the two corner leaves.
+  // Writes the region's lower node in the preview: the mean of each block, and the corner leaves.
   void write_preview(std::int64_t index, const Region& region, const RegionRows& rows, const StreamPlaces& places,
                      std::span<const LeafRecord> records) {
     const TreeRegions& tree = parts_.tree;
@@ -206,7 +206,7 @@ class TreeWriter::Lowers {
     active_tiles_ += table.active_tiles();
   }
 
-  // Of a leaf in the table of its lower node.
+  // Returns the entry of a leaf in the table of its lower node.
   static Index3 table_entry(std::size_t position) {
     const auto bits = static_cast<std::int64_t>(position);
     return {bits >> 8, bits >> 4 & 15, bits & 15};
@@ -232,7 +232,7 @@ class TreeWriter::Lowers {
 
   const TreeParts& parts_;
   File& out_;
-  std::vector<NodeStatistics> statistics_;  // of the lower nodes, by region
+  std::vector<NodeStatistics> statistics_;  // statistics of the lower nodes, by region
   MacrocellBuilder macrocells_;
   tbb::enumerable_thread_specific<NodeImage> images_;
   std::atomic<std::uint64_t> active_tiles_{0};
@@ -242,7 +242,7 @@ class TreeWriter::Lowers {
 
 namespace {
 
-// One upper node; returns its statistics and adds its active tiles to `active_tiles`.
+// Writes one upper node. Returns its statistics and adds the number of its active tiles to `active_tiles`.
 NodeStatistics write_upper(const TreeParts& parts, std::int64_t index, const std::vector<NodeStatistics>& lowers,
                            NodeImage& image, File& out, std::uint64_t& active_tiles) {
   const TreeRegions& tree = parts.tree;
@@ -309,11 +309,11 @@ std::uint32_t TreeWriter::finish(GridHead head) {
   head.background = parts_.fill.background;
   if (parts_.packed != nullptr) {
     write_packed_head(*parts_.packed, tree, parts_.layout, out_);
-    // The box is the domain, the range that of decoded values, whatever the tree holds of them.
+    // The bounding box is the domain and the range is the range of the decoded values, whatever the tree holds of them.
     total.bbox = tree.leaves.domain;
     const MinMax& decoded = lowers.decoded();
     if (decoded.min <= decoded.max) {
-      total.min = decoded.min + 0.0F;  // no -0.0: which zero came first depends on the threads
+      total.min = decoded.min + 0.0F;  // turns -0.0 into 0.0, because the threads decide which zero comes first
       total.max = decoded.max + 0.0F;
     }
   }

@@ -1,5 +1,5 @@
-// After the leaves: writes the inner nodes, the macrocells and the head, so that
-// the file is a NanoVDB grid.
+// Completes the file after its leaves are written: writes the inner nodes, the macrocells and the head, so that the
+// file is a NanoVDB grid.
 #pragma once
 
 #include <cstdint>
@@ -22,27 +22,27 @@ struct TreeParts {
   const TreeRegions& tree;
   const RowStore& rows;
   const ChoiceStore& choices;
-  const RecordStore* records;  ///< null where regions are added as they are encoded
+  const RecordStore* records;  ///< null if regions are added as they are encoded
   Fill fill;
   TreeLayout layout;                     ///< padded to the file's size
-  const PackedTarget* packed = nullptr;  ///< of a packed file
+  const PackedTarget* packed = nullptr;  ///< null if the file is not packed
 };
 
-/// Writes everything but the leaves, and of a packed file the streams with their ends, to a file that has its size and
-/// reads zero where nothing was written.
+/// Writes everything except the leaves, or in a packed file except the streams and their ends. The file must already
+/// have its size and read zero where nothing was written.
 class TreeWriter {
  public:
-  /// What `parts` refers to, and `out`, must outlive the object.
+  /// `out` and everything that `parts` refers to must outlive the object.
   TreeWriter(const TreeParts& parts, File& out);
   ~TreeWriter();
   TreeWriter(const TreeWriter&) = delete;
   TreeWriter& operator=(const TreeWriter&) = delete;
 
-  /// What the tree has of a region, whose kept leaves have these records, in their order. Only where the parts have no
-  /// records: then once for each region with kept leaves. Thread-safe for different regions.
+  /// Writes the tree's part of a region. `records` are the records of its kept leaves, in their order. Call it only if
+  /// the parts have no records, and then once for each region with kept leaves. Thread-safe for different regions.
   void add(std::int64_t region, std::span<const LeafRecord> records);
-  /// The rest. `head` carries name, type, voxel size and origin; the rest of it is filled in. Returns the head's
-  /// checksum.
+  /// Writes the rest. `head` gives the name, type, voxel size and origin; finish() fills in its other members. Returns
+  /// the head's checksum.
   std::uint32_t finish(GridHead head);
 
  private:

@@ -36,7 +36,7 @@
 namespace weir {
 namespace {
 
-constexpr double kRateOfNoByte = 1e18;  // no volume has a byte left
+constexpr double kRateOfNoByte = 1e18;  // a compression rate that leaves no byte of any volume
 
 double range_db(const Sidecar& s) { return 20 * std::log10(s.value_range[1] - s.value_range[0]); }
 
@@ -88,7 +88,7 @@ class Forecaster {
         std::min(memory.selection.step_bytes, leaves * RegionGains::kMostSteps * sizeof(HeldSteps::Step));
     const std::uint64_t walk =
         threads * static_cast<std::uint64_t>(memory.selection.segment_regions) * of_region + steps;
-    // Chunks are decoded whole; rows are read as well in smaller blocks.
+    // Chunks are decoded whole. Rows can be read in smaller blocks at no cost.
     constexpr std::uint64_t kRowsBytes = std::uint64_t{32} << 20U;
     const bool chunked = source_.access().chunk != Index3{};
     copy_block_bytes_ = chunked ? memory.block_bytes : std::min(memory.block_bytes, kRowsBytes);
@@ -100,7 +100,7 @@ class Forecaster {
     forecast_.scratch_bytes = held > 0 ? 0 : record_bytes(options_, domain_);
   }
 
-  // The default is a rate for all volumes that are not small.
+  // Returns whether the budget is a number of bytes. The default budget is a rate for all volumes that are not small.
   bool asks_bytes() const {
     const Budget& budget = options_.budget;
     return budget.by_size() || (budget.kind == Budget::Kind::automatic && !plan_.whole());
@@ -126,7 +126,7 @@ class Forecaster {
     ConversionControl control;
     control.cancel = control_.cancel;
     control.coder = control_.coder;
-    control.pads_file = !forecast_.exact_bytes;  // its size may be beyond what a disk holds
+    control.pads_file = !forecast_.exact_bytes;  // the padded file may be larger than the disk
     control.pass_started = control_.pass_started;
     control.pass_advanced = control_.pass_advanced;
     return control;
@@ -134,7 +134,7 @@ class Forecaster {
 
   void try_volume() {
     ConversionControl control = trial_control();
-    // What nobody asked for is said of a file that was written.
+    // Notices about the default budget speak of a file that was written, so the trial does not give them.
     const bool asked = options_.budget.kind != Budget::Kind::automatic;
     if (asked) control.notice = control_.notice;
     SampledSource source(source_, plan_);
@@ -185,7 +185,8 @@ class Forecaster {
     add_spread(trial.sidecar, parts, scale.share());
   }
 
-  // None where the sample has no file of its share of the bytes asked for, and says no more.
+  // Converts the sample. Returns nullopt if the sample has no file of its share of the requested bytes; not_sampled
+  // then says why.
   std::optional<Trial> try_all(SampleCopy& copy, const SampleScale& scale) {
     ConversionOptions options = sample_options(scale);
     try {
@@ -207,13 +208,13 @@ class Forecaster {
       forecast_.exact_bytes = false;
       return smallest;
     }
-    // The volume has all the blocks that its sample has.
+    // The volume has all blocks of its sample, so its file cannot be smaller than the sample's.
     if (smallest->sidecar.file.bytes > asked) refuse_size(options_, asked, least);
     forecast_.not_sampled = cat("by one, the smallest tree for this volume takes about ", least, " bytes");
     return std::nullopt;
   }
 
-  // A sample has its own budget.
+  // Returns the options for the sample, with its own budget and without policies that refuse values.
   ConversionOptions sample_options(const SampleScale& scale) const {
     ConversionOptions options = options_;
     options.budget = scale.budget();
@@ -226,10 +227,10 @@ class Forecaster {
   struct Part {
     Trial trial;
     double voxels = 0;
-    double file_bytes = 0;  ///< of the volume, by this part
+    double file_bytes = 0;  ///< bytes of the volume's file as this part predicts them
   };
 
-  // None where a part is too small for its budget.
+  // Converts the parts of the sample. Returns no part if any of them is too small for its budget.
   std::vector<Part> try_parts(SampleCopy& copy, const SampledNodes& nodes) {
     const double open = static_cast<double>(nodes.of_sample) / static_cast<double>(region_count(plan_.domain()));
     std::vector<Part> parts;
@@ -255,7 +256,8 @@ class Forecaster {
     Forecast& f = forecast_;
     const auto sampled = static_cast<double>(plan_.domain().voxels());
     const auto voxels = static_cast<double>(domain_.voxels());
-    // Places side by side are read again where one of them is; in the volume, fewer lie beside each other.
+    // In the sample, places beside a place that is read again are read again too. In the volume, fewer places lie side
+    // by side.
     const double again = static_cast<double>(trial.sidecar.timing.bytes_read) / (sizeof(float) * sampled) - 1;
     const double from_memory = std::min(1.0, static_cast<double>(cache_bytes_) / (sizeof(float) * varied * voxels));
     f.passes = 1 + (1 - from_memory) * std::clamp(std::ceil(again) * varied, 0.0, std::max(0.0, again));
@@ -278,7 +280,7 @@ class Forecaster {
   void describe_file(const Sidecar& s) {
     Forecast& f = forecast_;
     const bool plain = s.grid.type == grid_type_name(GridType::float32);
-    // A sample's share of a rate is a size.
+    // The sample of a rate was converted with a size.
     const bool of_rate = s.budget.kind == "size" && options_.budget.kind != Budget::Kind::size;
     f.budget = of_rate ? "rate" : s.budget.kind;
     f.encoding = s.packed ? encoding_name(Encoding::packed) : plain ? encoding_name(Encoding::float32) : s.grid.type;
@@ -303,7 +305,7 @@ class Forecaster {
     std::vector<double> bytes;
     std::vector<double> db;
     std::vector<double> shown_db;
-    double wider_db = 0;  // by which the sample's range is wider than its parts' are
+    double wider_db = 0;  // mean of how much wider the sample's range is than the range of a part
     for (const Part& part : parts) {
       const Sidecar& of_part = part.trial.sidecar;
       bytes.push_back(part.file_bytes);
@@ -315,16 +317,17 @@ class Forecaster {
       forecast_.file_bytes = spread_of(forecast_.file_bytes.value, bytes, share);
       forecast_.file_bytes.low = std::max(0.0, forecast_.file_bytes.low);
     }
-    // The volume's range is at least the sample's. If it grows with each doubling as it did from the parts to the
-    // sample, the PSNR is higher by as much.
+    // The volume's range is at least the sample's. If the range grows with each doubling as it did from the parts to
+    // the sample, the PSNR rises by the same amount.
     const double doublings = std::log2(static_cast<double>(parts.size()));
     const double of_range = std::isfinite(wider_db) ? std::max(0.0, wider_db) / doublings * -std::log2(share) : 0;
-    // How coarse hidden blocks become depends on whether all around them are, too, which a sample mixes.
+    // How coarse hidden blocks become depends on whether their neighbours are hidden too. A sample mixes neighbours, so
+    // that the parts do not tell the spread.
     if (!options_.scene) add_spread(forecast_.error, db, share, of_range);
     if (forecast_.shown) add_spread(*forecast_.shown, shown_db, share, of_range);
   }
 
-  // None where some part has no error, or nothing that a scene shows.
+  // Adds the spread of the PSNR. Adds none if some part has no error, or shows nothing of a scene.
   void add_spread(ForecastError& error, const std::vector<double>& of_parts_db, double share,
                   double of_range_db) const {
     if (!error.psnr_db || of_parts_db.size() < forecast_.parts) return;
@@ -342,7 +345,7 @@ class Forecaster {
   std::optional<Visibility> seen_;
   ReadingPlan reading_;
   std::uint64_t copy_block_bytes_ = 0;
-  std::uint64_t cache_bytes_ = 0;  // what the conversion keeps of the volume in memory
+  std::uint64_t cache_bytes_ = 0;  // bytes of the volume that the conversion caches in memory
   Forecast forecast_;
 };
 

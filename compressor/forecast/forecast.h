@@ -1,6 +1,6 @@
-// What a conversion will come to, before it is made: `weir convert --dry-run`. A small volume is converted as it is, of
-// a larger one a sample (sample_plan.h), both by convert_volume itself in files without names (scratch_file_system.h),
-// and the figures of the sample are scaled to the volume. Nothing else is modelled.
+// Forecasts a conversion for `weir convert --dry-run`. convert_volume itself converts a small volume whole, or a sample
+// (sample_plan.h) of a larger one, into files without names (scratch_file_system.h). The figures of the sample are
+// scaled to the volume. Nothing else is modelled.
 #pragma once
 
 #include <cstddef>
@@ -17,52 +17,52 @@
 
 namespace weir {
 
-/// Of all voxels that were converted, or of those that a scene shows.
+/// The error of all voxels that were converted, or of those that a scene shows.
 struct ForecastError {
   bool lossless = false;
-  std::optional<Expected> psnr_db;  ///< over the sample's range; none where lossless
+  std::optional<Expected> psnr_db;  ///< over the sample's range; unset if lossless
   double rmse = 0;
   double max_abs = 0;
 };
 
 struct Forecast {
-  bool whole = false;       ///< all of the volume was converted: the figures of the file and of its error are exact
-  std::string not_sampled;  ///< why nothing was converted, so that there is neither error nor time; else empty
+  bool whole = false;       ///< the whole volume was converted: the figures of the file and of its error are exact
+  std::string not_sampled;  ///< why nothing was converted (error and times are then not set); otherwise empty
   std::uint64_t sampled_voxels = 0;
-  std::int64_t places = 0;  ///< of the volume that were sampled
-  std::size_t parts = 0;    ///< of the sample, for the spread; 0: too few places, or exact
+  std::int64_t places = 0;  ///< number of places of the volume that were sampled
+  std::size_t parts = 0;    ///< parts of the sample, for the spread; 0 if there are too few places, or if exact
 
-  std::uint64_t volume_bytes = 0;  ///< of the volume as its file stores it, decoded
-  double passes = 0;               ///< reads of the volume, some of them of parts
-  std::uint64_t read_bytes = 0;    ///< in all of them
+  std::uint64_t volume_bytes = 0;  ///< bytes of the decoded volume in the type that its file stores
+  double passes = 0;               ///< number of reads of the volume; reads of parts count as fractions
+  std::uint64_t read_bytes = 0;    ///< bytes of all passes together
 
   std::string budget;        ///< the sidecar's budget.kind
-  std::string encoding;      ///< "float", "fpn", ... "packed"; that of the sample
-  bool exact_bytes = false;  ///< the file has exactly so many
+  std::string encoding;      ///< encoding of the sample: "float", "fpn", ... "packed"
+  bool exact_bytes = false;  ///< the file will have exactly `file_bytes`
   Expected file_bytes;
-  std::uint64_t scratch_bytes = 0;  ///< at most, in unnamed or hidden files while it is converted
-  std::uint64_t memory_bytes = 0;   ///< the most that the plan of the memory ceiling takes
+  std::uint64_t scratch_bytes = 0;  ///< most bytes in unnamed or hidden files during the conversion
+  std::uint64_t memory_bytes = 0;   ///< most bytes that the memory plan under the ceiling takes
   std::size_t threads = 0;
   bool on_device = false;
 
   ForecastError error;
-  std::optional<ForecastError> shown;  ///< with a scene that shows something of what was converted
-  std::uint64_t shown_voxels = 0;      ///< finite ones among those that were converted
-  double value_low = 0;                ///< of all that was converted; NaN where no value is finite
+  std::optional<ForecastError> shown;  ///< set if a scene shows some of the converted voxels
+  std::uint64_t shown_voxels = 0;      ///< finite converted voxels that the scene shows
+  double value_low = 0;                ///< lowest converted value; NaN if no value is finite
   double value_high = 0;
-  Sidecar::ConversionLoss loss;  ///< of the values that were converted, not scaled to the volume's
+  Sidecar::ConversionLoss loss;  ///< loss of the converted values, not scaled to the volume
 
-  double survey_s = 0;  ///< at the rates measured while the sample was converted
+  double survey_s = 0;  ///< seconds, at the rates measured while the sample was converted
   double encode_s = 0;  ///< selection, encode pass, digest and flush
   double total_s() const { return survey_s + encode_s; }
 };
 
-/// Float32 bytes of the largest sample; a volume of up to twice that is converted whole.
+/// Float32 bytes of the largest sample. A volume of up to twice this size is converted whole.
 inline constexpr std::uint64_t kForecastBytes = std::uint64_t{256} << 20U;
 
-/// What convert_volume would do with the same arguments, checked as it checks them: throws its errors, those of values
-/// that it refuses as far as the sample has them, and Error(io) where there is no room for the file. Writes nothing but
-/// unnamed files, together of twice `most_bytes` or so at most.
+/// Returns what convert_volume would do with the same arguments. Throws the errors of convert_volume (for refused
+/// values only if the sample has such values), and Error(io) if there is no room for the file. Writes only unnamed
+/// files, together at most about twice `most_bytes`.
 Forecast forecast_conversion(VolumeSource& source, const ConversionOptions& options, const ConversionControl& control,
                              FileSystem& files, std::uint64_t most_bytes = kForecastBytes);
 

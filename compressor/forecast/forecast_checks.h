@@ -1,4 +1,5 @@
-// What a conversion would refuse, found without it: places, room, values of a sample, sizes below any file.
+// Finds what a conversion would refuse, without converting: output places, room on disk, values of a sample, and sizes
+// that are too small for any file.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +12,14 @@
 
 namespace weir {
 
-/// Where a conversion writes.
+/// The directories that a conversion writes to.
 class OutputPlaces {
  public:
-  /// Throws what OutputFiles, WorkDirectory and require_lasting_output throw of options.output, options.work_dir and
-  /// options.resume. All outlive the object.
+  /// Throws what OutputFiles, WorkDirectory and require_lasting_output throw for options.output, options.work_dir and
+  /// options.resume. All arguments must outlive the object.
   OutputPlaces(FileSystem& files, const ConversionOptions& options);
 
-  /// Throws Error(io) where there is no room for a file of so many bytes and what lies beside it until it is done.
+  /// Throws Error(io) if there is no room for a file of `file_bytes` and for `scratch_bytes` of work files.
   void require_room(std::uint64_t file_bytes, std::uint64_t scratch_bytes) const;
 
  private:
@@ -30,13 +31,13 @@ class OutputPlaces {
   std::string spill_directory_;
 };
 
-/// Throws Error(input) where the sample that `sidecar` is of has values that `options` refuse (refused_values.h).
+/// Throws Error(input) if the sample that `sidecar` describes has values that `options` refuse (refused_values.h).
 void refuse_sampled_values(const ConversionOptions& options, const Sidecar& sidecar);
 
-/// Throws Error(budget): `bytes` are less than the smallest tree takes, which are about `least`.
+/// Throws Error(budget), because the requested `bytes` are fewer than the smallest tree takes: about `least` bytes.
 [[noreturn]] void refuse_size(const ConversionOptions& options, std::uint64_t bytes, std::uint64_t least);
 
-/// Throws Error(budget) where no file of a volume over `domain` has as few bytes.
+/// Throws Error(budget) if no file of a volume over `domain` can be as small as `bytes`.
 void refuse_hopeless_size(const ConversionOptions& options, const Box& domain, std::uint64_t bytes);
 
 }  // namespace weir

@@ -1,4 +1,4 @@
-// What reading a volume costs that does not lie in memory: measured on blocks of it, as a conversion reads them.
+// Measures the cost of reading a volume that does not lie in memory, on blocks of the size that a conversion reads.
 #pragma once
 
 #include "ingest/plan/block_plan.h"
@@ -6,14 +6,14 @@
 
 namespace weir {
 
-/// Of each voxel.
+/// The cost of reading one voxel.
 struct ReadCost {
   double wall_s = 0;
-  double cpu_s = 0;  ///< of all threads: decoding
-  double bytes = 0;  ///< that were read
+  double cpu_s = 0;  ///< CPU time of all threads, for decoding
+  double bytes = 0;  ///< bytes read from the file
 };
 
-/// Reads up to eight blocks of `plan`, spread over the volume, 64 MiB of float32 or one block at most.
+/// Reads up to eight blocks of `plan`, spread over the volume: at most 64 MiB of float32, or one block if it is larger.
 ReadCost probe_reading(VolumeSource& source, const BlockPlan& plan);
 
 }  // namespace weir

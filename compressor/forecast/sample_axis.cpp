@@ -16,7 +16,7 @@ SampleAxis::SampleAxis(std::int64_t lo, std::int64_t hi, std::int64_t chunk, std
   if (chunks_on_leaves) {
     cell_ = std::lcm(chunk, step);
     first_ = chunk_edge + ceil_div(lo - chunk_edge, cell_) * cell_;
-    // Bricks lie on multiples of their size, which chunks with another edge do not meet.
+    // Bricks lie on multiples of their size. Chunks with another edge do not.
     if (first_ % step != 0) first_ = ceil_div(first_, step) * step;
   } else {
     first_ = ceil_div(lo, step) * step;

@@ -8,7 +8,8 @@
 
 namespace weir {
 
-// Calls action(offset in the file, first value, values) for what follows each other both in the file and in the box.
+// Calls action(offset in the file, index of the first value, number of values) for each run of values that are adjacent
+// both in the file and in the box.
 template <typename Action>
 void SampleCopy::for_each_run(const Box& box, const Action& action) const {
   const Index3 extent = box.extent();

@@ -1,4 +1,5 @@
-// The values of a sample in a file without a name: read once, from wherever they lie, converted as often as it takes.
+// Copies the values of a sample to a file without a name. They are read once from their source and can then be
+// converted several times.
 #pragma once
 
 #include <atomic>
@@ -11,12 +12,12 @@
 
 namespace weir {
 
-/// A source of the same values as float32, which lie in the page cache. Thread-safe.
+/// A source that gives the sample's values as float32 from the page cache. Thread-safe.
 class SampleCopy final : public VolumeSource {
  public:
-  /// Reads all of `sample`, which must outlive the object for places(), in blocks of at most `block_bytes` and writes
-  /// them to `file`. Throws what reading and writing throw, and Error(interrupted) where `cancel`, which may be null,
-  /// says so.
+  /// Reads all of `sample` in blocks of at most `block_bytes` and writes them to `file`. `sample` must outlive the
+  /// object because of places(). `cancel` may be null. Throws what reading and writing throw, and Error(interrupted)
+  /// when `*cancel` is set.
   SampleCopy(VolumeSource& sample, std::unique_ptr<File> file, std::uint64_t block_bytes,
              const std::atomic<bool>* cancel);
 
@@ -26,7 +27,7 @@ class SampleCopy final : public VolumeSource {
   bool in_memory() const override { return true; }
   const CellPlaces* places() const override { return places_; }
   std::uint64_t bytes_read() const override { return bytes_read_; }
-  /// What the sample's values lost as they became float32; reading the copy loses nothing more.
+  /// Returns the loss of the sample's values in the conversion to float32. Reading the copy loses nothing more.
   const ConversionLoss& copied_loss() const { return copied_loss_; }
 
  private:

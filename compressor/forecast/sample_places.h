@@ -1,4 +1,4 @@
-// Where the voxels of a sample lie in its volume.
+// The places of a sample's voxels in the volume that the sample was taken from.
 #pragma once
 
 #include "compressor/forecast/sample_plan.h"
@@ -9,15 +9,15 @@ namespace weir {
 
 class SamplePlaces final : public CellPlaces {
  public:
-  /// Of the sample of `plan` from a volume over `domain`.
+  /// Makes the places of the sample of `plan` from a volume over `domain`.
   SamplePlaces(const SamplePlan& plan, const Box& domain)
       : plan_(plan), first_(plan.domain().lo), cell_(plan.cell()), domain_(domain) {}
-  /// Of the part of a sample that has these `places`.
+  /// Makes the places of `part`, a part of the sample with the places `places`.
   SamplePlaces(const SamplePlan& part, const CellPlaces& places) : SamplePlaces(part, places.origin_domain()) {
     sample_ = &places;
   }
 
-  /// Which must outlive the object.
+  /// Sets what reach() returns. `reaches` must outlive the object.
   void set_reaches(const SampleReaches* reaches) { reaches_ = reaches; }
 
   Box cell(const Index3& voxel) const override { return plan_.box(place_of(voxel)); }

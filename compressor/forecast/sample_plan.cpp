@@ -7,10 +7,10 @@
 namespace weir {
 namespace {
 
-// Leaves. A file is read by runs of eight rows: shorter ones would be a seek each of a disk that is cold.
+// In leaves. A file is read in runs of eight rows. Shorter rows would each cost a seek on a disk with a cold cache.
 constexpr std::int64_t kLongestRow = 512;
 
-// A number from 0 to below 1 that looks like chance, the same in every run.
+// Returns a pseudo-random number from 0 to below 1 that is the same in every run.
 double fraction_at(std::uint64_t place) {
   return static_cast<double>(mix_bits((place + 1) * kGoldenGamma) >> 11U) * 0x1p-53;
 }
@@ -37,7 +37,8 @@ SamplePlan::SamplePlan(const Box& domain, const AccessShape& access, std::int64_
   limit(std::max(most_voxels, domain.voxels() / 20));
 }
 
-// Fewer along the axis whose places lie closest together.
+// Takes fewer cells until the sample has at most `most_voxels`, each time along the axis with the smallest distance
+// between places.
 void SamplePlan::limit(std::int64_t most_voxels) {
   while (axes_[0].voxels() * axes_[1].voxels() * axes_[2].voxels() > most_voxels) {
     SampleAxis* densest = nullptr;

@@ -1,6 +1,6 @@
-// Which places of a volume a forecast looks at: cells of whole leaves, one drawn from each of many equal parts of the
-// volume. Put side by side in the order of these parts they are a volume of their own, in which neighbours come from
-// near each other.
+// The places of a volume that a forecast samples: cells of whole leaves, one drawn from each of many equal parts of the
+// volume. Put side by side in the order of these parts, the cells form a volume of their own. Neighbours in this volume
+// come from places near each other.
 #pragma once
 
 #include <array>
@@ -15,36 +15,39 @@ namespace weir {
 
 class SamplePlan {
  public:
-  /// All of `domain` where it has up to twice `most_voxels`, since a sample and its parts() take as long. Else at most
-  /// `most_voxels`, as far as its cells let it: rows of up to 4096 voxels, or whole chunks. Cells of large chunks may
-  /// come to a twentieth of the volume, where it takes that for kLeastPlaces of them. `brick`: leaves that selection
-  /// takes as one.
+  /// Samples all of `domain` if it has up to twice `most_voxels`, because a sample and its parts() take as long.
+  /// Otherwise samples at most `most_voxels`, as far as the cells allow: rows of up to 4096 voxels, or whole chunks. A
+  /// sample of large chunks may have a twentieth of the volume if fewer than kLeastPlaces of them would fit otherwise.
+  /// `brick` is the number of leaves along an axis that selection takes as one.
   SamplePlan(const Box& domain, const AccessShape& access, std::int64_t most_voxels, std::int64_t brick);
 
   static constexpr std::int64_t kLeastPlaces = 32;
 
-  /// All of the volume, as it is.
+  /// Returns whether the sample is the whole volume, unchanged.
   bool whole() const;
-  /// Of the sample as a volume. Along an axis that is whole it is the volume's own, along others it begins at 0.
+  /// Returns the domain of the sample as a volume. Along an axis that is taken whole it is the volume's own domain.
+  /// Along other axes it begins at 0.
   Box domain() const;
-  /// Cells, one from each part of the volume.
+  /// Returns the number of cells. There is one for each part of the volume.
   std::int64_t places() const { return volume(counts()); }
-  /// Along each axis; 1 where it is whole.
+  /// Returns the number of cells along each axis; 1 along an axis that is taken whole.
   Index3 counts() const;
-  /// Voxels of a cell: along an axis that is whole all of it.
+  /// Returns the voxels of a cell along each axis; the whole axis if it is taken whole.
   Index3 cell() const;
 
-  /// How the sample is read where the volume is read like that: its cells are its chunks, if that has any.
+  /// Returns the access shape of the sample, given the volume's. If the volume has chunks, the cells are the sample's
+  /// chunks.
   AccessShape access(AccessShape of_volume) const;
 
-  /// The box of the sample that the cell at that place fills, and where it lies in the volume.
+  /// box() returns the box of the sample that the cell at `place` fills. source_corner() returns the cell's lowest
+  /// voxel in the volume.
   Box box(const Index3& place) const;
   Index3 source_corner(const Index3& place) const;
-  /// Of a part: where the same cell lies in the sample.
+  /// For a part of a sample: returns the lowest voxel of the same cell in the sample.
   Index3 sample_corner(const Index3& place) const;
 
-  /// Parts of the sample, each of which is spread over the whole volume as it is: 8, or 4; none of fewer than 16
-  /// places.
+  /// Returns 8 or 4 parts of the sample, or none if it has fewer than 16 places. Each part is spread over the whole
+  /// volume, as the sample is.
   std::vector<SamplePlan> parts() const;
 
  private:
@@ -53,8 +56,8 @@ class SamplePlan {
   void limit(std::int64_t most_voxels);
 
   std::array<SampleAxis, 3> axes_;
-  std::array<std::int64_t, 3> stride_{1, 1, 1};  // between strata of a part
-  std::array<std::int64_t, 3> offset_{0, 0, 0};  // of its first one
+  std::array<std::int64_t, 3> stride_{1, 1, 1};  // distance between the strata of a part
+  std::array<std::int64_t, 3> offset_{0, 0, 0};  // first stratum of a part
 };
 
 }  // namespace weir

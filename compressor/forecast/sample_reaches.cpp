@@ -29,7 +29,7 @@ SampleReaches::SampleReaches(VolumeSource& volume, const SamplePlan& plan, const
   });
 }
 
-// A row of leaves of the sample, which begins at `corner` in the volume.
+// Reads `piece`, a row of leaves of the sample that begins at `corner` in the volume.
 void SampleReaches::read_piece(VolumeSource& volume, const Box& piece, const Index3& corner) {
   const Box around = intersect(grown({corner, corner + piece.extent()}, 1), volume.info().domain());
   std::vector<float> values(static_cast<std::size_t>(around.voxels()));

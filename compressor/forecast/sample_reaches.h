@@ -1,4 +1,4 @@
-// What lookups can touch of the leaves of a sample, in the volume that it was taken of.
+// The values that lookups around the leaves of a sample can touch in the volume that the sample was taken from.
 #pragma once
 
 #include <atomic>
@@ -11,15 +11,15 @@
 
 namespace weir {
 
-/// Bounds of the finite values of each leaf and of the voxels around it, as find_reaches has them of a volume. 8 bytes
-/// a leaf.
+/// Bounds of the finite values of each leaf and of the voxels around it, as find_reaches finds them for a volume. Takes
+/// 8 bytes per leaf.
 class SampleReaches {
  public:
-  /// Reads the cells of `plan` from `volume`, with one voxel around them, in rows of leaves. Throws what reading
-  /// throws, and Error(interrupted) where `cancel`, which may be null, says so.
+  /// Reads the cells of `plan` from `volume`, with one voxel around them, in rows of leaves. `cancel` may be null.
+  /// Throws what reading throws, and Error(interrupted) when `*cancel` is set.
   SampleReaches(VolumeSource& volume, const SamplePlan& plan, const std::atomic<bool>* cancel);
 
-  /// Of the leaf of the sample that holds `voxel`; min > max where no value is finite.
+  /// Returns the bounds for the leaf of the sample that holds `voxel`; min > max if no value is finite.
   const MinMax& at(const Index3& voxel) const { return reaches_[index_of(voxel)]; }
 
  private:

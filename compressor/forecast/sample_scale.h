@@ -1,4 +1,4 @@
-// Between a volume and its sample: what a budget is for the sample, and what its file stands for.
+// Scales the budget of a volume to its sample, and the size of the sample's file to the volume.
 #pragma once
 
 #include <cstdint>
@@ -10,23 +10,23 @@
 
 namespace weir {
 
-/// Lower nodes that a file of a volume has, and one of its sample.
+/// The number of lower nodes in a file of the volume, and in a file of its sample.
 struct SampledNodes {
   std::uint64_t of_volume = 0;
   std::uint64_t of_sample = 0;
 };
 
-/// A file is what is fixed (fixed_bytes.h) and what is bought for its leaves; the second is in proportion to their
-/// number.
+/// A file has fixed bytes (fixed_bytes.h) and bytes bought for its leaves. The bought bytes are in proportion to the
+/// number of leaves.
 class SampleScale {
  public:
   SampleScale(const Box& volume, const Box& sample, const ConversionOptions& options, const SampledNodes& nodes);
 
-  /// Part of the volume's leaves, and of its voxels.
+  /// Returns the sample's share of the volume's leaves, which also serves as its share of the voxels.
   double share() const { return share_; }
-  /// What the options ask for, of the sample. A rate becomes a size.
+  /// Returns the budget of the options for the sample. A rate becomes a size.
   Budget budget() const;
-  /// Of the volume, from the file made of the sample.
+  /// Returns the expected bytes of the volume's file, given the sidecar of the sample's file.
   double file_bytes(const Sidecar& of_sample) const;
 
  private:

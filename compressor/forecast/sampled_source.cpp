@@ -9,14 +9,14 @@
 namespace weir {
 namespace {
 
-constexpr std::uint64_t kSmallCell = std::uint64_t{1} << 20U;  // bytes: several are read at a time
+constexpr std::uint64_t kSmallCell = std::uint64_t{1} << 20U;  // bytes; several such cells are read at a time
 
 std::uint64_t cell_bytes(const SamplePlan& plan) {
   return static_cast<std::uint64_t>(volume(plan.cell())) * sizeof(float);
 }
 
-// Where the region of either volume ends that holds the voxel `at`, at most `end`; the volumes begin at `first` and
-// `second` of their own.
+// Returns where the region that holds voxel `at` ends, in whichever of two volumes it ends first, but at most `end`.
+// Voxel 0 lies at index `first` in one volume and at `second` in the other.
 std::int64_t part_end(std::int64_t at, std::int64_t end, std::int64_t first, std::int64_t second) {
   for (const std::int64_t origin : {first, second}) {
     end = std::min(end, (floor_div(origin + at, kLowerDim) + 1) * kLowerDim - origin);
@@ -24,7 +24,7 @@ std::int64_t part_end(std::int64_t at, std::int64_t end, std::int64_t first, std
   return end;
 }
 
-// NaN is no value.
+// Returns the range of the values in `part`; ignores NaN.
 MinMax range_in(std::span<const float> values, const Index3& extent, const Box& part) {
   MinMax range = kNoBounds;
   for (std::int64_t z = part.lo.z; z < part.hi.z; ++z) {
@@ -56,7 +56,8 @@ SampledSource::SampledSource(VolumeSource& source, const SamplePlan& plan, From 
   info_.index_origin = domain.lo;
 }
 
-// Values of x fastest over piece.to, in parts that lie in one region both of the volume and of the sample.
+// Notes the ranges of `values`, which lie x fastest over piece.to, in parts that each lie in one region of the volume
+// and in one region of the sample.
 void SampledSource::note_ranges(const Piece& piece, std::span<const float> values) {
   if (plan_.whole() || from_ == From::copy) return;
   const Index3 extent = piece.to.extent();
@@ -98,7 +99,7 @@ double SampledSource::varied_share() const {
 }
 
 std::uint64_t SampledSource::working_bytes() const {
-  if (plan_.whole()) return source_.working_bytes();  // read to where it is wanted
+  if (plan_.whole()) return source_.working_bytes();  // values are read directly to their destination
   const std::uint64_t cell = cell_bytes(plan_);
   const std::uint64_t readers = cell > kSmallCell ? 1 : kIoThreads;
   return source_.working_bytes() + readers * cell;
@@ -152,7 +153,7 @@ ConversionLoss SampledSource::read(const Box& box, std::span<float> values) {
   const std::vector<Piece> pieces = pieces_of(box);
   ConversionLoss total;
   std::mutex mutex;
-  // Large cells keep the source busy by themselves.
+  // One large cell is enough to keep the source busy.
   const std::size_t readers = cell_bytes(plan_) > kSmallCell ? 1 : kIoThreads;
   for_pieces(static_cast<std::int64_t>(pieces.size()), readers, [&](std::int64_t i) {
     const ConversionLoss loss = read_piece(pieces[static_cast<std::size_t>(i)], box, values, false);

@@ -1,4 +1,4 @@
-// The sample of a volume as a volume, for whoever converts volumes.
+// Presents the sample of a volume as a volume of its own that can be converted.
 #pragma once
 
 #include <atomic>
@@ -16,9 +16,9 @@
 
 namespace weir {
 
-/// Of `source`, which must outlive it: of the volume that the plan was made for, or of a copy of the sample that the
-/// plan is a part of (SamplePlan::parts). Reading it also finds which regions vary, as far as `seen`, which may be
-/// null, shows them.
+/// Reads the sample of `plan` from `source`, which must outlive the object. `source` is the volume that the plan was
+/// made for, or a copy of the sample if the plan is one of its SamplePlan::parts. Reading also finds which regions
+/// vary, as far as `seen` shows them; `seen` may be null.
 class SampledSource final : public VolumeSource {
  public:
   enum class From { volume, copy };
@@ -32,24 +32,24 @@ class SampledSource final : public VolumeSource {
   ConversionLoss read_alone(const Box& box, std::span<float> values) override;
   const CellPlaces* places() const override { return plan_.whole() ? source_.places() : &places_; }
   std::uint64_t working_bytes() const override;
-  /// Finds what lookups can touch of its leaves, for places(): reads the volume once more around its cells. Not where
-  /// the volume has chunks, which are decoded whole.
+  /// Finds the values that lookups around the sample's leaves can touch, for places(). Reads the volume once more
+  /// around the cells. Does nothing if the volume has chunks, because chunks are decoded whole.
   void find_reaches(const std::atomic<bool>* cancel);
-  /// Since this object was made.
+  /// Returns the bytes read since this object was made.
   std::uint64_t bytes_read() const override { return source_.bytes_read() - read_before_; }
   std::int64_t voxels_read() const { return voxels_read_; }
-  /// Regions of 128^3 voxels of the volume, and of the sample, that hold more than one of the values read. Of a sample
-  /// of a volume; else 0.
+  /// Return the number of 128^3 regions, of the volume and of the sample, with more than one value among those read.
+  /// Return 0 if the source is a copy, or if the sample is the whole volume.
   std::uint64_t varied_in_volume() const { return in_volume_.count(); }
   std::uint64_t varied_in_sample() const { return in_sample_.count(); }
-  /// Part of the voxels read that lie in places of more than one value: what an encode pass reads again.
+  /// Returns the share of the read voxels in places with more than one value. An encode pass reads these voxels again.
   double varied_share() const;
 
  private:
-  /// A part of a place that is read.
+  /// The part of a place to read.
   struct Piece {
-    Box to;       ///< in the sample
-    Index3 from;  ///< its corner in the source
+    Box to;       ///< box in the sample
+    Index3 from;  ///< lowest voxel in the source
   };
   std::vector<Piece> pieces_of(const Box& box) const;
   ConversionLoss read_piece(const Piece& piece, const Box& box, std::span<float> values, bool alone);
@@ -64,7 +64,7 @@ class SampledSource final : public VolumeSource {
   SourceInfo info_;
   std::uint64_t read_before_;
   std::atomic<std::int64_t> voxels_read_{0};
-  mutable std::mutex mutex_;  // of what follows
+  mutable std::mutex mutex_;  // guards the members below
   std::int64_t varied_voxels_ = 0;
   VariedRegions in_volume_;
   VariedRegions in_sample_;

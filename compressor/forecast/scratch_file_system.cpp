@@ -10,7 +10,7 @@
 
 namespace weir {
 
-// A file of the system under it, by the name that the conversion gave it.
+// A file of the real file system that reports the name that the conversion gave it.
 class ScratchFileSystem::ScratchFile final : public File {
  public:
   ScratchFile(std::shared_ptr<File> file, std::string path) : file_(std::move(file)), path_(std::move(path)) {}
@@ -49,7 +49,7 @@ std::unique_ptr<File> ScratchFileSystem::open(const std::string& path) {
 }
 
 std::unique_ptr<File> ScratchFileSystem::create_unnamed(const std::string& directory) {
-  // The hidden directory beside the output is not made.
+  // The hidden directory beside the output does not exist, because make_directory() makes none.
   const std::string& place = directory == hidden_ ? directory_of(output_) : directory;
   return std::make_unique<ScratchFile>(files_.create_unnamed(place), directory);
 }

@@ -1,4 +1,4 @@
-// A file system in which a conversion leaves nothing: its files have no names.
+// A file system in which a conversion leaves nothing behind, because its files have no names.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +11,10 @@
 
 namespace weir {
 
-/// Over a real one, of which it shows directories, `output` and its sidecar, but nothing that another conversion of
-/// `output` keeps beside them. What is created lies in the real directories without a name and is gone with its last
-/// user; renaming, removing and making directories change nothing there. Thread-safe. `files` must outlive the object
-/// and its files.
+/// Lies over the real file system `files`. It shows the real directories, `output` and its sidecar, but nothing that
+/// another conversion to `output` keeps beside them. Created files lie in the real directories without a name and
+/// vanish with their last user. Renaming, removing and making directories change nothing there. Thread-safe. `files`
+/// must outlive the object and its files.
 class ScratchFileSystem final : public FileSystem {
  public:
   ScratchFileSystem(FileSystem& files, const std::string& output);

@@ -9,7 +9,8 @@
 namespace weir {
 
 Expected spread_of(double value, std::span<const double> parts, double share) {
-  constexpr std::array<double, 7> kStudent{12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365};  // from one degree on
+  // For 1 to 7 degrees of freedom.
+  constexpr std::array<double, 7> kStudent{12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365};
   const std::size_t n = parts.size();
   if (n < 2) return {value, value, value};
   const double count = static_cast<double>(n);

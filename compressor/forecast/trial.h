@@ -1,4 +1,4 @@
-// A conversion that leaves nothing behind it.
+// A conversion that leaves nothing behind.
 #pragma once
 
 #include "compressor/conversion_control.h"
@@ -12,10 +12,10 @@ namespace weir {
 struct Trial {
   Sidecar sidecar;
   double survey_s = 0;
-  double encode_s = 0;  ///< all the rest, the flush of the file to its device with it
+  double encode_s = 0;  ///< seconds of all the rest, including the flush of the file to its disk
 };
 
-/// Converts `source` as convert_volume does, in a ScratchFileSystem over `files`. Throws what that throws.
+/// Converts `source` with convert_volume in a ScratchFileSystem over `files`. Throws as convert_volume.
 Trial run_trial(VolumeSource& source, ConversionOptions options, const ConversionControl& control, FileSystem& files);
 
 }  // namespace weir

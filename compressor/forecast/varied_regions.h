@@ -1,5 +1,5 @@
-// Which 128^3 regions of a volume hold more than one value, as far as values of them are seen: where they hold one, or
-// a scene shows nothing of them, no file has a node for them.
+// Finds which 128^3 regions of a volume hold more than one value, from the values that were read. A file has no node
+// for a region with only one value, or for a region of which a scene shows nothing.
 #pragma once
 
 #include <cstdint>
@@ -10,16 +10,16 @@
 
 namespace weir {
 
-/// 9 bytes a region.
+/// Takes 9 bytes per region.
 class VariedRegions {
  public:
   explicit VariedRegions(const Box& domain);
 
-  /// Values within `values` (smallest, largest) were seen in the region that holds `voxel`.
+  /// Notes that values in the range `values` were read in the region that holds `voxel`.
   void add(const Index3& voxel, const MinMax& values);
-  /// Values were seen there of which the scene shows none.
+  /// Notes that values were read in the region that holds `voxel`, but that the scene shows none of them.
   void add_hidden(const Index3& voxel);
-  /// Regions of which nothing was seen are taken to vary as often as the others.
+  /// Returns the number of regions that vary. Assumes that regions without read values vary as often as the others.
   std::uint64_t count() const;
 
  private:
@@ -27,7 +27,7 @@ class VariedRegions {
 
   NodeLattice regions_;
   std::vector<MinMax> ranges_;
-  std::vector<std::uint8_t> seen_;  // whether there are any values of it
+  std::vector<std::uint8_t> seen_;  // 1 for each region in which values were read
 };
 
 }  // namespace weir

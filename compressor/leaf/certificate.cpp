@@ -15,7 +15,7 @@ Certificate make_certificate(double squared_error, double max_abs, bool lossless
   const double range = static_cast<double>(max) - static_cast<double>(min);
   if (range == 0 && c.mse > 0) c.nmse = std::numeric_limits<double>::infinity();
   if (range > 0) {
-    // Divide before squaring: range^2 of 1e-40 fields would underflow.
+    // Divides before squaring, because range^2 of a field of 1e-40 would underflow.
     c.nmse = c.rmse / range * (c.rmse / range);
     if (c.mse > 0) c.psnr_db = 20.0 * std::log10(range / c.rmse);
   }

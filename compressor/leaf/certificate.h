@@ -1,5 +1,5 @@
-// The error certificate: what a reader decodes against the float32 source, over
-// all finite source voxels, in double.
+// The error certificate: the error of decoded values against the float32 source over all finite source voxels, in
+// double.
 #pragma once
 
 #include <cmath>
@@ -11,17 +11,17 @@ namespace weir {
 struct Certificate {
   double mse = 0;
   double rmse = 0;
-  double nmse = 0;                ///< mse / range^2; infinite where something was lost of a volume of one value
-  std::optional<double> psnr_db;  ///< 10 log10(range^2 / mse); none when lossless or without a range
+  double nmse = 0;                ///< mse / range^2; infinite if a volume of one value lost something
+  std::optional<double> psnr_db;  ///< 10 log10(range^2 / mse); unset if lossless or if the range is 0
   double max_abs = 0;
-  bool lossless = false;  ///< every voxel, NaN too where kept, reads bit for bit
+  bool lossless = false;  ///< every voxel decodes bit for bit, NaN included if it is kept
 };
 
-/// `squared_error` summed over `finite` voxels of a volume with values in [min, max].
+/// Returns the certificate of a volume with values in [min, max]. `squared_error` is the sum over its `finite` voxels.
 Certificate make_certificate(double squared_error, double max_abs, bool lossless, std::uint64_t finite, float min,
                              float max);
 
-/// Neumaier's compensated sum (1974): the error does not grow with the number of terms.
+/// Neumaier's compensated sum (1974). Its error does not grow with the number of terms.
 class CompensatedSum {
  public:
   void add(double term) {

@@ -1,14 +1,14 @@
-// Equidistant levels, and the code of the one that is nearest to a value.
+// Equidistant levels, and the code of the level that is nearest to a value.
 #pragma once
 
 #include "format/base/simd.h"
 
 namespace weir {
 
-/// Added and taken away again, it rounds a float below 2^22 to the nearest whole number, ties to even.
+/// Adding and then subtracting this number rounds a float below 2^22 to the nearest whole number, ties to even.
 inline constexpr float kRounder = 12582912.0F;  // 1.5 * 2^23
 
-/// Levels minimum + code * quantum, for codes of 0 to `top`; a reciprocal of 0 where there is one level.
+/// The levels minimum + code * quantum for codes 0 to `top`. `reciprocal` is 1 / quantum, or 0 if there is one level.
 struct CodeLevels {
   float minimum;
   float quantum;
@@ -16,7 +16,7 @@ struct CodeLevels {
   float top;
 };
 
-/// Sets the code of each value.
+/// Sets `code` to the code of each value of `v`.
 [[gnu::always_inline]] inline void nearest_code(const Floats8& v, const CodeLevels& l, Floats8& code) {
   const Floats8 zero{};
   const Floats8 top = l.top - zero;

@@ -7,14 +7,14 @@
 namespace weir {
 namespace {
 
-// 16 lanes, as two vectors of eight: wider ones than the machine has are compared lane by lane.
+// 16 lanes as two vectors of eight, because vectors wider than the machine's are compared lane by lane.
 constexpr std::size_t kHalf = 8;
 struct Lanes {
   Floats8 low{};
   Floats8 high{};
 };
 
-// Pairwise, whatever the machine.
+// Sums the lanes pairwise, in the same order on every machine.
 [[gnu::always_inline]] inline double sum(const Lanes& lanes) {
   const Floats8 eight = lanes.low + lanes.high;
   const auto four =
@@ -33,14 +33,14 @@ struct Lanes {
   }
 }
 
-// 16 of the values from `first` on; `filler` behind the last.
+// Loads 16 values from `first` on, with `filler` behind the last value.
 [[gnu::always_inline]] inline void load(const float* values, std::size_t first, std::size_t count, float filler,
                                         Lanes& v) {
   load_half(values, first, count, filler, v.low);
   load_half(values, first + kHalf, count, filler, v.high);
 }
 
-// One half of what the functions below do.
+// Each *_half function does the work of a function below for one half of the lanes.
 
 [[gnu::always_inline]] inline void deviate_half(const Floats8& v, float mean, float scale, float* deviations,
                                                 Floats8& squares) {
@@ -56,7 +56,7 @@ struct Lanes {
   std::memcpy(&d, deviations, sizeof d);
   const auto upper = (v - l.minimum) * l.reciprocal > 0.5F;  // a half goes to the even code
   codes += upper ? 1.0F - zero : zero;
-  code_values += upper ? d : zero;  // adding a deviation is adding its product with 1
+  code_values += upper ? d : zero;  // for code 1, the product with the deviation is the deviation
 }
 
 [[gnu::always_inline]] inline void assign_half(const Floats8& v, const float* deviations, const CodeLevels& l,
@@ -64,7 +64,7 @@ struct Lanes {
   Floats8 d;
   Floats8 code;
   std::memcpy(&d, deviations, sizeof d);
-  nearest_code(v, l, code);  // behind the last value 0, which adds nothing
+  nearest_code(v, l, code);  // the code behind the last value is 0, which adds nothing
   codes += code;
   code_squares += code * code;
   code_values += code * d;

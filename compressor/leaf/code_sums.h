@@ -1,5 +1,5 @@
-// Values assigned to equidistant levels: the codes, and the sums that a least-squares fit of the levels takes. The same
-// bits on every machine: 16 lanes, nothing fused.
+// Assigns values to equidistant levels: finds the codes, and the sums that a least-squares fit of the levels needs. The
+// results have the same bits on every machine: 16 lanes, no fused operations.
 #pragma once
 
 #include <cstddef>
@@ -9,25 +9,26 @@
 
 namespace weir {
 
-/// What one assignment of values to levels comes to. Deviations are from the leaf's mean, times a power of two that
-/// brings them near 1, so that neither 1e-16 nor 1e+30 squared leaves the range of float.
+/// The sums of one assignment of values to levels. Deviations are from the leaf's mean, times a power of two that
+/// brings them near 1, so that the squares of 1e-16 and of 1e+30 stay in the range of float.
 struct CodeSums {
-  double squares = 0;  ///< of the errors of the scaled deviations
-  double codes = 0;    ///< exact: below 2^24 a lane for up to 8 bits
+  double squares = 0;  ///< sum of the squared errors of the scaled deviations
+  double codes = 0;    ///< sum of the codes; exact for up to 8 bits, because a lane stays below 2^24
   double code_squares = 0;
-  double code_values = 0;  ///< code * deviation
+  double code_values = 0;  ///< sum of code * deviation
 };
 
-/// Fills the deviations, as many as there are values rounded up to 16, 0 behind the last one, and returns the sum of
-/// their squares.
+/// Fills `deviations` and returns the sum of their squares. Their number is `count` rounded up to a multiple of 16; the
+/// deviations behind the last value are 0.
 double deviate(const float* values, std::size_t count, float mean, float scale, float* deviations);
 
-/// All but the squares.
+/// Returns all sums except CodeSums::squares.
 CodeSums assign(const float* values, const float* deviations, std::size_t count, const CodeLevels& levels);
-/// The same of levels of one bit, where all deviations are finite.
+/// The same as assign() for levels of one bit, if all deviations are finite.
 CodeSums assign_bit(const float* values, const float* deviations, std::size_t count, const CodeLevels& levels);
 
-/// The squares, which at 8 bits and more are too small beside those of the deviations to follow from the other sums.
+/// Returns CodeSums::squares, measured value by value. At 8 bits and more they cannot be derived from the other sums,
+/// because they are too small beside the squares of the deviations.
 double measure_squares(const float* values, std::size_t count, const CodeLevels& levels, float scale);
 
 void nearest_codes(const float* values, std::size_t count, const CodeLevels& levels, std::uint16_t* codes);

@@ -1,4 +1,4 @@
-// What is lost of voxels, all of a file or some, between a source's values and those that a reader decodes.
+// The errors of a file's voxels, or of some of them, between the source's values and the decoded values.
 #pragma once
 
 #include <algorithm>
@@ -8,14 +8,14 @@
 
 namespace weir {
 
-/// Over voxels of the domain; of none: nothing is lost.
+/// Errors over voxels of the domain. The default is for no voxel: nothing is lost.
 struct DecodedErrors {
-  double squared = 0;  ///< sum over the finite ones, in squared units of the data
-  double max_abs = 0;  ///< the largest, in units of the data
+  double squared = 0;  ///< sum of squared errors over the finite voxels, in squared units of the data
+  double max_abs = 0;  ///< the largest error, in units of the data
   Kept kept = Kept::all;
-  std::uint64_t zeros_lost = 0;  ///< zeros that read another value
+  std::uint64_t zeros_lost = 0;  ///< zeros that decode to another value
 
-  /// Adds all of other voxels' but the squares, whose sum's order and rounding are the caller's affair.
+  /// Adds the errors of other voxels except `squared`. The caller sums that, and so decides its order and rounding.
   void add_but_squares(const DecodedErrors& other) {
     max_abs = std::max(max_abs, other.max_abs);
     kept = std::min(kept, other.kept);

@@ -17,7 +17,7 @@ void ExactSum::add(double term) {
   const std::uint64_t exponent = bits >> 52U & 0x7ffU;
   std::uint64_t mantissa = bits & ((std::uint64_t{1} << 52U) - 1);
   if (exponent != 0) mantissa |= std::uint64_t{1} << 52U;
-  // Position of the mantissa's lowest bit; denormals share that of the smallest normal numbers.
+  // The position of the mantissa's lowest bit. Denormals have the position of the smallest normal numbers.
   const std::uint64_t position = exponent == 0 ? 0 : exponent - 1;
   const std::uint64_t digit = position / kDigitBits;
   const auto shift = static_cast<unsigned>(position % kDigitBits);
@@ -41,7 +41,7 @@ void ExactSum::add(const ExactSum& other) {
 double ExactSum::value() const {
   ExactSum normal = *this;
   normal.carry();
-  // From the lowest digit up, so that what is rounded off is below the last place of the result.
+  // Adds from the lowest digit up, so that all rounding stays below the last place of the result.
   double sum = 0.0;
   for (std::size_t i = 0; i < kDigits; ++i) {
     if (normal.digits_[i] == 0) continue;

@@ -1,5 +1,5 @@
-// The exact sum of any number of doubles: the same bits in whatever order and
-// grouping they come, so that parallel reductions need no order and no storage.
+// The exact sum of any number of doubles. It has the same bits for every order and grouping of the terms, so that
+// parallel reductions need no order and no storage.
 #pragma once
 
 #include <array>
@@ -7,14 +7,14 @@
 
 namespace weir {
 
-/// A fixed-point number that covers the whole range of double (U. Kulisch, "Computer Arithmetic and
-/// Validity", 2008): digits of 32 bits in 64-bit places, so that carries are due only every 2^30 terms.
+/// A fixed-point number that covers the whole range of double (U. Kulisch, "Computer Arithmetic and Validity", 2008).
+/// It holds digits of 32 bits in 64-bit places, so that carries are needed only every 2^30 terms.
 class ExactSum {
  public:
-  /// `term` is finite and not negative.
+  /// Adds `term`, which must be finite and not negative.
   void add(double term);
   void add(const ExactSum& other);
-  /// The sum, rounded within one unit in the last place; the same for equal sums.
+  /// Returns the sum, rounded to within one unit in the last place. Equal sums give the same result.
   double value() const;
 
  private:

@@ -8,7 +8,7 @@ namespace weir {
 
 WEIR_SIMD bool all_finite(const LeafValues& values) {
   std::uint32_t others = 0;
-  for (const float v : values) others |= v - v == 0.0F ? 0U : 1U;  // NaN for what is not finite
+  for (const float v : values) others |= v - v == 0.0F ? 0U : 1U;  // v - v is NaN if v is not finite
   return others == 0;
 }
 

@@ -1,4 +1,4 @@
-// The in-domain voxels of a leaf, and the others.
+// Visits the in-domain voxels of a leaf, and extends their values to the voxels outside the domain.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace weir {
 
-/// Calls visit(i) for every voxel of `inside` in the leaf at `node`, in leaf order: i is x << 6 | y << 3 | z.
+/// Calls visit(i) for every voxel of `inside` in the leaf at `node`, in leaf order. i is x << 6 | y << 3 | z.
 template <typename Visit>
 void for_each_inside(const Box& node, const Box& inside, const Visit& visit) {
   const Index3 lo = inside.lo - node.lo;
@@ -20,8 +20,9 @@ void for_each_inside(const Box& node, const Box& inside, const Visit& visit) {
   }
 }
 
-/// Gives the others the value of the nearest voxel inside: the smoothest way to go on that needs no bounds. Every layer
-/// of the leaf then stays within the bounds of its part inside. `values`, of kLeafVoxels, are in leaf order.
+/// Gives each voxel outside `inside` the value of the nearest voxel inside, the smoothest extension that needs no
+/// bounds. Every layer of the leaf then stays within the bounds of its inside part. `values`, of kLeafVoxels, are in
+/// leaf order.
 template <typename Values>
 void extend_outside(const Box& node, const Box& inside, Values& values) {
   if (inside == node) return;

@@ -13,7 +13,7 @@ namespace weir {
 namespace {
 
 constexpr std::size_t kLanes = 8;
-constexpr std::size_t kHalves = 2;  // 16 sums, eight lanes of them at once
+constexpr std::size_t kHalves = 2;  // 16 sums, in two halves of eight lanes
 
 struct DifferenceLanes {
   Doubles8 squared_error{};
@@ -27,7 +27,7 @@ struct DifferenceLanes {
   Ints8 zeros_lost{};
 };
 
-// Of finite values alone, or of all.
+// Adds the differences of one leaf to `halves`. With AllFinite, all values must be finite.
 template <bool AllFinite>
 [[gnu::always_inline]] inline void accumulate_values(const float* source, const float* decoded,
                                                      DifferenceLanes* halves) {
@@ -48,7 +48,7 @@ template <bool AllFinite>
       Ints8 s_finite = ~Ints8{};
       const Ints8 differs = s_bits != d_bits;
       if constexpr (!AllFinite) {
-        // v - v is 0 for a finite v and NaN for every other. All bits of a lane are set where it holds.
+        // v - v is 0 for a finite v and NaN otherwise. All bits of a lane are set if the comparison holds.
         s_finite = s - s == none;
         const Ints8 d_finite = d - d == none;
         const Ints8 both = s_finite & d_finite;
@@ -74,7 +74,7 @@ template <bool AllFinite>
 WEIR_SIMD void accumulate(const float* source, const float* decoded, DifferenceLanes* halves) {
   accumulate_values<false>(source, decoded, halves);
 }
-// The same where all are finite; else a squared error that is not.
+// The same if all values are finite. Otherwise the squared error becomes non-finite.
 WEIR_SIMD void accumulate_finite(const float* source, const float* decoded, DifferenceLanes* halves) {
   accumulate_values<true>(source, decoded, halves);
 }

@@ -1,4 +1,4 @@
-// How the decoded values of one leaf differ from the source's.
+// The difference between the decoded values of one leaf and the source's values.
 #pragma once
 
 #include <cstdint>
@@ -10,25 +10,25 @@
 namespace weir {
 
 struct LeafDifference {
-  double squared_error = 0;               ///< summed over the voxels finite on both sides
-  double max_abs = 0;                     ///< of those
+  double squared_error = 0;               ///< sum over the voxels that are finite on both sides
+  double max_abs = 0;                     ///< largest error of the voxels that are finite on both sides
   std::uint32_t nonfinite = 0;            ///< source voxels that are not finite
-  std::uint32_t nonfinite_decoded = 0;    ///< decoded ones that are not, where the source is
-  std::uint32_t different = 0;            ///< finite source voxels whose bits differ
-  std::uint32_t nonfinite_different = 0;  ///< and not finite ones
-  std::uint32_t zeros_lost = 0;           ///< source voxels equal to 0 whose decoded value is not
-  MinMax range{};                         ///< of the finite source voxels; min > max where there is none
+  std::uint32_t nonfinite_decoded = 0;    ///< finite source voxels that decode to a non-finite value
+  std::uint32_t different = 0;            ///< finite source voxels that decode to other bits
+  std::uint32_t nonfinite_different = 0;  ///< non-finite source voxels that decode to other bits
+  std::uint32_t zeros_lost = 0;           ///< source voxels equal to 0 that decode to another value
+  MinMax range{};                         ///< range of the finite source voxels; min > max if there is none
 };
 
-/// Sums run in 16 lanes over the 512 voxels in leaf order, lanes are added pairwise: the same bits on
-/// every instruction set.
+/// Returns the difference of one leaf. Sums run in 16 lanes over the 512 voxels in leaf order, and lanes are added
+/// pairwise, so that the result has the same bits on every instruction set.
 LeafDifference difference_of(const LeafValues& source, const LeafValues& decoded);
 
-/// `values` at the voxels of `inside` in the leaf at `node`, `outside` at the others: these then make no difference
-/// from what has `outside` there.
+/// Returns `values` at the voxels of `inside` in the leaf at `node`, and `outside` at all other voxels. Compared with
+/// `outside`, the other voxels then make no difference.
 LeafValues inside_only(const LeafValues& values, const LeafValues& outside, const Box& node, const Box& inside);
 
-/// |source - decoded| in double where both are finite, else 0: what max_abs is the largest of.
+/// Returns |source - decoded| in double if both are finite, otherwise 0. LeafDifference::max_abs is the largest result.
 double abs_difference(float source, float decoded);
 
 }  // namespace weir

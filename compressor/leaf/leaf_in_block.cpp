@@ -30,7 +30,7 @@ std::span<const float> copy_leaf(std::span<const float> values, const Box& voxel
     for (std::int64_t y = 0; y < extent.y; ++y, out += extent.x) {
       const float* const row = corner + rows.x * (y + rows.y * z);
       __builtin_prefetch(row + ahead);
-      if (extent.x == kLeafDim) {  // a length the compiler knows
+      if (extent.x == kLeafDim) {  // the compiler knows this length
         std::memcpy(out, row, kLeafDim * sizeof(float));
       } else {
         std::copy_n(row, extent.x, out);

@@ -1,5 +1,5 @@
-// The values of one leaf in a block: among those that were read, in one of their parts, or in memory as the survey left
-// it.
+// Finds the values of one leaf in a block: among the values that were read, in a part of the block, or in the memory
+// where the survey cached them.
 #pragma once
 
 #include <array>
@@ -11,25 +11,25 @@
 
 namespace weir {
 
-/// Where values that lie in a part are put.
+/// Buffers for the values of a leaf that lies in a part of a block.
 struct LeafRoom {
   std::array<float, kLeafVoxels> values;
   std::array<float, kLeafVoxels> distinct;
 };
 
 struct LeafInBlock {
-  std::span<const float> values;  ///< of `voxels`, x fastest; those of the leaf among them
-  Box voxels;
-  std::span<const float> distinct;  ///< of the leaf, where some repeat each other, without those; else empty
-  Index3 by{1, 1, 1};               ///< how many voxels have each along the axes
+  std::span<const float> values;    ///< values of `voxels`, x fastest
+  Box voxels;                       ///< contains the voxels of the leaf
+  std::span<const float> distinct;  ///< the leaf's values without repeats; empty if none are known to repeat
+  Index3 by{1, 1, 1};               ///< number of voxels along each axis that share one value
 };
 
-/// `inside`: the voxels of the leaf in the domain. Of a block in parts, and of one whose leaves lie in memory, the
-/// values are those of the leaf alone, which may be in `room`.
+/// Finds the values of the leaf with the in-domain voxels `inside`. If the block is in parts, or if its leaves lie in
+/// memory, the result holds the values of this leaf alone; they may lie in `room`.
 LeafInBlock leaf_in_block(const Block& block, const Box& inside, LeafRoom& room);
 
-/// Copies the values of a leaf, those of `inside`, x fastest, out of the values of `voxels`, in which it lies. What
-/// lies `ahead` values behind each row, as those of a leaf to come do, is fetched into the cache meanwhile.
+/// Copies the values of `inside`, x fastest, out of `values`, the values of the box `voxels`, into `own`. Prefetches
+/// the values that lie `ahead` values behind each row, for example those of a later leaf.
 std::span<const float> copy_leaf(std::span<const float> values, const Box& voxels, const Box& inside,
                                  std::int64_t ahead, std::array<float, kLeafVoxels>& own);
 

@@ -14,11 +14,11 @@ namespace weir {
 namespace {
 
 constexpr std::int32_t kLargestCode = 65535;
-/// Below this the unit of a value's last bit has no reciprocal in float.
+/// The unit of the last bit of a smaller value has no reciprocal in float.
 constexpr float kSmallest = 0x1p-100F;
 
-// Values in units of `1 / scale`, where all of them are whole numbers; false where one is not, is -0.0, or is so
-// small beside the unit that scaling makes it 0. The scaled values are below 2^24 in magnitude.
+// Converts values to whole numbers in units of `1 / scale`. Returns false if a value is no whole number, is -0.0, or is
+// so small beside the unit that scaling makes it 0. The scaled values must be below 2^24 in magnitude.
 WEIR_SIMD bool to_integers(const float* values, std::size_t count, float scale, std::int32_t* integers) {
   bool whole = true;
   for (std::size_t i = 0; i < count && whole; i += 16) {
@@ -43,7 +43,7 @@ WEIR_SIMD bool to_integers(const float* values, std::size_t count, float scale, 
 std::optional<LeafLattice> find_lattice(std::span<const float> values, float min, float max) {
   const float magnitude = std::max(std::fabs(min), std::fabs(max));
   if (!(magnitude >= kSmallest && magnitude <= 0x1p100F)) return std::nullopt;
-  // The unit of the largest magnitude's last bit: the largest value is below 2^24 of them.
+  // The unit is the last bit of the largest magnitude, so that all values are below 2^24 units.
   const int exponent = std::ilogb(magnitude) - 23;
   std::array<std::int32_t, kLeafVoxels> integers;
   const float scale = std::ldexp(1.0F, -exponent);
@@ -61,7 +61,7 @@ std::optional<LeafLattice> find_lattice(std::span<const float> values, float min
     if (range / step > kLargestCode) return std::nullopt;
     if (step == 1) break;
   }
-  // code * step is a multiple of the power of two in step: beyond 2^24 of those it would round.
+  // code * step is a multiple of the largest power of two that divides step. It would round from 2^24 multiples on.
   if (range / (step & -step) >= 1 << 24) return std::nullopt;
   return LeafLattice{std::ldexp(static_cast<float>(step), exponent), static_cast<std::uint32_t>(range / step)};
 }

@@ -22,13 +22,13 @@ CodeLevels levels_of(const Quantiser& q) {
   return {q.minimum, q.quantum, q.quantum > 0 ? 1 / q.quantum : 0.0F, static_cast<float>(q.top)};
 }
 
-// A level, as a reader decodes it.
+// Returns the level of a code, as a reader decodes it.
 float level_of(std::uint32_t code, const Quantiser& q) {
   const float product = static_cast<float>(code) * q.quantum;
   return product + q.minimum;
 }
 
-// The code of `v`, as nearest() finds it.
+// Returns the code of `v`, as nearest_codes() finds it.
 std::uint32_t code_of(float v, const Quantiser& q, std::uint32_t most) {
   const float t = std::clamp((v - q.minimum) * (1 / q.quantum), 0.0F, static_cast<float>(most));
   return static_cast<std::uint32_t>((t + kRounder) - kRounder);
@@ -40,12 +40,12 @@ bool usable(const Quantiser& q) {
 
 double width_of(const ValueRange& range) { return static_cast<double>(range.max) - static_cast<double>(range.min); }
 
-// Whether no level lies below the range; a least value of zero is a level.
+// Returns whether no level lies below the range. If the least value is zero, the first level must be zero.
 bool begins_inside(const Quantiser& q, const ValueRange& range) {
   return range.min == 0 ? q.minimum == 0 : q.minimum >= range.min;
 }
 
-// The largest quantum, but for a rounding or two, whose level `code` does not lie above the range.
+// Returns the largest quantum (but for a rounding or two) for which level `code` does not lie above the range.
 float quantum_up_to(std::uint32_t code, float minimum, const ValueRange& range) {
   const double width = static_cast<double>(range.max) - static_cast<double>(minimum);
   auto quantum = static_cast<float>(std::min(width, kWidest) / static_cast<double>(code));
@@ -53,7 +53,8 @@ float quantum_up_to(std::uint32_t code, float minimum, const ValueRange& range) 
   return quantum;
 }
 
-// The highest code that values take whose level does not lie above the range, and whose code * quantum is a number.
+// Returns the highest code that values take, lowered until its level does not lie above the range and code * quantum is
+// a float.
 std::uint32_t top_inside(const Quantiser& q, const ValueRange& range, std::uint32_t most) {
   const double width = static_cast<double>(range.max) - static_cast<double>(q.minimum);
   const double last = std::min(width, kWidest) / static_cast<double>(q.quantum) + 1;
@@ -63,15 +64,15 @@ std::uint32_t top_inside(const Quantiser& q, const ValueRange& range, std::uint3
   return code;
 }
 
-// Where float has no two levels.
+// Returns the quantiser for a range in which float has no two levels.
 Quantiser one_level(const ValueRange& range) { return {range.min == 0 ? 0.0F : range.mean, 0, 0}; }
 
-// Whether float has levels of `bits` bits for some of the range at least.
+// Returns whether float has levels of `bits` bits for at least a part of the range.
 bool divisible(const ValueRange& range, unsigned bits) {
   return width_of(range) > kWidest || range_quantiser(range, bits).quantum > 0;
 }
 
-// One leaf being fitted, at one width after the other.
+// Fits quantisers to one leaf, one width after the other.
 class Fitter {
  public:
   Fitter(std::span<const float> values, const ValueRange& range, const LeafRepeats& repeats)
@@ -91,7 +92,7 @@ class Fitter {
     best_ = std::numeric_limits<double>::infinity();
   }
 
-  // Refits from levels over `share` of the range; keeps what is better than before.
+  // Refits from levels over `share` of the range. Keeps the best quantiser so far.
   void start(double share, int rounds) {
     const double width = width_of(range_);
     const double half = std::min(width * share, kWidest) / 2;
@@ -106,7 +107,7 @@ class Fitter {
     refine(q, rounds);
   }
 
-  // The same from the levels of `q`.
+  // Refits from the levels of `q`. Keeps the best quantiser so far.
   void refine(Quantiser q, int rounds) {
     double last = std::numeric_limits<double>::infinity();
     for (int round = 0; round < rounds && usable(q); ++round) {
@@ -116,7 +117,7 @@ class Fitter {
         best_ = sums.squares;
         quantiser_ = q;
       }
-      if (!(sums.squares < last)) return;  // Lloyd's iteration has converged, but for roundings
+      if (!(sums.squares < last)) return;  // Lloyd's iteration has converged up to rounding
       last = sums.squares;
       if (!refit(sums, q)) return;
     }
@@ -137,7 +138,7 @@ class Fitter {
       return sums;
     }
     sums.squares = followed(sums, q);
-    // A difference that small is the roundings of what it is between.
+    // Such a small difference consists of the rounding errors of its two terms.
     if (!(sums.squares > kCancelled * squares_)) sums.squares = measured(levels);
     return sums;
   }
@@ -152,7 +153,7 @@ class Fitter {
                                     : measure_squares(values_.data(), values_.size(), levels, scale_);
   }
 
-  // The sum of (deviation - (code * quantum + minimum))^2, multiplied out, for the codes of `sums`.
+  // Returns the sum of (deviation - (code * quantum + minimum))^2 for the codes of `sums`, in multiplied-out form.
   double followed(const CodeSums& sums, const Quantiser& q) const {
     const double quantum = static_cast<double>(q.quantum) * static_cast<double>(scale_);
     const double minimum = scaled(q.minimum);
@@ -161,8 +162,8 @@ class Fitter {
            minimum * (n * minimum + 2 * (quantum * sums.codes - deviation_));
   }
 
-  // Least squares of value = minimum + code * quantum, the first level in the range; false where all values have one
-  // code.
+  // Sets `q` to the least-squares fit of value = minimum + code * quantum with the first level in the range. Returns
+  // false if all values have the same code.
   bool refit(const CodeSums& sums, Quantiser& q) const {
     const auto n = static_cast<double>(values_.size());
     const double determinant = n * sums.code_squares - sums.codes * sums.codes;
@@ -178,8 +179,8 @@ class Fitter {
     return true;
   }
 
-  // Where the level of the largest value lies above the range, levels that end at that value may cost less than giving
-  // it the level below.
+  // If the level of the largest value lies above the range, that value must take the level below. Levels that end at
+  // the largest value may have a smaller error; takes them if so.
   void end_inside(const CodeSums& sums, Quantiser& q) const {
     const std::uint32_t highest = code_of(range_.max, q, most_);
     if (highest == 0 || !(level_of(highest, q) > range_.max)) return;
@@ -193,7 +194,7 @@ class Fitter {
     if (highest == 1 || followed(sums, ended) < followed(sums, q) + capped) q = ended;
   }
 
-  // Least squares of value = largest - (code of the largest - code) * quantum.
+  // Returns the least-squares fit of value = largest - (code of the largest - code) * quantum.
   Quantiser ending_at_largest(const CodeSums& sums, std::uint32_t highest) const {
     const auto n = static_cast<double>(values_.size());
     const auto code = static_cast<double>(highest);
@@ -205,11 +206,11 @@ class Fitter {
     return from_mean(largest - code * slope, slope);
   }
 
-  // A value as a scaled deviation.
+  // Returns a value as a scaled deviation.
   double scaled(float value) const {
     return (static_cast<double>(value) - static_cast<double>(range_.mean)) * static_cast<double>(scale_);
   }
-  // Of levels in scaled deviations.
+  // Returns the quantiser for levels that are given as scaled deviations.
   Quantiser from_mean(double minimum, double quantum) const {
     return {static_cast<float>(static_cast<double>(range_.mean) + minimum * unscale_),
             static_cast<float>(quantum * unscale_), 0};
@@ -221,17 +222,17 @@ class Fitter {
   Deviations deviations_;  // scaled; as many as there are values
   float scale_;
   double unscale_;
-  double deviation_;  // sum of the deviations: what rounding the mean left
-  double squares_;    // sum of their squares
+  double deviation_;  // sum of the deviations, which is not 0 because the mean is rounded
+  double squares_;    // sum of the squared deviations
   unsigned bits_ = 0;
   std::uint32_t most_ = 0;  // 2^bits - 1
   double best_ = 0;         // squared error, scaled
   Quantiser quantiser_;
 };
 
-// Whether levels of half the bits may do better than these, for `values` that are quantised to `bits`. Such values lie
-// so near to those levels that hardly any of them has more than three codes of this width on it, but for a few values
-// that lie beside. At 16 bits a leaf has no codes enough to tell.
+// Returns whether levels of half the bits may fit better than `quantiser` does with `bits`. Values for which they do
+// lie so near to the levels of half the bits that hardly any of these levels has more than three codes of `bits` on it.
+// A code with only a few values does not count. At 16 bits a leaf has too few values to tell.
 bool may_fit_half(std::span<const float> values, const Quantiser& quantiser, unsigned bits,
                   const LeafRepeats& repeats) {
   if (bits == 16) return true;
@@ -242,7 +243,7 @@ bool may_fit_half(std::span<const float> values, const Quantiser& quantiser, uns
   std::array<std::uint16_t, kLeafVoxels> all;
   const std::span<std::uint16_t> codes = std::span(all).first(seen.size());
   quantise(seen, quantiser, codes);
-  // An eighth of what codes taken alike would have.
+  // An eighth of the values that each code would have if all codes were taken equally often.
   const auto few = static_cast<unsigned>((values.size() >> (bits + 3)) / repeats.times());
   return taken_codes(codes, bits, few) <= (bits == 8 ? 64 : bits == 4 ? 12 : 3);
 }
@@ -258,7 +259,7 @@ Quantiser range_quantiser(const ValueRange& range, unsigned bits) {
 
 Quantiser fit_quantiser(std::span<const float> values, const ValueRange& range, unsigned bits,
                         const LeafRepeats& repeats) {
-  // Levels of fewer bits are levels of more.
+  // Levels of fewer bits are also levels of more bits.
   if (!divisible(range, bits)) return bits == 1 ? one_level(range) : fit_quantiser(values, range, bits / 2, repeats);
   Fitter fitter(values, range, repeats);
   const auto fit = [&](unsigned width) {
@@ -267,7 +268,7 @@ Quantiser fit_quantiser(std::span<const float> values, const ValueRange& range, 
     if (width <= 2) fitter.start(0.45, 3);
     return fitter.found() ? fitter.quantiser() : one_level(range);
   };
-  std::array<Quantiser, 5> tried{fit(bits)};  // each at half the bits of the one before
+  std::array<Quantiser, 5> tried{fit(bits)};  // each with half the bits of the previous one
   std::size_t count = 1;
   for (unsigned width = bits; width > 1 && may_fit_half(values, tried[count - 1], width, repeats); width /= 2) {
     tried[count++] = fit(width / 2);

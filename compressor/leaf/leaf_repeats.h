@@ -1,4 +1,4 @@
-// Values of a leaf that are known to repeat each other, as those of coarse cells do on a finer grid.
+// Values of a leaf that are known to repeat each other, as values of coarse cells do on a finer grid.
 #pragma once
 
 #include <cstddef>
@@ -8,21 +8,21 @@
 
 namespace weir {
 
-/// What sums over the 512 values of a leaf, eight in a row and 64 in a plane, need not compute again. The sums
-/// themselves are the same, addition by addition.
+/// Says which terms a sum over the 512 values of a leaf (eight in a row, 64 in a plane) need not compute again. The sum
+/// itself stays the same, addition by addition.
 struct LeafRepeats {
-  /// Values that are the same: planes, rows of a plane, and, where that is known, values of a row. All are 1 where rows
-  /// are not.
+  /// The numbers of consecutive equal planes, equal rows of a plane and, if known, equal values of a row. All are 1 if
+  /// rows do not repeat.
   LeafGroups groups{};
 
-  /// Of values in the source's order, x fastest, that are the same in groups of `by` voxels.
+  /// Returns the repeats of values in the source's order, x fastest, that are equal in groups of `by` voxels.
   static LeafRepeats in_source_order(const Index3& by) { return of(by.z, by.y, 1); }
-  /// Of values in a leaf's order, z fastest.
+  /// Returns the repeats of values in a leaf's order, z fastest, that are equal in groups of `by` voxels.
   static LeafRepeats in_leaf_order(const Index3& by) { return of(by.x, by.y, by.z); }
 
-  /// Whether the second of each two rows is the first.
+  /// Returns whether the second row of each pair of rows equals the first.
   bool pairs_of_rows() const { return groups.middle > 1; }
-  /// Values of a group.
+  /// Returns the number of values in a group.
   std::size_t times() const { return groups.slow * groups.middle * groups.fast; }
 
  private:
@@ -32,12 +32,12 @@ struct LeafRepeats {
   }
 };
 
-/// Pairs of rows in a plane; the first row of pair k of a plane begins at its value kTwinStep * k.
+/// The number of pairs of rows in a plane. The first row of pair k begins at value kTwinStep * k of the plane.
 inline constexpr std::size_t kTwins = 4;
 inline constexpr std::size_t kTwinStep = 16;
 inline constexpr std::size_t kTwinPlane = kTwins * kTwinStep;
 
-/// The first of each group of the 512 values, and their number.
+/// Copies the first of each group of the 512 values to `distinct` and returns their number.
 template <typename Value>
 std::size_t take_distinct(const Value* values, const LeafGroups& groups, Value* distinct) {
   std::size_t count = 0;

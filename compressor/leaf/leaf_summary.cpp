@@ -14,7 +14,7 @@
 namespace weir {
 namespace {
 
-// Sums run in 16 lanes, two vectors of eight, whatever the machine: lane l takes values l, l + 16, ...
+// On every machine, sums run in 16 lanes as two vectors of eight: lane l takes values l, l + 16, ...
 constexpr std::size_t kSummaryLanes = 16;
 
 struct SummaryLanes {
@@ -30,7 +30,7 @@ LaneArray to_array(const SummaryLanes& lanes) {
   return all;
 }
 
-// Pairwise, so that the result does not depend on how the lanes were computed.
+// Sums the lanes pairwise, so that the result does not depend on how the lanes were computed.
 double sum(LaneArray lanes) {
   for (std::size_t width = kSummaryLanes / 2; width > 0; width /= 2) {
     for (std::size_t i = 0; i < width; ++i) lanes[i] += lanes[i + width];
@@ -40,7 +40,7 @@ double sum(LaneArray lanes) {
 
 struct Scan {
   std::uint32_t differ;      // bits in which any value differs from the first
-  std::uint32_t non_finite;  // of all values
+  std::uint32_t non_finite;  // number of values that are not finite
   std::uint32_t zeros;
 };
 
@@ -98,7 +98,7 @@ WEIR_SIMD Moments first_moments(const float* values, std::size_t count) {
   return {min, max, sum(lanes)};
 }
 
-// first_moments() of 512 values in equal pairs of rows: both halves of the lanes are the same.
+// Does what first_moments() does, for 512 values in equal pairs of rows. Both halves of the lanes are then the same.
 WEIR_SIMD Moments twin_moments(const float* values, std::size_t planes) {
   Floats8 low = values[0] - Floats8{};
   Floats8 high = low;
@@ -158,7 +158,7 @@ WEIR_SIMD Deviation deviations(const float* values, std::size_t count, float mea
   return {sum(total_lanes), sum(square_lanes)};
 }
 
-// deviations() of 512 values in equal pairs of rows.
+// Does what deviations() does, for 512 values in equal pairs of rows.
 WEIR_SIMD Deviation twin_deviations(const float* values, std::size_t planes, float mean) {
   const auto centre = static_cast<double>(mean);
   SummaryLanes total;
@@ -184,7 +184,7 @@ WEIR_SIMD Deviation twin_deviations(const float* values, std::size_t planes, flo
   return {sum(to_array(total)), sum(to_array(squares))};
 }
 
-// Values that equal `min` or `max`.
+// Returns the number of values that equal `min` or `max`.
 WEIR_SIMD std::uint32_t count_at_ends(const float* values, std::size_t count, float min, float max) {
   std::uint32_t at_ends = 0;
   for (std::size_t i = 0; i < count; ++i) at_ends += (values[i] == min ? 1U : 0U) | (values[i] == max ? 1U : 0U);
@@ -197,7 +197,7 @@ Digest uniform_digest(std::span<const float> values, UniformDigest& last) {
   return last.digest;
 }
 
-// Statistics of `count` >= 1 finite values that differ in the bits of `differ`.
+// Sets the statistics of `count` >= 1 finite values. `differ` has the bits in which any value differs from the first.
 void summarize_finite(const float* values, std::size_t count, std::uint32_t differ, const LeafRepeats& repeats,
                       LeafRow& row) {
   if (differ == 0) {
@@ -258,7 +258,7 @@ ValueRange leaf_range(std::span<const float> values, const LeafRepeats& repeats)
 
 namespace {
 
-// `values` that are all finite where `all`, each of `distinct` so many of them.
+// Does the work of summarize_widths(). `values` are finite; each of `distinct` stands for the same number of values.
 void find_widths(std::span<const float> values, bool all, std::span<const float> distinct, const LeafRepeats& repeats,
                  LeafRow& row) {
   if (row.uniform()) row.exact_bits = 1;

@@ -14,11 +14,11 @@
 namespace weir {
 namespace {
 
-// `distinct`: the values without those that repeat others.
+// Chooses the quantiser of a leaf. `distinct` are the values without repeats.
 Quantiser choose_quantiser(std::span<const float> values, std::span<const float> distinct, unsigned bits, Fit fit,
                            const LeafRepeats& repeats) {
   const ValueRange range = leaf_range(values, repeats);
-  // One value, which fl(0 * quantum) + min gives back for -0.0 too where the zero added has its sign.
+  // All values are equal. fl(0 * quantum) + min gives this value; for -0.0 the quantum must have the sign of the value.
   if (!(range.min < range.max)) return {values.front(), std::copysign(0.0F, values.front()), 0};
   if (const auto lattice = find_lattice(distinct, range.min, range.max);
       lattice && bits_for(lattice->largest) <= bits) {
@@ -67,12 +67,12 @@ void quantise_part(const LeafValues& values, const Box& node, const Box& inside,
   quantise(seen, leaf.quantiser, std::span(codes).first(count));
   count = 0;
   for_each_inside(node, inside, [&](std::size_t i) { leaf.codes[i] = codes[count++]; });
-  extend_outside(node, inside, leaf.codes);  // within bounds that the macrocells that reach into the leaf know
+  extend_outside(node, inside, leaf.codes);  // stays within the bounds in the macrocells that reach into the leaf
   decode(leaf.codes.data(), kLeafVoxels, leaf.quantiser, leaf.decoded.data());
 }
 
-// Error and exactness of a leaf of finite values; the squared error is no finite number where one is not. In the
-// lanes of difference_of().
+// Measures the error and the exactness of a leaf of finite values, in the same lanes as difference_of(). If a value is
+// not finite, the squared error becomes non-finite.
 WEIR_SIMD void measure_lanes(const float* source, const float* decoded, std::array<Doubles8, 2>& squares,
                              std::array<Doubles8, 2>& largest, std::uint32_t& differ, std::uint32_t& zeros_lost) {
   std::array<Doubles8, 2> sum{};
@@ -142,7 +142,7 @@ QuantisedLeaf quantise_leaf(const LeafValues& values, const LeafValues& source, 
   const LeafValues& seen = whole ? source : part;
   measure(seen, leaf);
   if (std::isfinite(leaf.squared_error)) return leaf;
-  // Some voxels hold no number: they are in no error, and must read the value that took their place.
+  // Some source voxels are not finite. They count in no error and must decode to the value that replaced them.
   const LeafDifference lost = difference_of(seen, leaf.decoded);
   leaf.squared_error = lost.squared_error;
   leaf.max_abs = lost.max_abs;

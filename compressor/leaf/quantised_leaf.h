@@ -1,5 +1,4 @@
-// One leaf, quantised: its codes, what a reader decodes from them, and the error
-// of that.
+// One quantised leaf: its codes, the values that they decode to, and the error of these values.
 #pragma once
 
 #include <array>
@@ -18,18 +17,18 @@ struct QuantisedLeaf {
   std::array<std::uint16_t, kLeafVoxels> codes{};  ///< in leaf order
   LeafValues decoded{};                            ///< fl(fl(code * quantum) + minimum)
   double squared_error = 0;                        ///< over the finite in-domain values of the source
-  double max_abs = 0;                              ///< the same
-  Kept kept = Kept::all;                           ///< of the in-domain voxels
-  std::uint32_t zeros_lost = 0;                    ///< in-domain values equal to 0 that decode to another
+  double max_abs = 0;                              ///< over the finite in-domain values of the source
+  Kept kept = Kept::all;                           ///< what is kept of the in-domain voxels
+  std::uint32_t zeros_lost = 0;                    ///< in-domain values equal to 0 that decode to another value
 };
 
-/// What a quantiser is to make least: the squared error, or the largest one.
+/// The error that a quantiser minimises: the squared error, or the largest error.
 enum class Fit { squares, largest };
 
-/// Quantises the in-domain voxels (`inside`) of the leaf at `node` to 1 << bits_log2 bits: exactly where they lie on
-/// a lattice that fits, else with least error (leaf_quantiser.h). `values` are finite there; `source` is
-/// what they were before non-finite ones were replaced. Voxels outside the domain take the code of the nearest
-/// one inside, so that they widen no range. `repeats`: of the values of a leaf that lies in the domain as a whole.
+/// Quantises the in-domain voxels (`inside`) of the leaf at `node` to 1 << bits_log2 bits: exactly if they lie on a
+/// lattice that fits, otherwise with the least error (leaf_quantiser.h). `values` are finite at these voxels. `source`
+/// holds the values before non-finite ones were replaced. Voxels outside the domain take the code of the nearest voxel
+/// inside, so that they widen no range. `repeats` describes the values of a leaf that lies wholly in the domain.
 QuantisedLeaf quantise_leaf(const LeafValues& values, const LeafValues& source, const Box& node, const Box& inside,
                             unsigned bits_log2, Fit fit = Fit::squares, const LeafRepeats& repeats = {});
 

@@ -8,13 +8,13 @@
 namespace weir {
 namespace {
 
-// Each code in turn: faster than a table for up to 16 of them, where one count after the other waits for its
-// increments.
+// Counts one code after the other. For up to 16 codes this is faster than a table, in which each increment waits for
+// the previous one.
 WEIR_SIMD unsigned count_in_turn(const std::uint16_t* codes, std::size_t count, unsigned end, unsigned few) {
   unsigned taken = 0;
   for (unsigned code = 0; code < end; ++code) {
     const auto wanted = static_cast<std::uint16_t>(code);
-    std::uint16_t found = 0;  // both as wide as the codes
+    std::uint16_t found = 0;  // `wanted` and `found` are as wide as the codes, for SIMD
     for (std::size_t i = 0; i < count; ++i) found = static_cast<std::uint16_t>(found + (codes[i] == wanted ? 1U : 0U));
     taken += found > few ? 1 : 0;
   }

@@ -1,4 +1,4 @@
-// How many codes the values of a leaf take.
+// Counts the codes that the values of a leaf take.
 #pragma once
 
 #include <cstdint>
@@ -6,7 +6,8 @@
 
 namespace weir {
 
-/// How many of the codes below 2^bits (1 to 8) more than `few` of `codes` are, of which there are at most 512.
+/// Returns how many of the codes below 2^bits occur more than `few` times in `codes`. `bits` is 1 to 8, and `codes` has
+/// at most 512 entries.
 unsigned taken_codes(std::span<const std::uint16_t> codes, unsigned bits, unsigned few);
 
 }  // namespace weir

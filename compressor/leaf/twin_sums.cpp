@@ -10,7 +10,7 @@
 namespace weir {
 namespace {
 
-// Of lanes that stand for two each, pairwise: those eight apart first, which are equal.
+// Sums 16 lanes pairwise. Each lane of `lanes` stands for two equal lanes, eight apart, which are added first.
 double sum_of_twins(const Floats8& lanes) {
   const Floats8 doubled = lanes + lanes;
   std::array<float, 8> all;

@@ -1,5 +1,5 @@
-// The sums of fitting a quantiser to 512 values in equal pairs of rows, each plane of them `planes` times
-// (LeafRepeats): the same, addition by addition, as over all values.
+// The sums for fitting a quantiser to 512 values in equal pairs of rows; each plane occurs `planes` times
+// (LeafRepeats). They are the same, addition by addition, as sums over all values.
 #pragma once
 
 #include <cstddef>
@@ -8,13 +8,14 @@
 
 namespace weir {
 
-/// Fills the deviations of the first rows of the first planes, and returns the sum of all their squares.
+/// Fills the deviations of the first row of each pair in the first plane of each group. Returns the sum of the squares
+/// of all 512 deviations.
 double twin_deviate(const float* values, std::size_t planes, float mean, float scale, float* deviations);
 
-/// All but the squares of the errors. `deviations` as twin_deviate leaves them.
+/// Returns all sums except CodeSums::squares. `deviations` are those that twin_deviate() fills.
 CodeSums twin_assign(const float* values, const float* deviations, std::size_t planes, const CodeLevels& levels);
 
-/// The squares of the scaled errors.
+/// Returns the sum of the squares of the scaled errors.
 double twin_measure(const float* values, std::size_t planes, const CodeLevels& levels, float scale);
 
 }  // namespace weir

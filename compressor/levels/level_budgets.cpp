@@ -15,7 +15,7 @@ namespace {
 // Decimals of a rate, rounded down.
 constexpr double kRateParts = 100;
 
-// What suits the levels that were added.
+// The budget that suits all levels that were added.
 struct SuitableBudget {
   std::uint64_t bytes = 0;
   double rate = std::numeric_limits<double>::infinity();
@@ -45,7 +45,7 @@ void check_level_budgets(std::span<const SeriesStep> steps, std::span<const std:
                          const std::function<std::unique_ptr<VolumeSource>(const SeriesStep&)>& open) {
   if (!options.budget.by_size() || steps[at].from_finest != 0) return;
   SuitableBudget suitable;
-  Message first;  // of the levels that have too little
+  Message first;  // error of the first level that has too little
   for (std::size_t i = at; i < steps.size() && (i == at || steps[i].from_finest.value_or(0) > 0); ++i) {
     const std::unique_ptr<VolumeSource> source = open(steps[i]);
     const Box domain = source->info().domain();

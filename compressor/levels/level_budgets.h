@@ -1,4 +1,4 @@
-// Whether the size that is asked for suits all levels of a file, before the first is converted.
+// Checks whether the asked size suits all levels of a file, before the first level is converted.
 #pragma once
 
 #include <cstddef>
@@ -13,9 +13,10 @@
 
 namespace weir {
 
-/// Where step `at` of `steps` is the first of the levels of a file (Levels::separate), each of which `open` opens:
-/// throws Error(budget) where a size or a rate gives one of them less than its smallest tree, with a budget that suits
-/// all of them. `outputs` are those of `steps`. Reads no values, whose NaN may make a tree larger.
+/// Checks the levels of a file (Levels::separate) if step `at` of `steps` is the file's first level. `open` opens a
+/// step; `outputs` are the outputs of `steps`. Throws Error(budget) that names a budget that suits all levels, if a
+/// size or a rate gives a level less than its smallest tree. Reads no values, so it does not know of NaN that make a
+/// tree larger.
 void check_level_budgets(std::span<const SeriesStep> steps, std::span<const std::string> outputs, std::size_t at,
                          const ConversionOptions& options,
                          const std::function<std::unique_ptr<VolumeSource>(const SeriesStep&)>& open);

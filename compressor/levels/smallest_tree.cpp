@@ -23,7 +23,7 @@ std::uint64_t bytes_of_required_leaf(const ConversionOptions& options) {
 // The voxels with a value of each leaf of a region, and what follows.
 struct RegionNeed {
   std::uint64_t valued = 0;
-  std::uint64_t leaves = 0;  // that are kept in any case
+  std::uint64_t leaves = 0;  // leaves that are always kept
 };
 
 RegionNeed need_of(const VolumeSource& source, const TreeRegions& tree, std::int64_t region, const Fill& fill) {
@@ -51,7 +51,7 @@ RegionNeed need_of(const VolumeSource& source, const TreeRegions& tree, std::int
 std::uint64_t smallest_tree(const VolumeSource& source, const ConversionOptions& options) {
   const Box domain = source.info().domain();
   if (options.encoding == Encoding::packed) {
-    const bool preview = options.preview == Preview::on;  // of which the corners' regions are a part
+    const bool preview = options.preview == Preview::on;  // a preview contains the corners' regions
     return fixed_bytes(domain, Encoding::packed, preview ? Preview::on : Preview::off, 0, preview ? 1 : 0);
   }
   const TreeRegions tree(domain);

@@ -1,4 +1,4 @@
-// What the smallest tree of a volume takes, as far as that is known without reading a value.
+// The bytes of a volume's smallest tree, as far as they are known without reading a value.
 #pragma once
 
 #include <cstdint>
@@ -8,12 +8,12 @@
 
 namespace weir {
 
-/// Bytes of the smallest file that Selection allows, where all values are finite and the encoding is not packed; others
-/// take that or more. Blocks some of whose voxels have no value (ValueMapping::gaps) are kept, and so are the first and
-/// the last one.
+/// Returns the bytes of the smallest file that Selection allows if all values are finite and the encoding is not
+/// packed. Other volumes take at least these bytes. Blocks in which only some voxels have no value (ValueMapping::gaps)
+/// are kept, and so are the first and the last block.
 std::uint64_t smallest_tree(const VolumeSource& source, const ConversionOptions& options);
 
-/// Bytes in which a packed file without a preview has room for all of its regions and a value for each block.
+/// Returns the bytes at which a packed file without a preview has room for all its regions and for one value per block.
 std::uint64_t room_for_packed(const Box& domain);
 
 }  // namespace weir

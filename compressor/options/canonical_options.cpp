@@ -61,7 +61,8 @@ void add_source(const SourceOptions& source, Texts& texts) {
   if (source.roi && source.roi != VolumeRegion{}) texts["roi"] = text_of(*source.roi);
 }
 
-// What becomes of voxels that hold no data: "auto" is what --nonfinite says, but that its "keep" is NaN.
+// Returns what becomes of voxels that hold no data: "auto" means the same as --nonfinite, except that its "keep" is
+// NaN.
 MissingPolicy meant_policy(const ConversionOptions& options) {
   if (options.missing != MissingPolicy::automatic) return options.missing;
   if (options.non_finite == NonFinitePolicy::error) return MissingPolicy::error;
@@ -98,7 +99,7 @@ Texts canonical_options(const Texts& options) {
   Texts texts;
   GivenOptions given;
   for (const auto& [key, text] : options) {
-    // What a scene says is compared by its digest, and the file may be gone.
+    // A scene is not read here: it is compared by its digest, and its file may be gone.
     const bool read = key != "scene" && (has_key(input_options(), key) || has_key(method_options(), key));
     if (read) {
       given[key] = text;

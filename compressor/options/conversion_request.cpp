@@ -16,7 +16,7 @@ const OptionRow* find_row(std::string_view key) {
   return nullptr;
 }
 
-/// Before the volume is read: none of this depends on its values.
+/// Checks the options of the encoding that do not depend on the volume's values, before the volume is read.
 void check_encoding(const ConversionOptions& options) {
   const Encoding encoding = options.encoding;
   if (encoding != Encoding::packed && options.backend == CoderChoice::cuda) {
@@ -38,7 +38,7 @@ void check_encoding(const ConversionOptions& options) {
   }
 }
 
-/// What no option can see of itself.
+/// Checks combinations of method options, which no option can check by itself.
 void check_method(const GivenOptions& given, const ConversionOptions& options) {
   const auto encoding = given.find("encoding");
   if (given.contains("preset") && encoding != given.end() && encoding->second != "float") {
@@ -65,7 +65,7 @@ void check_method(const GivenOptions& given, const ConversionOptions& options) {
   }
 }
 
-/// Levels have voxels of different sizes, each its own.
+/// Refuses options that describe one volume together with Levels::separate. Each level has its own voxel size.
 void check_levels(const GivenOptions& given, const SourceOptions& source) {
   if (source.levels != Levels::separate) return;
   for (const char* const key : {"upsample", "roi", "ghost", "spacing", "origin", "stack"}) {

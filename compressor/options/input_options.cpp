@@ -1,4 +1,4 @@
-// What an input does not say itself.
+// The table of options about the input that the input itself does not tell.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -90,7 +90,7 @@ void read_type(const OptionRow& row, const std::string& text, Request& request) 
   if (big_endian) request.source.big_endian = big_endian;
 }
 
-// After `type`, whose row comes first and which may have said it.
+// Reads the byte order. The row of `type` comes first, and `type` may already have given the order.
 void read_endian(const OptionRow& row, const std::string& text, Request& request) {
   const bool big = read_choice(row, text) == 1;
   if (request.source.big_endian.value_or(big) != big) {

@@ -1,4 +1,4 @@
-// Budget, method and policy of a conversion.
+// The table of options for budget, method and policy of a conversion.
 #include <array>
 #include <cmath>
 
@@ -16,7 +16,7 @@ void read_size(const OptionRow& row, const std::string& text, Request& request) 
   request.conversion.budget.bytes = *bytes;
 }
 
-/// A number from `least` to `most`; NaN is none.
+/// Reads a number from `least` to `most`. Refuses NaN.
 double read_number(const OptionRow& row, const std::string& text, double least, double most, std::string_view form) {
   const auto number = parse_double(text);
   if (!number || !(*number >= least && *number <= most)) throw wrong_option(row.key, text, std::string(form));

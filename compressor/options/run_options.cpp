@@ -1,4 +1,4 @@
-// How a conversion uses the machine, and what it keeps and replaces.
+// The table of options about how a conversion uses the machine, and which files it keeps and replaces.
 #include <array>
 
 #include "compressor/options/conversion_request.h"

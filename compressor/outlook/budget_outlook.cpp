@@ -32,11 +32,11 @@ struct Sample {
   };
   struct RegionPart {
     std::int64_t index;    // in the lattice of regions
-    std::int64_t sampled;  // blocks of it, whatever their values
+    std::int64_t sampled;  // sampled blocks of the region, with any values
   };
-  std::vector<Leaf> leaves;  // but for those of one value
+  std::vector<Leaf> leaves;  // without blocks of one value
   std::vector<RegionPart> regions;
-  std::int64_t count = 0;  // those too
+  std::int64_t count = 0;  // blocks, with those of one value
   std::int64_t left_out = 0;
   std::uint64_t voxels = 0;
   std::size_t rows = 0;
@@ -49,10 +49,10 @@ class RegionNumbers {
   RegionNumbers(const NodeLattice& leaves, std::vector<Sample::RegionPart>& regions)
       : leaves_(leaves), lattice_(make_lattice(leaves.domain, kLowerDim)), regions_(regions) {}
 
-  /// The number of the leaf's region, of which it is one more block.
+  /// Counts the leaf as a block of its region, and returns the region's number.
   std::size_t add(const Index3& leaf) {
     const std::int64_t index = lattice_.linear(floor_div(leaves_.first + leaf, kLowerLeaves) - lattice_.first);
-    if (regions_.empty() || regions_[last_].index != index) {  // else as the last one's
+    if (regions_.empty() || regions_[last_].index != index) {  // otherwise the region is the last leaf's
       const auto [found, is_new] = numbers_.try_emplace(index, regions_.size());
       if (is_new) regions_.push_back({index, 0});
       last_ = found->second;
@@ -106,7 +106,7 @@ SampledSteps::Part steps_of(std::span<const Sample::Leaf> leaves, const GainRule
     rows.ladders()->read(sampled.linear, std::span(&ladder, 1));
     MinMax reach;
     if (rule.visibility != nullptr) rows.reaches()->read(sampled.linear, std::span(&reach, 1));
-    // Alone in its region, its mean the value of blocks without a stream.
+    // The block is treated as alone in its region: its mean is the value of blocks without a stream.
     const SharedValues region{sampled.found.mean, range};
     LeafGain leaf;
     gains.clear();
@@ -184,7 +184,7 @@ BudgetOutlook judge(const FileRequest& request, const RowStore& rows) {
         steps.within_bytes(std::max(0.0, static_cast<double>(asked) - static_cast<double>(fixed)) * share);
     outlook.near = bought.near;
     outlook.window = bought.window;
-    // What blocks with values that are not finite take is not known.
+    // The bytes of blocks with values that are not finite are not known, so the window gets its full reach.
     if (outlook.window && sample.left_out > 0)
       outlook.window.emplace(outlook.window->centre(), outlook.window->width());
   }

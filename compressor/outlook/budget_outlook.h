@@ -1,5 +1,5 @@
-// What a budget will buy of a packed volume, as far as a sample of its blocks (compressor/packed/block_sample.h) tells:
-// which ladders are worth building for all of them, and whether the file can be long enough for a preview.
+// Predicts from a sample of blocks (compressor/packed/block_sample.h) what a budget will buy of a packed volume: which
+// ladders are worth building for all blocks, and whether the file can be long enough for a preview.
 #pragma once
 
 #include <optional>
@@ -12,16 +12,17 @@
 namespace weir {
 
 struct BudgetOutlook {
-  /// Which blocks the best file keeps some of by near rungs or as floats in order.
+  /// The kinds of blocks of which the best file keeps some by near rungs or as floats in order.
   NearBlocks near{};
-  /// Where the cut of the selection lies, about. None: unknown, or all can be bought, or a scene weighs.
+  /// The window in which the selection's cut nearly always lies. nullopt: unknown, all can be bought, or a scene
+  /// weighs.
   std::optional<KeyWindow> window{};
-  /// Of an error to be met: whether the file that does it is so short that it gets no preview unless one is asked for.
-  /// Only where that is clear: else its plan decides.
+  /// For an error budget: the file that meets it is clearly so short that it gets no preview unless one is asked for.
+  /// If false, the file's plan decides.
   bool short_of_preview = false;
 };
 
-/// What that decides.
+/// Returns the ladder state that `outlook` decides.
 inline LadderState decided_by(const BudgetOutlook& outlook) {
   LadderState state{true, outlook.near};
   if (outlook.window) {
@@ -33,13 +34,12 @@ inline LadderState decided_by(const BudgetOutlook& outlook) {
   return state;
 }
 
-/// Volumes of fewer blocks have all rungs built: looking ahead would take as long.
+/// Volumes of fewer blocks get all rungs, because looking ahead would take as long as building them.
 inline constexpr std::int64_t kLeastForecastBlocks = 16384;
 
-/// By the sampled blocks whose values are all finite; `rows` has their rows, and ladders with all rungs. Of the request
-/// it looks at the budget, the domain, the preview and what the scene weighs. Whatever else is known of the volume does
-/// not count, so that the outlook is the same before the survey and after it. The same on all ranks.
-/// Throws as File::read_at.
+/// Returns the outlook by the sampled blocks with only finite values. `rows` has their rows, and ladders with all
+/// rungs. Uses only the budget, the domain, the preview and the scene's weights of the request, so that the outlook is
+/// the same before and after the survey. The outlook is the same on all ranks. Throws as File::read_at() does.
 BudgetOutlook outlook_of(const FileRequest& request, const RowStore& rows);
 
 }  // namespace weir

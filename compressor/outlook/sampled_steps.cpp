@@ -72,7 +72,7 @@ std::optional<SampledCut> SampledSteps::within_error(double squared_error) const
     if (left <= squared_error) continue;
     BoughtBytes bought;
     for (std::size_t i = cut; i < end(); ++i) bought.add(bucket(i).bytes);
-    // The range of the values, which the error is a part of, is known too roughly for a narrower window.
+    // The error is given as a part of the values' range, which is known too roughly for a narrower window.
     return SampledCut{bought.near(), KeyWindow::about(key_of(cut), width_), bought.all, key_of(cut)};
   }
   return std::nullopt;
@@ -103,7 +103,8 @@ double SampledSteps::reach_at(std::size_t cut, double bytes) const {
   return std::clamp(kBeside * reach, kLeast, KeyWindow::kMostReach);
 }
 
-// By the differences of neighbours: each row stands for its own part of the volume.
+// Estimates the deviation by the differences of neighbouring rows, because each row stands for its own part of the
+// volume.
 double SampledSteps::deviation_at(std::size_t cut) const {
   if (rows_ < 2) return std::numeric_limits<double>::infinity();
   std::vector<double> bytes(rows_);

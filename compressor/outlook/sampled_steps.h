@@ -1,4 +1,5 @@
-// What is bought of the sampled blocks of a packed volume, and how far from there the cut of the whole may lie.
+// Predicts what a budget buys of the sampled blocks of a packed volume, and how far the cut of the whole volume may lie
+// from the sample's cut.
 #pragma once
 
 #include <cstddef>
@@ -12,31 +13,31 @@
 
 namespace weir {
 
-/// Bytes of streams, and of those that are near rungs or floats in order, of sparse blocks and of others.
+/// Bytes of all streams, and of the streams that are near rungs or floats in order, for sparse blocks and for others.
 struct BoughtBytes {
   double all = 0;
   double near_sparse = 0;
   double near_other = 0;
 
   void add(const BoughtBytes& bytes);
-  /// Which blocks' near rungs are worth the time to look at them.
+  /// Returns the kinds of blocks with near rungs that are worth the time to look at them.
   NearBlocks near() const;
 };
 
 /// What a budget buys of a sample.
 struct SampledCut {
-  NearBlocks near{};                  ///< whose near rungs are worth the time to look at them
-  std::optional<KeyWindow> window{};  ///< that the cut of the volume lies in; none where all is bought
-  double bytes = 0;                   ///< of what is bought
-  double least_key = 0;               ///< that it has, about
+  NearBlocks near{};                  ///< the kinds of blocks with near rungs that are worth the time to look at them
+  std::optional<KeyWindow> window{};  ///< in which the volume's cut lies; nullopt if all is bought
+  double bytes = 0;                   ///< of all purchases
+  double least_key = 0;               ///< the least key of a purchase, approximately
 };
 
 /// A sampled block.
 struct SampledBlock {
-  std::size_t row;     ///< of the sample
-  std::size_t region;  ///< of those that were sampled
+  std::size_t row;     ///< row of the sample
+  std::size_t region;  ///< number among the sampled regions
   bool sparse;
-  bool ordered;  ///< its exact kind is that of floats in order
+  bool ordered;  ///< its exact kind is ExactKind::ordered
 };
 
 /// The steps of some blocks, counted by their keys.
@@ -61,16 +62,16 @@ class SampledSteps {
     std::vector<Step> steps_;
   };
 
-  /// Of a sample of so many rows of blocks, whose values lie in a range of that width. What is found does not depend on
-  /// the threads as long as the parts do not.
+  /// Takes the steps of a sample of `rows` rows of blocks with values in a range of `width`. Results do not depend on
+  /// the threads as long as `parts` does not.
   SampledSteps(float width, std::size_t rows, std::vector<Part> parts);
 
-  /// Of what is bought for so many bytes.
+  /// Returns the cut if purchases of `bytes` are made.
   SampledCut within_bytes(double bytes) const;
-  /// Of what must be bought so that no more than that error is left; nullopt where nothing must.
+  /// Returns the cut if at most `squared_error` may be left; nullopt if nothing needs to be bought.
   std::optional<SampledCut> within_error(double squared_error) const;
 
-  /// Calls visit(region, gain, bytes) for each step of `key`, which is a cut's, or a higher one.
+  /// Calls visit(region, gain, bytes) for each step with a key of at least `key`, the key of a cut.
   template <typename Visit>
   void for_each_from(double key, const Visit& visit) const {
     const std::size_t cut = bucket_of(key);
@@ -90,9 +91,9 @@ class SampledSteps {
 
   static std::size_t bucket_of(double key);
   static double key_of(std::size_t bucket);
-  // By which factor the cut of the volume may differ from the key of bucket `cut`, at which so many bytes are bought.
+  // Returns the factor by which the volume's cut may differ from the key of bucket `cut`, at which `bytes` are bought.
   double reach_at(std::size_t cut, double bytes) const;
-  // Standard deviation of the bytes bought there, among samples of this many rows.
+  // Returns the standard deviation of the bytes bought at bucket `cut`, among samples of as many rows.
   double deviation_at(std::size_t cut) const;
   std::size_t end() const { return first_ + buckets_.size(); }
   const Bucket& bucket(std::size_t i) const { return buckets_[i - first_]; }

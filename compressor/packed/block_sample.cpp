@@ -9,13 +9,15 @@ BlockSample::BlockSample(const NodeLattice& leaves) : count_(leaves.count) {
   constexpr std::int64_t kPart = 64;  // one block in so many
   constexpr std::int64_t kLeast = 1024;
   constexpr std::int64_t kMost = 8192;
-  constexpr std::int64_t kLongestRow = 64;  // longer ones are fewer, and tell less of sparse volumes
+  constexpr std::int64_t kLongestRow =
+      64;  // blocks; a sample of longer rows has fewer rows and tells less about sparse volumes
   rows_along_x_ = (count_.x + kLongestRow - 1) / kLongestRow;
   row_length_ = ceil_div(count_.x, rows_along_x_);
   const std::int64_t all = rows_along_x_ * count_.y * count_.z;
   const std::int64_t blocks = std::clamp(leaves.size() / kPart, kLeast, kMost);
   const std::int64_t wanted = std::min(all, ceil_div(blocks, row_length_));
-  // One row in each of as many equal parts of their order, at places that do not repeat along y.
+  // The order of rows is divided into `wanted` equal parts. One row of each part is sampled, at places that do not
+  // repeat along y.
   constexpr std::uint64_t kGolden = 0x9E3779B97F4A7C15U;
   for (std::int64_t part = 0; part < wanted; ++part) {
     const std::int64_t begin = part * all / wanted;

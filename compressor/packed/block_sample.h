@@ -1,5 +1,5 @@
-// Which blocks of a volume are looked at first, or more closely: enough to tell what a budget will buy. Rows of blocks
-// along x, which a file is read by, spread evenly over the volume.
+// The sample of blocks that is looked at first, or more closely, to tell what a budget will buy. The sample consists of
+// rows of blocks along x, as files are read, spread evenly over the volume.
 #pragma once
 
 #include <cstdint>
@@ -11,12 +11,12 @@ namespace weir {
 
 class BlockSample {
  public:
-  /// Of a volume with those leaves: one block in 64 or so, but a thousand at least and some eight thousand at most.
+  /// Samples a volume with these `leaves`: about one block in 64, at least about 1,000 and at most about 8,000 blocks.
   explicit BlockSample(const NodeLattice& leaves);
 
-  /// Whether the block at that position of the lattice is one of them.
+  /// Returns whether the sample has the block at lattice position `leaf`.
   bool has(const Index3& leaf) const;
-  /// All of them, as rows of lattice positions in the lattice's order, no two of which have a block in common.
+  /// Returns the sampled blocks as disjoint rows of lattice positions, in the lattice's order.
   std::vector<Box> rows() const;
   std::int64_t size() const;
 
@@ -24,7 +24,7 @@ class BlockSample {
   Box row_at(std::int64_t place) const;
 
   Index3 count_;                      // blocks along each axis
-  std::int64_t row_length_;           // blocks, the last along x excepted
+  std::int64_t row_length_;           // blocks of a row; the last row along x may be shorter
   std::int64_t rows_along_x_;         // in one line of blocks
   std::vector<std::int64_t> places_;  // of rows among all of them, x fastest; rising
 };

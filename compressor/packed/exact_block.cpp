@@ -22,7 +22,7 @@ BlockConstants constants_of(const std::optional<Lattice>& lattice) {
   return constants;
 }
 
-// The least and the largest value of a block; none where one is not finite.
+// The least and the largest value of a block; none if a value is not finite.
 struct FiniteRange {
   float low;
   float high;
@@ -33,7 +33,7 @@ WEIR_SIMD FiniteRange finite_range(const float* values) {
   Floats8 low;
   std::memcpy(&low, values, sizeof low);
   Floats8 high = low;
-  Floats8 differences{};  // of each value and itself: not 0 where it is not finite
+  Floats8 differences{};  // each value minus itself: not 0 if the value is not finite
   for (unsigned i = 0; i < kLeafVoxels; i += 8) {
     Floats8 v;
     std::memcpy(&v, values + i, sizeof v);
@@ -66,7 +66,7 @@ std::uint32_t ExactBlock::write(const LeafValues& block, const std::optional<Lat
                                 std::span<std::byte> out, FloatOrder order) const {
   if (lattice) return encode_exact(coder_, constants_of(lattice), std::nullopt, block, out, order);
   const std::optional<Lattice> own = own_lattice(block);
-  // On a coarser lattice of its own a block has smaller codes.
+  // A block has smaller codes on a coarser lattice of its own.
   const bool whole = own && own->quantum == kWholeNumbers.quantum;
   return encode_exact(coder_, constants_of(whole ? std::optional(kWholeNumbers) : std::nullopt), own, block, out,
                       order);
@@ -75,7 +75,7 @@ std::uint32_t ExactBlock::write(const LeafValues& block, const std::optional<Lat
 std::uint32_t ExactBlock::write_bounded(const LeafValues& block, double max_error, std::span<std::byte> out) const {
   const auto [low, high] = std::minmax_element(block.begin(), block.end());
   const float minimum = *low;
-  // Half a quantum, and what the two roundings of the decoder add.
+  // The error is half a quantum plus the two roundings of the decoder.
   const double magnitude = static_cast<double>(std::max(std::fabs(*low), std::fabs(*high)));
   const double allowed = max_error - magnitude * 0x1p-22;
   if (!(allowed > 0)) return 0;

@@ -1,5 +1,5 @@
-// A block's exact stream, and one that is exact of values rounded to within an error: the same bytes in the survey,
-// which counts them, and in the encode pass, which writes them.
+// Writes a block's exact stream, or the exact stream of its values rounded to within an error. The survey, which counts
+// the bytes, and the encode pass, which writes them, get the same bytes.
 #pragma once
 
 #include <cstddef>
@@ -14,20 +14,20 @@
 
 namespace weir {
 
-/// The file's lattice where the source's type says of none: whole numbers that are neither -0 nor 2^23 or more away
-/// from 0. Floats often are such numbers.
+/// The file's lattice if the source's type implies none: whole numbers except -0 and numbers of magnitude 2^23 or more.
+/// Floats are often such numbers.
 inline constexpr Lattice kWholeNumbers{-0x1p23F, 1.0F, kMostLatticeBits};
 
-/// One per thread.
+/// Use one object per thread.
 class ExactBlock {
  public:
-  /// Writes the shortest stream that gives every bit of `block` back; `lattice` is what the source's type says that all
-  /// values lie on. Returns its bytes.
+  /// Writes the shortest stream that gives every bit of `block` back, and returns its bytes. `lattice` is the lattice
+  /// on which all values lie by the source's type.
   std::uint32_t write(const LeafValues& block, const std::optional<Lattice>& lattice, std::span<std::byte> out,
                       FloatOrder order = FloatOrder::used) const;
 
-  /// The same for finite values rounded so that each is within `max_error` of its own. 0 where no lattice of 24 bits
-  /// does that.
+  /// Does the same for finite values, each rounded to within `max_error` of itself. Returns 0 if no lattice of 24 bits
+  /// is fine enough.
   std::uint32_t write_bounded(const LeafValues& block, double max_error, std::span<std::byte> out) const;
 
  private:

@@ -71,7 +71,7 @@ PackedLadder LadderBuilder::build_non_finite(LeafValues& block, const LeafRow& r
   PackedLadder raw;
   raw.exact_bytes = kRawStreamBytes;
   if (aim_.keeps_non_finite) return have_same_bits(block) ? uniform() : raw;
-  if (row.finite == 0) return uniform();  // all become the background
+  if (row.finite == 0) return uniform();  // all values become the background
   if (!aim_.background) return raw;
   for (float& v : block) {
     if (!std::isfinite(v)) v = *aim_.background;
@@ -89,8 +89,9 @@ PackedLadder LadderBuilder::build(const LeafValues& block, const LeafRow& row, N
     build_bounded(block, *aim_.max_error, ladder);
     return ladder;
   }
-  // What a budget can buy is seldom exact: floats on no lattice are looked at that closely where it may be, or where
-  // most are zero, of which whole numbers in the floats' order take fewer bytes than rungs that round.
+  // A budget seldom buys exact blocks. So floats on no lattice are tried in their order only if the block may be kept
+  // exactly, or if most values are zero: whole numbers in the floats' order then take fewer bytes than rungs that
+  // round.
   const bool may_be_exact = aim_.lossless || (near == NearRungs::yes && !aim_.window);
   set_exact(block, may_be_exact ? FloatOrder::used : FloatOrder::unused, ladder);
   if (aim_.lossless) return ladder;
@@ -145,7 +146,7 @@ std::optional<PackedLadder> LadderBuilder::build_from(const SurveyedBlock& found
     if (!known || found.near[at].bytes == kNoNearBytes) return std::nullopt;
     return RoundedBlock::Cost{found.near[at].bytes, found.near[at].squared_error};
   };
-  // As build() does it.
+  // The same condition as in build().
   const bool may_be_exact = nearly && !aim_.window;
   if (may_be_exact) set_ordered();
   bool more = true;

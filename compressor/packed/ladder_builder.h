@@ -1,4 +1,4 @@
-// Surveys the ladder of one block after the other. One builder per thread.
+// Builds the ladder of one block after the other in the survey. Use one builder per thread.
 #pragma once
 
 #include <cstddef>
@@ -22,27 +22,27 @@
 
 namespace weir {
 
-/// Whether a ladder has near rungs, and its exact kind predicts floats.
+/// Whether a ladder has near rungs and its exact kind predicts floats.
 enum class NearRungs { no, yes };
 
 inline bool is_sparse(const LeafRow& row) { return 2U * row.zeros > row.finite; }
 
-/// What ladders are built for.
+/// The aim for which ladders are built.
 struct LadderAim {
   bool lossless = false;             ///< exact kinds alone
   bool keeps_non_finite = false;     ///< NaN and infinities stay
-  std::optional<float> background;   ///< what else they become, where that is known
+  std::optional<float> background;   ///< the value that replaces non-finite values, if it is known
   std::optional<double> max_error;   ///< for each block the shortest stream whose values are all within it
   std::optional<Lattice> lattice{};  ///< of the whole volume
   bool near_rungs = false;           ///< a budget of bytes, or of an error, may buy them
-  NearBlocks near{};                 ///< those that it is known to buy them for; before, a sample alone has them
-  /// Where the cut is known to lie: the rungs that it cannot choose are left out.
+  NearBlocks near{};  ///< blocks for which it is known to buy them; until then only sampled blocks have them
+  /// The window in which the cut is known to lie. Rungs that the cut cannot choose are left out.
   std::optional<KeyWindow> window{};
-  BlockCoder* coder = nullptr;  ///< looks at the rungs of many blocks at a time, where there is one
+  BlockCoder* coder = nullptr;  ///< if not null, looks at the rungs of many blocks at a time
 
-  /// Who looks at rungs in the survey.
+  /// Returns the coder that looks at rungs in the survey; null if the builder does.
   BlockCoder* surveying_coder() const { return has_rungs() && !lattice ? coder : nullptr; }
-  /// Which rungs it looks at.
+  /// Returns the rungs at which surveying_coder() looks.
   RungAsk rung_ask() const {
     RungAsk ask;
     if (window) {
@@ -52,39 +52,40 @@ struct LadderAim {
     return ask;
   }
 
-  /// Which ladder a block gets in the survey.
+  /// Returns whether a block gets near rungs in the survey.
   NearRungs near_for(const LeafRow& row, bool sampled) const {
     const bool bought = near == NearBlocks::all || (near == NearBlocks::sparse && is_sparse(row));
     return near_rungs && (bought || sampled) ? NearRungs::yes : NearRungs::no;
   }
-  /// Whether ladders lead from few bytes to many, and a budget chooses.
+  /// Returns whether ladders have rungs from few bytes to many, among which a budget chooses.
   bool has_rungs() const { return !lossless && !max_error; }
 };
 
-/// The lattice that all values of a source lie on, where its type says so.
+/// Returns the lattice on which all values of a source lie by its type; nullopt if its type implies none.
 std::optional<Lattice> lattice_of(const SourceInfo& source);
 
 class LadderBuilder {
  public:
   explicit LadderBuilder(const LadderAim& aim) : aim_(aim) {}
 
-  /// Of a block all of whose in-domain values are finite and not all the same: `block` are its 512 values, `row` what
-  /// the survey knows of them.
+  /// Builds the ladder of a block with finite in-domain values that are not all the same. `block` has its 512 values,
+  /// `row` the survey's figures of them.
   PackedLadder build(const LeafValues& block, const LeafRow& row, NearRungs near);
-  /// The same of what a coder has found of the block. Nullopt where that is not enough.
+  /// Builds the same ladder from a coder's findings about the block. Returns nullopt if they are not enough.
   std::optional<PackedLadder> build_from(const SurveyedBlock& found, const LeafRow& row, NearRungs near) const;
-  /// Of one whose in-domain values have the same bits.
+  /// Returns the ladder of a block whose in-domain values all have the same bits.
   static PackedLadder uniform();
-  /// Of one with values that are not finite. Where these become a background that is not known yet, its ladder is to
-  /// be built once more (compressor/survey/ladder_completion.h).
+  /// Builds the ladder of a block with values that are not finite. If they become a background that is not known yet,
+  /// the ladder must be built again later (compressor/survey/ladder_completion.h).
   PackedLadder build_non_finite(LeafValues& block, const LeafRow& row, NearRungs near);
 
  private:
-  // Whether the background is a part of the block. Its error does not count then: that of the whole is a bound.
+  // Whether the background fills a part of the block. The error of that part does not count, so the error of the whole
+  // block is a bound.
   enum class Filled { no, yes };
   PackedLadder build(const LeafValues& block, const LeafRow& row, NearRungs near, Filled filled);
-  // Adds rungs of both kinds: all, or those that the window may choose. Returns whether a cut may choose what is finer
-  // than those it adds.
+  // Adds rungs of both kinds: all, or only those that the window may choose. Returns whether a cut may choose a finer
+  // way than the added rungs.
   template <class CostOf, class NearCostOf>
   bool add_rungs(const LeafRow& row, TransformRungs<CostOf> rungs, NearRungBuilder<NearCostOf> near,
                  PackedLadder& ladder) const;

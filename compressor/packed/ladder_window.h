@@ -1,6 +1,6 @@
-// Which rungs of a ladder a budget can choose among, once it is known about where its cut lies. The survey then builds
-// three to five of some twenty. What is chosen is the same: at a cut within the window, the best of all rungs is among
-// them, as long as each further byte of a block saves less error than the one before.
+// The rungs of a ladder that a budget can choose, once the place of its cut is roughly known. The survey then builds
+// three to five rungs of some twenty. The choice stays the same: for a cut within the window, the best of all rungs is
+// among the built ones, as long as each further byte of a block saves less error than the byte before.
 #pragma once
 
 #include <algorithm>
@@ -17,17 +17,17 @@
 
 namespace weir {
 
-/// Keys between which the cut of a selection lies: squared error saved per byte.
+/// A range of keys (squared error saved per byte) in which the cut of a selection lies.
 class KeyWindow {
  public:
-  /// A sample of the blocks tells the cut within that factor, nearly always.
+  /// A sample of the blocks nearly always tells the cut within this factor.
   static constexpr double kMostReach = 2.5;
 
-  /// From `centre`, a normal number, > 0, divided by `reach`, > 1, to `centre` times that. Values of the volume lie in
-  /// a range of about `width`.
+  /// The window from `centre` / `reach` to `centre` * `reach`. `centre` is a normal number > 0, `reach` is > 1. The
+  /// volume's values lie in a range of about `width`.
   KeyWindow(double centre, float width, double reach = kMostReach)
       : centre_(centre), reach_(reach), width_(width), step_(coarsest_step_within(quantum())) {}
-  /// About a key; none about one so small that nothing is left to save.
+  /// Returns a window about `key`; nullopt if the key is so small that no error is left to save.
   static std::optional<KeyWindow> about(double key, float width, double reach = kMostReach) {
     return key >= std::numeric_limits<double>::min() ? std::optional(KeyWindow(key, width, reach)) : std::nullopt;
   }
@@ -38,20 +38,20 @@ class KeyWindow {
   double low() const { return centre_ / reach_; }
   double high() const { return centre_ * reach_; }
   bool holds(double key) const { return key >= low() && key <= high(); }
-  /// Of a quantiser whose uniform error falls by that much per byte: at size^2 / 12 a value, halving the step takes a
-  /// bit a value, and saves size^2 / 2 a byte.
+  /// Returns the step size of a quantiser for which a byte saves an error of centre(). The uniform error is size^2 / 12
+  /// a value; halving the step takes a bit a value and saves size^2 / 2 a byte.
   double quantum() const { return std::sqrt(2 * centre_); }
-  /// The coarsest step whose size is at most that, or the finest.
+  /// Returns the coarsest step with a size of at most quantum(), or the finest step.
   std::int32_t step() const { return step_; }
-  /// The exponent of the quantum.
+  /// Returns the exponent of quantum().
   int exponent() const { return exponent_; }
-  /// Whether means have codes at the steps that the cut may choose, in each region: a ladder's rungs without one are of
-  /// no use.
+  /// Returns whether means have codes in each region at the steps that the cut may choose. A rung without a code for
+  /// its mean is useless.
   bool means_have_codes() const {
     constexpr std::int32_t kOctave = 2;
     return step_ + kOctave <= kMostStep && mean_bits({0, width_}, step_ + kOctave) != kNoMeanBits;
   }
-  /// For a coder.
+  /// Returns the window in the form that a coder takes.
   SearchKeys keys() const { return {low(), high(), means_have_codes()}; }
 
  private:
@@ -62,7 +62,7 @@ class KeyWindow {
   int exponent_ = std::ilogb(quantum());
 };
 
-/// Rungs [first, end), which are next to each other; none where first == end.
+/// The adjacent rungs [first, end); none if first == end.
 struct RungRange {
   std::size_t first = 0;
   std::size_t end = 0;
@@ -70,9 +70,10 @@ struct RungRange {
   bool has(std::size_t rung) const { return rung >= first && rung < end; }
 };
 
-/// Of rungs [first, end), from coarse to fine, those that the window may choose; `start` is about in its middle, and
-/// `energy` what a block without a rung loses. at(rung) is its point, or nullopt where there is none; it is asked only
-/// for rungs that it takes to tell. The answer is the same whether further rungs have points or not.
+/// Returns the rungs of [first, end), from coarse to fine, that the window may choose. `start` is roughly in the middle
+/// of the result. `energy` is the error of a block without a rung. at(rung) returns the rung's point, or nullopt if
+/// there is none; it is called only for rungs that decide the result. The result does not depend on whether further
+/// rungs have points.
 template <typename At>
 RungRange rungs_within(const KeyWindow& window, double energy, std::size_t start, std::size_t first, std::size_t end,
                        const At& at) {
@@ -81,8 +82,8 @@ RungRange rungs_within(const KeyWindow& window, double energy, std::size_t start
   std::optional<RungPoint> point = at(coarse);
   while (!point && coarse > first) point = at(--coarse);
   if (!point) return {first, first, true};
-  // Costs are in whole bytes: a rung ends the search only where it costs a byte more, at the window's key, than the
-  // best one so far.
+  // Costs are in whole bytes: a rung ends the search only if, at the window's key, it costs a byte more than the best
+  // rung so far.
   const auto cost = [&](const RungPoint& rung, double key) { return energy * rung.share + key * rung.bytes; };
   const double low = window.low();
   const double high = window.high();
@@ -110,12 +111,12 @@ RungRange rungs_within(const KeyWindow& window, double energy, std::size_t start
   return {coarse, fine + 1, more};
 }
 
-/// Of a ladder's rungs, those of a window; the mean alone, at rungs 0 and 1, is always kept. The ladder may have been
-/// built with that window, or without one.
+/// The rungs of a ladder that a window may choose. The mean alone, at rungs 0 and 1, is always kept. The ladder may
+/// have been built with this window, or without a window.
 struct LadderRange {
   RungRange rungs;
   RungRange near;
-  bool more = true;  ///< a finer way to keep the block than any of these may be chosen, too
+  bool more = true;  ///< a way to keep the block that is finer than all these rungs may be chosen, too
 };
 LadderRange range_within(const KeyWindow& window, const PackedLadder& ladder, const LeafRow& row);
 
@@ -127,7 +128,7 @@ struct RungSearch {
   std::size_t end;
   const At& at;
 
-  /// The point that the search begins at; nullopt where there is none.
+  /// Returns the point at which the search begins; nullopt if there is none.
   std::optional<RungPoint> point() const {
     if (first >= end) return std::nullopt;
     return at(std::min(std::max(start, first), end - 1));
@@ -137,8 +138,8 @@ struct RungSearch {
 template <typename At>
 RungSearch(std::size_t, std::size_t, std::size_t, const At&) -> RungSearch<At>;
 
-/// Whether, at every key of the window, `ahead` is so much the better buy than `behind` that the rungs next to `behind`
-/// are not chosen, either: they are at most about a bit a value better than the one that a search begins at.
+/// Returns whether, at every key of the window, `ahead` is so much the better buy than `behind` that no rung next to
+/// `behind` is chosen. These rungs are at most about a bit a value better than the rung at which a search begins.
 inline bool is_far_ahead(const KeyWindow& window, double energy, const RungPoint& ahead, const RungPoint& behind) {
   constexpr double kBitAValue = kLeafVoxels / 8.0;  // bytes of a block
   const auto leads = [&](double key) {
@@ -147,8 +148,8 @@ inline bool is_far_ahead(const KeyWindow& window, double energy, const RungPoint
   return leads(window.low()) && leads(window.high());
 }
 
-/// Rungs of the transform and near ones that the window may choose. Where the point at which the search of one kind
-/// begins is far ahead of the other's, the other kind has none.
+/// Returns the transform rungs and the near rungs that the window may choose. If the search of one kind begins at a
+/// point far ahead of the other kind's, the other kind has no rungs.
 template <typename At, typename NearAt>
 LadderRange ranges_within(const KeyWindow& window, double energy, const RungSearch<At>& rungs,
                           const RungSearch<NearAt>& near) {
@@ -159,14 +160,14 @@ LadderRange ranges_within(const KeyWindow& window, double energy, const RungSear
   const std::optional<RungPoint> near_point = near.point();
   const bool compares = point && near_point && window.means_have_codes();
   if (compares && is_far_ahead(window, energy, *point, *near_point)) {
-    return {range_of(rungs), near.none(), false};  // what is finer than near rungs is behind, too
+    return {range_of(rungs), near.none(), false};  // a way finer than near rungs is behind, too
   }
   const bool near_alone = compares && is_far_ahead(window, energy, *near_point, *point);
   const RungRange range = range_of(near);
   return {near_alone ? rungs.none() : range_of(rungs), range, range.more};
 }
 
-/// Where the search of rungs_within() begins.
+/// Return the rung at which the search of rungs_within() begins.
 std::size_t start_rung(const KeyWindow& window, const PackedLadder& ladder);
 std::size_t start_near_rung(const KeyWindow& window, const PackedLadder& ladder);
 

@@ -1,5 +1,5 @@
-// What the survey keeps of a block that may be packed: for some steps of the quantiser what its stream takes and what
-// error it leaves, so that selection can choose among them. One fixed-size record a block, spilled to disk.
+// The ladder of a block that may be packed: for some steps of the quantiser, the bytes of the block's stream and the
+// error that it leaves, so that selection can choose among them. The survey spills one fixed-size record per block.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ namespace weir {
 class ErrorShare {
  public:
   ErrorShare() = default;
-  /// Of 0 to 1.
+  /// `share` is from 0 to 1.
   explicit ErrorShare(double share);
   double value() const {
     if (code_ == kNone) return 0;
@@ -34,36 +34,37 @@ class ErrorShare {
   std::uint16_t code_ = kNone;  // e << 10 | m
 };
 
-/// What a way to keep a block takes and leaves.
+/// The bytes that a way to keep a block takes, and the error that it leaves.
 struct RungPoint {
   double bytes = 0;
   double share = 0;  ///< of the block's energy
 };
 
 struct PackedRung {
-  std::uint16_t bits = 0;  ///< of the stream but for the code of its mean; 0: not built, or no better than exact
+  std::uint16_t bits = 0;  ///< of the stream without its mean's code; 0: not built, or no better than exact
   ErrorShare error;        ///< of the block's energy
 };
 
-/// Most bits of a mean where every voxel must be within an error: the product of its code and quantum rounds to within
-/// a 16th of a quantum.
+/// The most bits of a mean's code if every voxel must be within an error. The product of code and quantum then rounds
+/// to within a 16th of a quantum.
 inline constexpr unsigned kMostBoundedMeanBits = 20;
 
-/// Levels of a block in LeafChoices: 0 no stream, 1 to 22 the rungs of its ladder, from kFirstNearLevel on those that
-/// are nearly lossless, kExactLevel its exact kind.
+/// Levels of a block in LeafChoices: 0 no stream, 1 to 22 the rungs of its ladder, from kFirstNearLevel on its near
+/// rungs (nearly lossless), kExactLevel its exact kind.
 inline constexpr std::uint8_t kFirstNearLevel = 23;
 inline constexpr std::uint8_t kExactLevel = 63;
 
-/// Values rounded to multiples of a power of two: where a transform's error ends at what float32 resolves.
+/// A rung with values rounded to multiples of a power of two. It is for errors so small that float32's resolution
+/// limits the transform.
 struct NearRung {
   std::uint16_t bytes = 0;  ///< of the stream; 0: not built, or no better than exact
   ErrorShare error;         ///< of the block's energy
 };
 
-/// What a ladder's last way to keep a block gives back.
+/// The precision of a ladder's last way to keep a block.
 enum class ExactKind : std::uint8_t {
   values,   ///< every bit: raw values, one value, or codes of a lattice
-  ordered,  ///< every bit: floats predicted in their own order, which the survey tries where there are near rungs
+  ordered,  ///< every bit: floats predicted in their own order, tried in the survey if there are near rungs
   bounded,  ///< values rounded to within --max-error
 };
 
@@ -76,12 +77,12 @@ struct PackedLadder {
   std::uint8_t count = 0;       ///< rungs, from coarse to fine, up to the last one that is built
   ExactKind exact{};
   std::uint16_t exact_bytes = 0;  ///< of the stream of the exact kind
-  std::int8_t near_exponent = 0;  ///< of the coarsest near rung's quantum; each further one's is half of that
+  std::int8_t near_exponent = 0;  ///< of the coarsest near rung's quantum; each further quantum is half the last
   std::uint8_t near_count = 0;    ///< near rungs up to the last one that is built
   std::array<PackedRung, kMostRungs> rungs{};
   std::array<NearRung, kMostNear> near{};  ///< from coarse to fine
 
-  /// Of a rung or a near rung but for the code of its mean; nullopt where it is not built.
+  /// Return the point of a rung (without its mean's code) or of a near rung; nullopt if it is not built.
   std::optional<RungPoint> point(std::size_t rung) const {
     if (rungs[rung].bits == 0) return std::nullopt;
     return RungPoint{rungs[rung].bits / 8.0, rungs[rung].error.value()};
@@ -91,7 +92,7 @@ struct PackedLadder {
     return RungPoint{static_cast<double>(near[rung].bytes), near[rung].error.value()};
   }
 
-  /// Step number of a rung.
+  /// Returns the step number of a rung.
   std::int32_t step(std::size_t rung) const { return rung_step(first_step, static_cast<std::int32_t>(rung)); }
 };
 static_assert(sizeof(PackedLadder) == 144, "ladders are spilled as they are");

@@ -1,5 +1,5 @@
-// The rungs of one block's ladder, each built when it is first asked for. Their costs come from the block itself, or
-// from what a coder has found of it.
+// Builders for the rungs of one block's ladder. Each rung is built when it is first asked for. The costs come from the
+// block itself, or from a coder's findings about the block.
 #pragma once
 
 #include <algorithm>
@@ -18,28 +18,29 @@
 
 namespace weir {
 
-/// Rungs of the transform, with errors as shares of `energy`. CostOf: rung to TransformBlock::Cost at its step.
+/// Builds rungs of the transform, with errors as shares of `energy`. CostOf maps a rung to the TransformBlock::Cost at
+/// its step.
 template <class CostOf>
 class TransformRungs {
  public:
-  /// Sets the ladder's first step, of a block whose largest coefficient is `largest`.
+  /// Sets the ladder's first step. `largest` is the block's largest coefficient.
   TransformRungs(const LeafRow& row, double energy, double largest, CostOf cost_of, PackedLadder& ladder)
       : energy_(energy), cost_of_(std::move(cost_of)), ladder_(ladder) {
     if (!(energy > 0 && largest > 0)) return;
     ladder.first_step = static_cast<std::int16_t>(first_rung_step(largest));
-    // Finer than float32 resolves the values themselves: nothing is gained.
+    // A step finer than float32's resolution of the values gains nothing.
     const double finest = static_cast<double>(std::max(std::fabs(row.min), std::fabs(row.max))) * 0x1p-24;
     const auto is_useful = [&](std::size_t rung) {
       const std::int32_t step = ladder_.step(rung);
       return step >= kLeastStep && step <= kMostStep && static_cast<double>(step_size(step)) >= finest;
     };
-    // Steps grow finer: of most blocks all rungs are useful.
+    // Steps grow finer from rung to rung. Most blocks can use all rungs.
     if (is_useful(0) && is_useful(PackedLadder::kMostRungs - 1)) end_ = PackedLadder::kMostRungs;
     while (end_ < PackedLadder::kMostRungs && is_useful(end_)) ++end_;
   }
 
   std::size_t end() const { return end_; }
-  /// Sets a rung of the ladder unless exact is shorter; returns its bits.
+  /// Sets a rung of the ladder unless the exact stream is no longer. Returns the rung's bits.
   std::uint32_t build(std::size_t rung) {
     const bool mean = rung < PackedLadder::kMeanRungs;
     const TransformBlock::Cost cost = mean ? TransformBlock::Cost{kMeanAloneBits, energy_} : cost_of_(rung);
@@ -62,12 +63,12 @@ class TransformRungs {
   std::array<bool, PackedLadder::kMostRungs> tried_{};
 };
 
-/// Near rungs. CostOf: rung to RoundedBlock::Cost at its quantum, or nullopt where there is none.
+/// Builds near rungs. CostOf maps a rung to the RoundedBlock::Cost at its quantum, or nullopt if there is none.
 template <class CostOf>
 class NearRungBuilder {
  public:
-  /// Sets the ladder's coarsest quantum, of a block whose largest |value| has that exponent. No rungs where `energy` is
-  /// 0.
+  /// Sets the ladder's coarsest quantum. `exponent` is the exponent of the block's largest |value|. There are no rungs
+  /// if `energy` is 0.
   NearRungBuilder(double energy, std::int32_t exponent, CostOf cost_of, PackedLadder& ladder)
       : energy_(energy), cost_of_(std::move(cost_of)), ladder_(ladder) {
     if (!(energy > 0)) return;
@@ -79,7 +80,8 @@ class NearRungBuilder {
   }
 
   std::size_t end() const { return end_; }
-  /// Sets a rung of the ladder unless exact is shorter, or the block is of one value so rounded.
+  /// Sets a rung of the ladder unless the exact stream is no longer, or all rounded values of the block are the same.
+  /// Returns the rung's point; nullopt if the rung is not set.
   std::optional<RungPoint> point(std::size_t rung) {
     if (!std::exchange(tried_[rung], true)) build(rung);
     return ladder_.near_point(rung);

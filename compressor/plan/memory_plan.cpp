@@ -22,11 +22,11 @@ constexpr std::uint64_t kWorkerBytes = 4ULL << 20U;
 constexpr std::uint64_t kSlackBytes = 8ULL << 20U;
 constexpr std::uint64_t kMiB = 1ULL << 20U;
 constexpr std::uint64_t kLeastBlockBytes = kMiB;
-// A block comes with its rows, one 43rd of its size, and there are two; a quarter of what is left stays free for
-// both passes' small buffers and the allocator's waste.
+// There are two blocks, and each has its rows, a 43rd of its size. A quarter of the remaining memory stays free for
+// both passes' small buffers and for the allocator's waste.
 constexpr std::uint64_t kBlockEighths = 3;
 
-// All but the workers.
+// Returns the bytes of everything except the workers.
 std::uint64_t shared_bytes(std::uint64_t resident, const Box& domain) {
   const auto regions = static_cast<std::uint64_t>(make_lattice(domain, kLowerDim).size());
   // Two plans of the inner nodes while encodings are compared, later one with statistics and errors.
@@ -71,7 +71,7 @@ MemoryPlan plan_memory(std::uint64_t ceiling, std::uint64_t resident, std::size_
   const std::uint64_t fixed = fixed_bytes(resident, threads, domain);
   const std::uint64_t least = least_ceiling(resident, threads, domain, region_bytes);
   if (ceiling < least) {
-    // Rounded up, and one MiB for the next process, which has other addresses.
+    // Rounded up, plus one MiB because the next process has other addresses.
     throw Error(ErrorKind::usage,
                 compose(option("memory", format_bytes(ceiling)), " is too small for this volume with ", threads,
                         threads == 1 ? " thread" : " threads", "; give at least ", least / kMiB + 2, "MiB"));
@@ -82,7 +82,7 @@ MemoryPlan plan_memory(std::uint64_t ceiling, std::uint64_t resident, std::size_
   plan.fixed_bytes = fixed;
   plan.block_bytes = std::max(kLeastBlockBytes, free / 8 * kBlockEighths);
   plan.worker_bytes = 2 * plan.block_bytes / threads;
-  // Blocks are given back by then.
+  // Selection runs after the survey's blocks are freed.
   plan.selection.segment_regions =
       std::clamp<std::int64_t>(static_cast<std::int64_t>(free / 2 / (threads * region_bytes)), 1, 64);
   const std::uint64_t walk = static_cast<std::uint64_t>(plan.selection.segment_regions) * threads * region_bytes;

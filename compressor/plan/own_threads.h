@@ -10,11 +10,11 @@
 
 namespace weir {
 
-/// Loops in weir's floating-point mode. The calling thread's own arena, where it has used oneTBB before, has the mode
-/// of that time, and gives it to all that work in it.
+/// Runs loops in weir's floating-point mode. A thread that has used oneTBB before has an arena with the floating-point
+/// mode of that time, and every worker in that arena gets the same mode.
 class OwnArena {
  public:
-  /// Of at most `threads` at a time, of which one is whoever calls run().
+  /// Makes an arena of at most `threads` threads at a time, including the thread that calls run().
   explicit OwnArena(int threads = tbb::task_arena::automatic) : arena_(threads) {
     const FloatMode mode;
     arena_.initialize();  // with the mode of this thread
@@ -22,7 +22,7 @@ class OwnArena {
   OwnArena(const OwnArena&) = delete;
   OwnArena& operator=(const OwnArena&) = delete;
 
-  /// work(), whose loops run here; returns what it returns, and throws what it throws.
+  /// Calls work() and runs its loops in this arena. Returns what work() returns and throws what it throws.
   template <typename Work>
   auto run(const Work& work) {
     const FloatMode mode;
@@ -33,14 +33,14 @@ class OwnArena {
   tbb::task_arena arena_;
 };
 
-/// The threads of one conversion. While it lives, all oneTBB loops of the process together use at most so many: memory
-/// is planned for what so many threads hold.
+/// The threads of one conversion. While the object lives, all oneTBB loops of the process together use at most
+/// `threads` threads, because memory is planned for that number.
 class OwnThreads {
  public:
   explicit OwnThreads(std::size_t threads)
       : limit_(tbb::global_control::max_allowed_parallelism, threads), arena_(static_cast<int>(threads)) {}
 
-  /// As OwnArena.
+  /// Does the same as OwnArena::run().
   template <typename Work>
   auto run(const Work& work) {
     return arena_.run(work);

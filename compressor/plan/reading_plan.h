@@ -16,13 +16,14 @@ struct ReadingPlan {
   Reading reading = Reading::ahead;
   BlockPlan survey;
   BlockPlan encode;
-  std::uint64_t pair_bytes = 0;  ///< CompareOptions::block_bytes of a pass over source and file, after both
+  std::uint64_t pair_bytes =
+      0;  ///< CompareOptions::block_bytes of the pass over source and file that follows both passes
 };
 
 ReadingPlan plan_reading(const VolumeSource& source, const MemoryPlan& memory);
 
-/// "each is decoded 4 times in a pass": what a ceiling that is too small for whole chunks costs, by the `plan` that was
-/// made for it.
+/// Returns a notice such as "each is decoded 4 times in a pass". It says what `ceiling` costs if it is too small for
+/// whole chunks. `plan` is the plan that was made for `ceiling`.
 Message amplification_notice(const VolumeSource& source, const MemoryPlan& memory, std::uint64_t ceiling,
                              const BlockPlan& plan);
 

@@ -17,7 +17,7 @@
 namespace weir {
 namespace {
 
-// Each has a directory there.
+// Returns the number of links of /proc/self/task, which has one directory per thread; 0 if it cannot be read.
 std::size_t threads_of_process() {
   struct stat tasks {};
   return ::stat("/proc/self/task", &tasks) == 0 ? static_cast<std::size_t>(tasks.st_nlink) : 0;
@@ -30,7 +30,7 @@ std::size_t start_threads(std::size_t wanted) {
   try {
     while (started.size() < wanted) started.emplace_back([&counted] { counted.wait(); });
   } catch (const std::system_error&) {
-    // as many as there are
+    // the threads that did start are counted below
   } catch (...) {
     counted.count_down();
     throw;
@@ -46,10 +46,10 @@ std::size_t startable_threads(std::size_t wanted) {
   using Clock = std::chrono::steady_clock;
   static std::mutex mutex;
   static std::size_t started = 0;
-  static std::size_t beside = 0;  // threads that there were then
-  static pid_t process = 0;       // a child has no share in what its parent found
+  static std::size_t beside = 0;  // threads of the process at that time
+  static pid_t process = 0;       // a forked child must not use its parent's result
   static Clock::time_point at{};
-  const std::lock_guard lock(mutex);  // two that start threads at once would find too few
+  const std::lock_guard lock(mutex);  // two callers that start threads at once would count too few
   const std::size_t running = threads_of_process();
   const bool known = process == ::getpid() && running <= beside && Clock::now() - at < kStartableFor;
   if (known && wanted <= started) return wanted;

@@ -8,22 +8,23 @@
 
 namespace weir {
 
-/// What an error says where a thread cannot be started.
+/// The message of an error when a thread cannot be started.
 inline constexpr const char* kNoMoreThreads =
     "no more threads can be started; raise the limit of processes (ulimit -u) or of address space (ulimit -v), or end "
     "some";
 
-/// How long it counts that so many threads could be started: who pushes step after step asks before each.
+/// How long the result of startable_threads() stays valid. A program that pushes step after step asks before each step.
 inline constexpr std::chrono::seconds kStartableFor{1};
 
-/// At most `wanted` more threads can run at the same time: fewer where a limit (ulimit -u, pids.max of a container) is
-/// near. Starts them to find out, unless this process has done so within kStartableFor and has no more threads now: 30
-/// to 46 us each for 7 to 133 of them on two cores. What starts threads later, as oneTBB does, may end the process
-/// where it cannot.
+/// Returns how many more threads can run at the same time, at most `wanted`; fewer if a limit (ulimit -u, pids.max of a
+/// container) is near. Starts the threads to find out, unless this process has done so within kStartableFor and has no
+/// more threads now. That takes 30 to 46 us a thread for 7 to 133 threads on two cores. Callers ask beforehand because
+/// a library that starts threads later, as oneTBB does, may end the process if it cannot start one.
 std::size_t startable_threads(std::size_t wanted);
 
-/// Workers, of which the calling thread is one, that can run beside what reads, writes back and saves: at most
-/// `threads`, at least 1. Tells `notice`, where there is one, of fewer. Throws Error(io) where not one can read.
+/// Returns how many workers, including the calling thread, can run beside the threads that read, write back and save:
+/// at most `threads`, at least 1. Tells `notice`, if not empty, when there are fewer. Throws Error(io) if no reading
+/// thread can be started.
 std::size_t startable_workers(std::size_t threads, const Notice& notice);
 
 }  // namespace weir

@@ -86,7 +86,7 @@ void LeafSpool::write_row(const Index3& first, std::span<SpooledLeaf> states, st
 void LeafSpool::write_part(std::int64_t leaf, const Box& part, const Box& inside, std::span<const std::byte> values) {
   const Index3 e = part.extent();
   const Index3 all = inside.extent();
-  // Rows without a gap between them are one.
+  // Rows without a gap between them are written as one row.
   const std::int64_t run = e.x * (e.x == all.x ? e.y : 1) * (e.x == all.x && e.y == all.y ? e.z : 1);
   const std::size_t value_bytes = scalar_bytes(type_);
   const std::size_t run_bytes = static_cast<std::size_t>(run) * value_bytes;

@@ -1,4 +1,4 @@
-// Planes of a volume, as a few ranges: which of them were handed over.
+// The set of planes of a volume that were handed over, as a few ranges.
 #pragma once
 
 #include <cstdint>
@@ -18,19 +18,19 @@ struct PlaneRange {
 
 class PlaneSet {
  public:
-  /// Adds all planes of a range that is not empty, or, where some are there already, none, and returns the first
-  /// such planes.
+  /// Adds all planes of a non-empty range. If the set already has some of them, adds none and returns the first range
+  /// of planes that it has.
   std::optional<PlaneRange> add(const PlaneRange& planes);
 
-  /// The ranges that are missing from [0, count), lowest first.
+  /// Returns the ranges that are missing from [0, count), lowest first.
   std::vector<PlaneRange> missing(std::int64_t count) const;
 
  private:
   std::map<std::int64_t, std::int64_t> ranges_;  // lo to hi, none touches the next
 };
 
-/// "plane 7", "planes 3 to 5 and 9", "planes 0, 2, 4 and 1021 more": of at most three ranges, none empty, the others
-/// are counted by their planes.
+/// Returns the ranges as text: "plane 7", "planes 3 to 5 and 9", "planes 0, 2, 4 and 1021 more". At most three ranges
+/// are named; the planes of the others are counted. No range is empty.
 std::string planes_text(const std::vector<PlaneRange>& ranges);
 
 }  // namespace weir

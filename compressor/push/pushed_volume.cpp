@@ -37,12 +37,12 @@
 namespace weir {
 namespace {
 
-// What the process holds besides is the simulation's, and no part of the ceiling.
+// Plans memory with 0 bytes in use: the memory that the process holds is the simulation's and no part of the ceiling.
 MemoryPlan memory_for(const ConversionOptions& options, std::size_t threads, const Box& domain) {
   return plan_memory(options.memory, 0, threads, domain, region_bytes(options), record_bytes(options, domain));
 }
 
-// Slices that a worker's cache holds, of which some fit `bytes`: whole rows of leaves where that is so.
+// Returns a plan of slices that fit a worker's cache, several of which fit `bytes`: whole rows of leaves if they fit.
 BlockPlan plan_slices(const Box& domain, std::size_t value_bytes, std::uint64_t bytes) {
   constexpr std::int64_t kMostLeaves = 512;  // a MiB of float32
   constexpr std::uint64_t kLeastSlices = 8;
@@ -58,7 +58,7 @@ BlockPlan plan_slices(const Box& domain, std::size_t value_bytes, std::uint64_t 
   return plan;
 }
 
-// What a push keeps on the disk until it ends, one way or the other.
+// The files that a push keeps on the disk until it ends, with or without success.
 struct PushedFiles {
   PushedFiles(const SourceInfo& info, const ConversionOptions& options, const ConversionControl& control, bool faces,
               const MemoryPlan& memory, FileSystem& files)
@@ -160,7 +160,7 @@ class PushedVolume::State {
   const SourceInfo& info() const { return info_; }
 
  private:
-  // A slab from its planes being checked to the call's return.
+  // A slab in progress: from the check of its planes to the return of the call.
   class Taking {
    public:
     Taking(State& state, std::int64_t z0, std::int64_t nz) : state_(state) {
@@ -179,7 +179,7 @@ class PushedVolume::State {
     State& state_;
   };
 
-  // However the end comes: what was not committed goes from the disk with it.
+  // Removes the uncommitted files from the disk, however the push ends.
   struct Release {
     std::optional<PushedFiles>& files;
     ~Release() { files.reset(); }
@@ -210,8 +210,8 @@ class PushedVolume::State {
             [this] { files_.reset(); }};
   }
 
-  // Calls visit(first leaf, offset, bytes) for every run of planes of the mask in the `bytes` of a slice, whose leaves'
-  // room in the spool is in one piece.
+  // Calls visit(first leaf, offset, bytes) for every run of planes of the mask in the `bytes` of a slice. The room of
+  // the slice's leaves in the spool is in one piece.
   template <typename Visit>
   void for_parked(std::int64_t slice, PlaneMask mask, std::size_t bytes, const Visit& visit) const {
     const Box leaf_box = slices_.leaf_box(slice);
@@ -306,7 +306,7 @@ class PushedVolume::State {
 
   Sidecar convert_whole(VolumeSource& whole) {
     floats_.clear();
-    // Nothing was surveyed or spooled: their room goes to the conversion's own.
+    // Nothing was surveyed or spooled: the room of these files goes to the conversion's own files.
     files_->survey.reset();
     files_->spool.reset();
     files_->stores.reset();
@@ -319,13 +319,13 @@ class PushedVolume::State {
   std::size_t threads_;
   MemoryPlan memory_;
   std::optional<Visibility> seen_;
-  std::optional<PushedFiles> files_;  // none once the push has ended
+  std::optional<PushedFiles> files_;  // nullopt after the push has ended
   BlockPlan slices_;
   tbb::enumerable_thread_specific<PageBuffer> floats_;  // of a slice
   std::mutex mutex_;                                    // of the next five
   PlaneSet given_;
   std::int64_t slabs_in_progress_ = 0;
-  std::int64_t expected_planes_ = 0;  // whose values have not come
+  std::int64_t expected_planes_ = 0;  // planes with values still to come
   bool ended_ = false;
   std::optional<Error> failure_;       // of the end
   std::optional<SliceIntake> intake_;  // last: its workers use all of the above

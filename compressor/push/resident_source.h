@@ -1,4 +1,4 @@
-// A volume that lies on a device, as a source of a conversion.
+// Opens a volume that lies on a device as the source of a conversion.
 #pragma once
 
 #include <memory>
@@ -8,7 +8,8 @@
 
 namespace weir {
 
-/// `info` is of float32 values over resident->voxels(), which are taken as they are.
+/// Returns a source over `resident`. `info` describes float32 values over resident->voxels(). The values are used as
+/// they are.
 std::unique_ptr<VolumeSource> open_resident(std::unique_ptr<ResidentVolume> resident, SourceInfo info);
 
 }  // namespace weir

@@ -31,7 +31,7 @@ SliceIntake::SliceIntake(const BlockPlan& plan, std::size_t value_bytes, const I
   }
   try {
     for (std::size_t i = 0; i < room.workers; ++i) workers_.emplace_back([this] { work(); });
-  } catch (...) {  // no more threads to be had: those there are must end before this object does
+  } catch (...) {  // no more threads can be started: the running ones must end before this object does
     stop();
     throw;
   }
@@ -86,8 +86,8 @@ void SliceIntake::copy(const StridedVoxels& slab) {
   }
 }
 
-// The slice with a buffer, to be copied into until it is closed. Who waits here copies nothing meanwhile, so that
-// slices can always be parked in the end.
+// Returns the slice with a buffer, into which the caller copies until it calls close(). A thread that waits here copies
+// nothing, so that slices can always be parked in the end.
 SliceIntake::Slice& SliceIntake::open(Lock& lock, std::int64_t index) {
   for (;;) {
     if (failure_) throw_ended(lock);
@@ -214,7 +214,7 @@ Error SliceIntake::fail(const Error& error) {
   return *failure_;
 }
 
-// Once the workers have ended, so that nothing is left when the caller hears of it.
+// Throws after the workers have ended, so that nothing is left on the disk when the caller gets the error.
 void SliceIntake::throw_ended(Lock& lock) {
   for_adders_.wait(lock, [this] { return running_ == 0; });
   throw Error(*failure_);

@@ -1,6 +1,6 @@
 // Gathers slabs of a volume, which come in any order from any thread, into slices: boxes of one layer of leaves, in a
-// bounded number of buffers. Complete slices go to workers of its own. Where all buffers hold incomplete slices, the
-// one that was added to least recently is parked.
+// bounded number of buffers. The intake's own workers process complete slices. If all buffers hold incomplete slices,
+// the slice that was added to least recently is parked.
 #pragma once
 
 #include <condition_variable>
@@ -22,21 +22,21 @@
 
 namespace weir {
 
-/// Planes of a slice: bit i is its plane i, counted from its lowest voxel.
+/// A set of planes of a slice: bit i is plane i, counted from the slice's lowest voxel.
 using PlaneMask = std::uint8_t;
 
-/// What becomes of slices, on the workers' threads. `values` are the slice's voxels as they were handed over, x
+/// The functions that the workers' threads call for slices. `values` are the slice's voxels as they were handed over, x
 /// fastest. An exception ends the intake.
 struct SliceSink {
-  /// All planes are there: those of `parked` where park was given them, the others in `values`.
+  /// Called when all planes of a slice are there. park() was given the planes of `parked`; the others are in `values`.
   std::function<void(std::int64_t slice, PlaneMask parked, std::span<std::byte> values)> complete;
-  /// Keeps the planes of `planes`, which were not parked before.
+  /// Keeps the planes of `planes`. None of them was parked before.
   std::function<void(std::int64_t slice, PlaneMask planes, std::span<const std::byte> values)> park;
-  /// Called once, by the last worker, after an exception: nothing of it will be called again.
+  /// Called once by the last worker, after an exception. No function of the sink is called again.
   std::function<void()> abandon;
 };
 
-/// How much the intake may use.
+/// The resources that the intake may use.
 struct IntakeRoom {
   std::size_t buffers = 1;  ///< each of a slice; at least 1
   std::size_t workers = 1;  ///< threads; at least 1
@@ -44,25 +44,26 @@ struct IntakeRoom {
 
 class SliceIntake {
  public:
-  /// `plan` cuts the volume into slices, one leaf deep, of values of `value_bytes`.
+  /// `plan` cuts the volume into slices of one leaf layer. A value has `value_bytes`.
   SliceIntake(const BlockPlan& plan, std::size_t value_bytes, const IntakeRoom& room, SliceSink sink);
   /// Stops the workers once they have finished their present slices.
   ~SliceIntake();
   SliceIntake(const SliceIntake&) = delete;
   SliceIntake& operator=(const SliceIntake&) = delete;
 
-  /// Takes whole planes of the volume, each once. May be called by several threads; waits while all buffers are in use
-  /// and the workers are freeing one. Throws what ended the workers, as they are where it cannot take all of the slab.
+  /// Takes whole planes of the volume, each once. Several threads may call it. Waits while all buffers are in use and
+  /// the workers are freeing one. If it cannot take the whole slab, it ends the workers. Throws the error that ended
+  /// the workers.
   void add(const StridedVoxels& slab);
 
-  /// Waits until all slices, which are complete, went through the sink, and gives the memory back. Throws what ended
-  /// the workers. Nothing may be added any more.
+  /// Waits until all slices have gone through the sink, and frees the memory. All slices must be complete, and nothing
+  /// may be added afterwards. Throws the error that ended the workers.
   void finish();
 
-  /// Throws what ended the workers, where something did.
+  /// Throws the error that ended the workers, if there is one.
   void check();
 
-  /// Ends the intake with `error`, as an exception of the sink does, unless it has ended already; returns the error
+  /// Ends the intake with `error`, as an exception of the sink does, unless it has ended already. Returns the error
   /// that ended it.
   Error fail(const Error& error);
 
@@ -71,8 +72,8 @@ class SliceIntake {
     std::byte* values;
     PlaneMask planes = 0;        // in `values`, whole
     int adding = 0;              // threads that copy into it
-    bool parking = false;        // is being written out
-    std::uint64_t last_use = 0;  // of all slices' uses
+    bool parking = false;        // the sink is parking it
+    std::uint64_t last_use = 0;  // the value of uses_ at that time
   };
   struct Work {
     std::int64_t slice;

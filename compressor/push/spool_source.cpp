@@ -27,7 +27,7 @@ class SpoolSource final : public VolumeSource {
   SpoolSource(const LeafSpool& spool, SourceInfo info) : spool_(spool), info_(std::move(info)) {}
 
   const SourceInfo& info() const override { return info_; }
-  // A row of leaves lies in one piece, as long rows of a file do.
+  // A row of leaves lies in one piece, like the long rows of a file.
   AccessShape access() const override { return {scalar_bytes(info_.type), {}, {}}; }
   std::uint64_t bytes_read() const override { return bytes_read_; }
   ConversionLoss read(const Box& box, std::span<float> values) override {
@@ -55,7 +55,7 @@ class SpoolSource final : public VolumeSource {
     return total;
   }
 
-  // What of `count` leaves from `first` on along x lies in the box.
+  // Reads the parts of `count` leaves, from `first` on along x, that lie in the box.
   ConversionLoss read_row(const Index3& first, std::int64_t count, const Box& box, std::span<float> values) {
     const StagingPool::Lease staging(staging_);
     const auto most = static_cast<std::int64_t>(kPieceBytes / spool_.leaf_bytes());
@@ -66,7 +66,7 @@ class SpoolSource final : public VolumeSource {
     return loss;
   }
 
-  // The same for as many leaves as `staging` holds.
+  // Does the same for as many leaves as `staging` holds.
   ConversionLoss read_leaves(const Index3& first, std::int64_t count, const Box& box, std::span<float> values,
                              std::span<std::byte> staging) {
     const std::int64_t linear = spool_.leaves().linear(first);
@@ -94,7 +94,7 @@ class SpoolSource final : public VolumeSource {
     return loss;
   }
 
-  // Consecutive spooled leaves, without what lies behind the in-domain values of the last.
+  // Reads consecutive spooled leaves, without the bytes behind the in-domain values of the last leaf.
   void read_run(const Index3& first, std::size_t count, std::span<std::byte> staging) {
     const Index3 last = first + Index3{static_cast<std::int64_t>(count) - 1, 0, 0};
     const std::size_t bytes = (count - 1) * spool_.leaf_bytes() + bytes_of(spool_.leaves().voxels(last).voxels());
@@ -102,13 +102,13 @@ class SpoolSource final : public VolumeSource {
     bytes_read_ += bytes;
   }
 
-  // The part of a spooled leaf that lies in the box; `stored` begins with the leaf's values.
+  // Places the part of a spooled leaf that lies in the box. `stored` begins with the leaf's values.
   ConversionLoss place(const Index3& leaf, std::span<const std::byte> stored, const Box& box, std::span<float> values) {
     const Box inside = spool_.leaves().voxels(leaf);
     const Box part = intersect(inside, box);
     std::array<float, kLeafVoxels> decoded;
     const Index3 e = part.extent();
-    // Rows without a gap between them are one; values outside the part must not count as a loss.
+    // Rows without a gap between them are placed as one row. Values outside the part must not count as a loss.
     const bool whole = part == inside;
     const std::int64_t run = whole ? part.voxels() : e.x;
     ConversionLoss loss;
@@ -125,7 +125,7 @@ class SpoolSource final : public VolumeSource {
     return loss;
   }
 
-  // The same of a constant leaf.
+  // Does the same for a constant leaf.
   ConversionLoss fill(const Index3& leaf, const SpooledLeaf& state, const Box& box, std::span<float> values) const {
     if (state.state != SpooledLeaf::State::constant) {
       throw Error(ErrorKind::internal, cat(info_.path, ": leaf ", leaf.x, ",", leaf.y, ",", leaf.z,

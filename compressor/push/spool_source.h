@@ -1,4 +1,4 @@
-// A spooled volume as a source, which reads like a file that holds the same values.
+// Opens a spooled volume as a source that reads like a file with the same values.
 #pragma once
 
 #include <memory>
@@ -8,12 +8,13 @@
 
 namespace weir {
 
-/// `info` of values that a simulation hands over, with format and file_bytes set. Throws Error(usage) where there are
-/// too many of them.
+/// Returns `info`, which describes values that a simulation hands over, with format and file_bytes set. Throws
+/// Error(usage) if there are too many values.
 SourceInfo as_pushed(SourceInfo info);
 
-/// Reads what `spool`, which must outlive the source and have all voxels, holds of the volume that `info` describes.
-/// bytes_read counts what came from the spool's file. Reading a leaf that was never written is Error(internal).
+/// Returns a source that reads the volume that `info` describes from `spool`. The spool must have all voxels and
+/// outlive the source. bytes_read() counts the bytes from the spool's file. Reading a leaf that was never written
+/// throws Error(internal).
 std::unique_ptr<VolumeSource> open_spool(const LeafSpool& spool, SourceInfo info);
 
 }  // namespace weir

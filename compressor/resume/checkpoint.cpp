@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Raised whenever what a checkpoint or one of its files means changes.
+/// Raise the number whenever the meaning of a checkpoint or of one of its files changes.
 constexpr std::string_view kFormat = "weir checkpoint 8 ";
 
 Json to_json(const BoxSet& set) {
@@ -118,7 +118,7 @@ std::optional<Checkpoint> parse_checkpoint(std::string_view text) {
   try {
     return checkpoint_of(Json::parse(body));
   } catch (const std::exception&) {
-    return std::nullopt;  // whole, and yet not what to_text writes
+    return std::nullopt;  // the digest is right, but to_text() did not write this
   }
 }
 

@@ -1,4 +1,5 @@
-// How far a conversion has come: with the files it names, enough to continue from there and give the same bytes.
+// The progress of a conversion. Together with the files that it names, a checkpoint suffices to continue the conversion
+// and produce the same bytes.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +17,7 @@
 
 namespace weir {
 
-/// What a conversion is, by name: two with the same entries give the same bytes.
+/// Named entries that identify a conversion. Two conversions with the same entries produce the same bytes.
 using ConversionIdentity = std::map<std::string, std::string>;
 
 struct Checkpoint {
@@ -25,25 +26,25 @@ struct Checkpoint {
     int number = 0;
     double planned_error = 0;  ///< FileRequest::planned_error
     Encoding encoding = Encoding::float32;
-    std::string seen;                ///< visible_values of the scene that it was made for
+    std::string seen;                ///< visible_values of the scene of the attempt
     std::optional<double> met = {};  ///< the planned error of an earlier file that met the target
   };
 
   ConversionIdentity identity;
-  std::string spill_directory;                 ///< absolute; empty: beside the journal
-  std::map<std::string, std::uint64_t> files;  ///< name to bytes, of those that all below stands on
+  std::string spill_directory;                 ///< absolute path; empty: beside the journal
+  std::map<std::string, std::uint64_t> files;  ///< name and bytes of each file that the members below depend on
   SurveyState survey;
-  LadderState ladders;                   ///< of a packed file
-  std::optional<Background> background;  ///< once it is found
+  LadderState ladders;                   ///< for a packed file
+  std::optional<Background> background;  ///< set when it is found
   std::optional<Attempt> attempt;
-  Digest plan;  ///< of the file that is being encoded (encode_attempts.h)
+  Digest plan;  ///< digest of the plan of the file that is being encoded (encode_attempts.h)
   EncodedState encoded;
 };
 
-/// A line with version and digest, then JSON.
+/// Returns a line with version and digest, then JSON.
 std::string to_text(const Checkpoint& checkpoint);
 
-/// nullopt where `text` is not a whole checkpoint of this version.
+/// Returns nullopt if `text` is not a whole checkpoint of this version.
 std::optional<Checkpoint> parse_checkpoint(std::string_view text);
 
 }  // namespace weir

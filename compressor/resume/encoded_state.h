@@ -1,4 +1,5 @@
-// How far an encode pass has come: with the volume and the records of what is done, enough to go on from there.
+// The progress of an encode pass. Together with the written part of the volume and its records, the state suffices to
+// continue the pass.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +8,8 @@
 
 namespace weir {
 
-/// Sums of the checksums (format/io/digest.h, placed_checksum) of all leaves or streams, and of all records, that were
-/// written. They do not depend on order.
+/// Sums of the checksums (format/io/digest.h, placed_checksum) of all written leaves or streams, and of all written
+/// records. The sums do not depend on the order.
 struct EncodedSums {
   std::uint64_t volume = 0;
   std::uint64_t records = 0;
@@ -21,8 +22,8 @@ struct EncodedSums {
 };
 
 struct EncodedState {
-  BoxSet done;       ///< positions of the leaf lattice whose leaves and records are written
-  EncodedSums sums;  ///< of those
+  BoxSet done;       ///< positions of the leaf lattice with written leaves and records
+  EncodedSums sums;  ///< checksums of the leaves in `done`
 };
 
 }  // namespace weir

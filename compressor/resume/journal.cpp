@@ -29,28 +29,30 @@ bool is_of_encoding(std::string_view name) { return name == "records" || name ==
 
 std::string in(const std::string& directory, std::string_view name) { return cat(directory, '/', name); }
 
-// Outputs of the same name may have one --work-dir.
+// Returns the name of the output's spill directory. A digest of the whole path makes the name unique, because outputs
+// of the same name may share one --work-dir.
 std::string spill_name_of(const std::string& output) {
   const fs::path name = fs::path(output).filename();
   std::error_code ignored;
   const std::string whole = (fs::weakly_canonical(directory_of(output), ignored) / name).string();
   const std::string digest = piece_digest(std::as_bytes(std::span(whole))).hex().substr(0, 16);
-  // The output's own name may be the longest that a file system takes.
+  // Cuts the name, because the output's own name may already be the longest that a file system takes.
   std::string head = name.string().substr(0, 200);
-  if (head.size() < name.string().size()) {  // not in the middle of a character of UTF-8
+  if (head.size() < name.string().size()) {  // does not cut inside a UTF-8 character
     while (!head.empty() && (static_cast<unsigned char>(name.string()[head.size()]) & 0xC0U) == 0x80U) head.pop_back();
   }
   return work_name(cat(head, '.', digest));
 }
 
-// Checkpoint::spill_directory: the next process may have another working directory.
+// Returns Checkpoint::spill_directory, an absolute path because the next process may have another working directory.
 std::string spill_directory_for(const std::string& output, const std::string& work_dir) {
   if (work_dir.empty()) return {};
   std::error_code ignored;
   return (fs::absolute(work_dir, ignored).lexically_normal() / spill_name_of(output)).string();
 }
 
-// A journal that was moved with its output knows spill files that are another output's by now.
+// Returns whether the spill files that a checkpoint names belong to `output`. A journal that was moved with its output
+// may name spill files that belong to another output by now.
 bool has_own_spills(const Checkpoint& checkpoint, const std::string& output) {
   return checkpoint.spill_directory.empty() || fs::path(checkpoint.spill_directory).filename() == spill_name_of(output);
 }
@@ -68,18 +70,18 @@ std::optional<Checkpoint> read_checkpoint(FileSystem& files, const std::string& 
   return parse_checkpoint(text);
 }
 
-// The spill files in `spills`, locked. Another host or container may convert to the same path, on a disk of its own,
-// with the same --work-dir: Error(io) where one of them is being written.
+// Opens and thereby locks the spill files in `spills`. Throws Error(io) if one of them is being written: another host
+// or container may convert to the same path on its own disk with the same --work-dir.
 std::vector<std::unique_ptr<File>> hold_spills(FileSystem& files, const std::string& spills) {
   std::vector<std::unique_ptr<File>> held;
-  if (spills.empty()) return held;  // beside the output, whose lock the caller has
+  if (spills.empty()) return held;  // beside the output, which the caller has locked
   for (const std::string_view name : kSpills) {
     if (const std::string path = in(spills, name); files.exists(path)) held.push_back(files.open(path));
   }
   return held;
 }
 
-// Whether the files that a checkpoint stands on are as it says.
+// Returns whether the files that a checkpoint depends on exist and have the sizes that it says.
 bool stands(FileSystem& files, const std::string& directory, const Checkpoint& checkpoint) {
   for (const auto& [name, bytes] : checkpoint.files) {
     const std::string path = place_in(directory, checkpoint.spill_directory, name);
@@ -104,7 +106,7 @@ bool remove_all(FileSystem& files, const std::string& directory, const std::stri
   return any;
 }
 
-// The first entry in which two identities differ.
+// Describes the first entry in which two identities differ; empty if they are equal.
 std::string difference(const ConversionIdentity& was, const ConversionIdentity& is) {
   for (const auto& [name, value] : is) {
     const auto at = was.find(name);
@@ -117,7 +119,7 @@ std::string difference(const ConversionIdentity& was, const ConversionIdentity& 
   return {};
 }
 
-// As it is read back: JSON does not hold every byte that a path may.
+// Returns the identity as it is after saving and reading, because JSON cannot hold every byte of a path.
 ConversionIdentity as_saved(ConversionIdentity identity) {
   Checkpoint bare;
   bare.identity = std::move(identity);
@@ -143,10 +145,10 @@ Journal::Journal(FileSystem& files, const std::string& output, ConversionIdentit
   state.spill_directory = spill_directory_;
 }
 
-// Whoever else comes there finds its files locked from here on.
+// Locks the spill directory's files, so that no other conversion uses the directory from now on.
 void Journal::hold_spill_directory() {
   try {
-    if (!open("rows")->has_its_name()) {  // removed by somebody who began at the same moment
+    if (!open("rows")->has_its_name()) {  // removed by another process that began at the same moment
       throw Error(ErrorKind::io,
                   cat(path_of("rows"),
                       ": is being written by another process or conversion; wait for it or choose another output"));
@@ -157,7 +159,7 @@ void Journal::hold_spill_directory() {
   }
 }
 
-// Those files stay open, and locked.
+// Returns whether the files of `found` exist with the right sizes. Keeps them open, and so locked, if they do.
 bool Journal::adopts(const Checkpoint& found) {
   for (const auto& [name, bytes] : found.files) {
     if (files_.exists(path_of(name)) && open(name)->size() == bytes) continue;
@@ -211,7 +213,7 @@ Journal::~Journal() {
   try {
     wait();
   } catch (const std::exception&) {
-    // What was saved before it counts.
+    // The save before the failed one counts.
   }
   try {
     if (saved_.empty()) {
@@ -223,7 +225,7 @@ Journal::~Journal() {
       if (!saved_.contains(name)) files_.remove(path_of(name));
     }
   } catch (const Error&) {
-    // The failure that led here is the one to report; the next conversion of this output removes what is left.
+    // The caller reports the failure that led here. The next conversion to this output removes what is left.
   }
 }
 
@@ -266,7 +268,7 @@ void Journal::save() {
   const bool waits = options_.interval_s == 0 || (options_.cancel != nullptr && *options_.cancel);
   std::vector<std::shared_ptr<File>> open;
   for (const auto& [name, file] : open_) open.push_back(file);
-  // Deferred where there is no thread for it.
+  // Deferred if no thread can be started.
   saving_ = std::async(waits ? std::launch::deferred : std::launch::async | std::launch::deferred,
                        [this, open = std::move(open), text = to_text(state)] { write(open, text); });
   if (saving_.wait_for(std::chrono::seconds(0)) == std::future_status::deferred) wait();
@@ -283,7 +285,7 @@ void Journal::wait() {
   saved_ = std::move(saving_files_);
 }
 
-// The numbered steps in the header.
+// Does the numbered steps that the header describes.
 void Journal::write(const std::vector<std::shared_ptr<File>>& open, const std::string& text) {
   const TraceSpan span(options_.trace, "save");
   for (const std::shared_ptr<File>& file : open) file->sync();  // 1
@@ -305,15 +307,15 @@ void Journal::discard() noexcept {
   try {
     wait();
   } catch (const std::exception&) {
-    // Not needed any more.
+    // The save is not needed any more.
   }
   saved_.clear();
   try {
     remove_all(files_, directory_, spill_directory_);
   } catch (const Error&) {
-    // The result counts, or the failure that led here; the next conversion of this output removes what is left.
+    // Only the result, or the failure that led here, matters. The next conversion to this output removes what is left.
   }
-  open_.clear();  // not before: who found them free might begin there
+  open_.clear();  // unlocks last: another conversion that finds the files unlocked might begin there
   if (!spill_directory_.empty()) remove_if_empty(files_, spill_directory_);
   remove_if_empty(files_, directory_);
 }

@@ -1,16 +1,15 @@
-// Lets a conversion continue after its process has ended: the files it depends on have names, and a journal says how
-// far they can be trusted.
+// Lets a conversion continue after its process has ended. The files that it depends on have names, and a journal says
+// how much of them can be trusted.
 //
-// In the hidden directory beside the output: `journal`, a Checkpoint, and
-// `volume`, the unfinished OUT.nvdb. In the spill directory, which is the same
-// unless the user names another: `rows`, `faces`, `ladders` and `records`. A save is
-//   1. all files flushed                what the checkpoint says of them is durable
-//   2. journal.new written and flushed
-//   3. journal.new renamed to journal   the checkpoint counts: the old or the new one, never half of one
-//   4. the directories flushed, at the first save their own names, too
-// and runs beside the work, so that a pass waits for no device. What is written
-// after a save and before the next is written again, the same bytes at the same
-// places.
+// The hidden directory beside the output holds `journal`, a Checkpoint, and `volume`, the unfinished OUT.nvdb. The
+// spill directory holds `rows`, `faces`, `ladders` and `records`; it is the same directory unless the user names
+// another. A save has four steps:
+//   1. flush all files                  what the checkpoint says of them is then durable
+//   2. write and flush journal.new
+//   3. rename journal.new to journal    the old or the new checkpoint counts, never half of one
+//   4. flush the directories            at the first save their own names, too
+// A save runs beside the work, so that a pass does not wait for the disk. Whatever a pass writes after the last save is
+// written again when the conversion continues: the same bytes at the same places.
 #pragma once
 
 #include <atomic>
@@ -31,52 +30,52 @@ namespace weir {
 
 struct JournalOptions {
   std::string work_dir;   ///< where spill files go; empty: beside the output
-  double interval_s = 0;  ///< between two saves; 0: whenever there is something to save, and each is waited for
+  double interval_s = 0;  ///< seconds between two saves; 0: save at every pause and wait for each save
   const std::atomic<bool>* cancel = nullptr;  ///< once set, everything is saved at the next pause
-  Trace* trace = nullptr;                     ///< gets a "save" of each
+  Trace* trace = nullptr;                     ///< gets a "save" span for each save
   Notice notice;                              ///< may be empty
 };
 
-/// One thread uses it. The lock on the output (OutputFiles) must be held longer than it lives.
+/// Only one thread may use a Journal. The lock on the output (OutputFiles) must be held for the journal's whole life.
 class Journal {
  public:
-  /// Takes up what an interrupted conversion of that identity left at `output`, in `state`. What another one left, or
-  /// what is not whole, is removed, with a notice. Throws Error(io) where another host or container, whose output has
-  /// the same path, has spill files in the same work directory: they stay.
+  /// Loads into `state` what an interrupted conversion with the same identity left at `output`. Leftovers of another
+  /// conversion, and damaged ones, are removed with a notice. Throws Error(io) if another host or container has an
+  /// output with the same path and spill files in the same work directory; these files stay.
   Journal(FileSystem& files, const std::string& output, ConversionIdentity identity, JournalOptions options);
   /// Removes everything that no saved checkpoint depends on.
   ~Journal();
   Journal(const Journal&) = delete;
   Journal& operator=(const Journal&) = delete;
 
-  /// How far the conversion is; the conversion changes and saves it.
+  /// The progress of the conversion. The conversion changes and saves it.
   Checkpoint state;
 
-  /// As it was given.
+  /// Returns the output as the constructor was given it.
   const std::string& output() const { return output_; }
   const std::string& directory() const { return directory_; }
-  /// Of a file that open() gives.
+  /// Returns the path of a file that open() opens.
   std::string path_of(const std::string& name) const;
-  /// Of all that discard() removes, in its order.
+  /// Returns the paths of everything that discard() removes, in the same order.
   std::vector<std::string> paths() const;
 
-  /// "rows", "faces", "ladders", "records" or "volume", with what is in it.
+  /// Opens "rows", "faces", "ladders", "records" or "volume" and keeps its content.
   std::shared_ptr<File> open(const std::string& name);
 
-  /// Whether the time for a save has come. Throws what the last one failed with.
+  /// Returns whether it is time for a save. Throws the error of the last save if that failed.
   bool due();
-  /// Saves `state` as it is now, beside the work unless the interval is 0 or the work is to end.
+  /// Saves the current `state` in the background. Waits for the save if the interval is 0 or the work is cancelled.
   void save();
   void save_now();
 
-  /// Whether a process could go on from here if this one ended.
+  /// Returns whether another process could continue if this one ended now.
   bool resumable() const { return !saved_.empty(); }
 
-  /// Nothing of what an earlier process left counts any more, with a notice of `reason`: `state` is that of a new
-  /// conversion. Open files stay open, with what is in them.
+  /// Discards the progress of an earlier process, with a notice that gives `reason`. `state` becomes the state of a new
+  /// conversion. Open files stay open and keep their content.
   void forget(const std::string& reason);
 
-  /// Removes everything, the journal first; what cannot be removed stays.
+  /// Removes everything, the journal first. A file that cannot be removed stays.
   void discard() noexcept;
 
  private:
@@ -99,16 +98,16 @@ class Journal {
   std::future<void> saving_;
   bool placed_ = false;  // whether the names of the directories are durable
   std::map<std::string, std::uint64_t> saving_files_;
-  std::map<std::string, std::uint64_t> saved_;  // files of the checkpoint that counts; empty: none does
+  std::map<std::string, std::uint64_t> saved_;  // files of the checkpoint that counts; empty: no checkpoint counts
 };
 
-/// What the journal in the hidden directory of `output` says, if it is whole and the files it names are there.
+/// Returns the checkpoint in the hidden directory of `output`, if it is whole and the files that it names exist.
 std::optional<Checkpoint> read_journal(FileSystem& files, const std::string& output);
 
-/// Removes whatever a conversion of `output` may have left to be continued; false where there is nothing. The caller
-/// holds the lock on the output. Throws Error(io) where spill files of it are being written.
+/// Removes everything that a conversion to `output` left for a continuation; returns false if there was nothing. The
+/// caller must hold the lock on the output. Throws Error(io) if spill files of the output are being written.
 bool remove_leftovers(FileSystem& files, const std::string& output);
-/// The notice that it was true of `output`.
+/// Returns the notice that remove_leftovers() removed something of `output`.
 std::string leftovers_notice(const std::string& output);
 
 }  // namespace weir

@@ -19,7 +19,7 @@ void remove_if_empty(FileSystem& files, const std::string& path) noexcept {
   try {
     files.remove_directory(path);
   } catch (const Error&) {
-    // Not empty.
+    // The directory is not empty.
   }
 }
 
@@ -27,7 +27,7 @@ void check_work_directory(FileSystem& files, const std::string& chosen) {
   std::error_code why;
   const std::filesystem::file_status status = std::filesystem::status(chosen, why);
   if (!files.exists(chosen)) {
-    // Below a file, or behind a circle of links, none can be made.
+    // No directory can be made below a file or behind a circle of links.
     if (why && why != std::errc::no_such_file_or_directory) {
       throw io_error(chosen, compose("be ", option("work-dir")), why.value());
     }
@@ -50,7 +50,7 @@ WorkDirectory::WorkDirectory(FileSystem& files, const std::string& output, const
   }
   const std::string directory = directory_of(output);
   if (files_.is_memory(directory)) {
-    // Spill files beside the output would be memory that no ceiling counts.
+    // Spill files beside the output would use memory that no ceiling counts.
     path_ = "/var/tmp";
     if (!files_.exists(path_) || files_.is_memory(path_)) {
       throw Error(

@@ -1,4 +1,4 @@
-// What size, or what error, was asked for.
+// The budget of a conversion: the size or the error that was asked for.
 #pragma once
 
 #include <cstdint>
@@ -6,12 +6,12 @@
 
 namespace weir {
 
-/// What a small volume keeps at least where no budget is given; less is called a poor result.
+/// PSNR in dB that a small volume keeps at least if no budget is given. A lower PSNR is reported as a poor result.
 inline constexpr double kDefaultLeastDb = 40;
 
 struct Budget {
   enum class Kind {
-    automatic,  ///< --rate 8, or the minimum tree where that is larger; where that keeps less than `target`, see there
+    automatic,  ///< --rate 8, or the minimum tree if larger; `target` says what happens if it keeps too little
     size,       ///< `bytes`
     rate,       ///< ceil(float32 bytes of the volume / `rate`)
     psnr,       ///< as few bytes as keep the PSNR at `target` dB or above
@@ -21,10 +21,11 @@ struct Budget {
   Kind kind = Kind::automatic;
   double rate = 8;          ///< finite, > 0; its shortest decimal form counts
   std::uint64_t bytes = 0;  ///< for Kind::size
-  /// For Kind::psnr, dB, finite; for Kind::max_error, >= 0. For Kind::automatic: dB; a file that keeps less gives way
-  /// to a lossless one, if that takes less than the volume as float32, else to one that keeps these; 0: none does.
+  /// For Kind::psnr: dB, finite. For Kind::max_error: >= 0. For Kind::automatic: dB; a file that keeps less is replaced
+  /// by a lossless file if that is smaller than the volume as float32, otherwise by a file that keeps `target`. 0: the
+  /// file is never replaced.
   double target = 0;
-  /// For Kind::size and Kind::rate: the file is shorter, not padded, where the volume needs less.
+  /// For Kind::size and Kind::rate: if the volume needs less, the file is shorter, not padded.
   bool at_most = false;
 
   bool by_size() const { return kind == Kind::size || kind == Kind::rate; }
@@ -32,7 +33,7 @@ struct Budget {
   bool by_error() const { return kind == Kind::psnr || kind == Kind::max_error; }
 };
 
-/// All of it, to be compared: what differs in the last digit is another budget.
+/// Returns the whole budget as text for comparisons. Budgets that differ in the last digit have different texts.
 std::string budget_text(const Budget& budget);
 
 }  // namespace weir

@@ -16,7 +16,7 @@
 namespace weir {
 namespace {
 
-// Everything that can be bought but for what is required.
+// The keys of all purchases that are not required.
 constexpr KeyRange kAllKeys{std::bit_cast<std::uint64_t>(kLastKey), std::bit_cast<std::uint64_t>(kRequiredKey)};
 
 }  // namespace
@@ -33,7 +33,7 @@ KeyRange CutSearch::likely_keys(const GainRule& rule) {
 KeyRange CutSearch::every_key() { return {kAllKeys.first, kAllKeys.end + 1}; }
 
 double CutSearch::error_unit(const GainRule& rule) {
-  if (!rule.packed || rule.visibility != nullptr) return 0;  // which weighs errors
+  if (!rule.packed || rule.visibility != nullptr) return 0;  // a scene weighs errors
   const double unit = std::ldexp(rule.packed->most_error, -112);
   return std::isnormal(unit) ? unit : 0;
 }
@@ -44,7 +44,7 @@ void CutSearch::for_each_key(const Begin& begin, double least_key) const {
     const Region& region = tree_.regions[static_cast<std::size_t>(index)];
     const auto visit = begin();
     visit(HeldSteps::Step::opening(index, region.key, region.opening_gain));
-    if (region.key == 0 || region.key < least_key) return;  // no leaf in it has a higher one
+    if (region.key == 0 || region.key < least_key) return;  // no leaf in it has a higher key
     RegionGains& gains = gains_.local();
     rule_.gains(tree_, rows, gains, least_key);
     for_each_step(gains, region.key, [&](double key, const LeafGain& leaf, const LeafStep& step) {
@@ -93,7 +93,7 @@ void CutSearch::count_steps(const PurchaseGoal& goal, KeyCounts& total) const {
 
 void CutSearch::hold(const KeyRange& range, std::uint64_t items, const PurchaseGoal& goal) {
   if (holds(range) || goal.unit != 0 || !rows_.team().alone()) return;
-  const std::uint64_t room = rows_.room().step_bytes / 2;  // the counts of the pass before are still there
+  const std::uint64_t room = rows_.room().step_bytes / 2;  // the counts of the pass before still take memory
   if (HeldSteps::bytes_for(items) > room) return;
   narrowed_ = std::make_unique<HeldSteps>(range, room, rule_.region_bytes());
   const auto begin = [&] { return [&part = narrowed_->part()](const HeldSteps::Step& step) { part.add(step); }; };
@@ -128,7 +128,7 @@ Threshold CutSearch::search(PurchaseGoal& goal) {
       const PurchaseGoal::Weight all = counted.all();
       goal.limit = all > *goal.left ? all - *goal.left : 0;
     }
-    // What is required is bought whatever the goal.
+    // Required purchases are bought for every goal.
     PurchaseGoal::Weight above = counted.outside[OutsideSums::required].weight;
     if (goal.unit != 0 && above >= goal.limit) return {std::numeric_limits<double>::max(), above};
     const PurchaseSum& higher = counted.outside[OutsideSums::above];

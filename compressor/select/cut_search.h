@@ -1,6 +1,5 @@
-// Where the budget ends in the order of keys: the cut between what is bought and
-// what is not, found in passes over the spilled rows, each of which divides the
-// range of keys that it lies in.
+// Finds the cut: the key at which the budget ends. Purchases with higher keys are bought, the others are not. Each pass
+// over the spilled rows divides the range of keys in which the cut lies.
 #pragma once
 
 #include <tbb/enumerable_thread_specific.h>
@@ -24,15 +23,15 @@ struct PurchaseGoal {
   double unit = 0;  ///< squared error; 0: bytes count
   using Weight = PurchaseSum::Weight;
   Weight limit = 0;
-  /// Weight that may stay unbought, where buying everything leaves no error: the search then sets `limit` to the weight
-  /// of everything less this. The difference of two large sums would lose a small error.
+  /// Weight that may stay unbought, if buying everything leaves no error. The search then sets `limit` to the weight of
+  /// everything minus `left`. (The difference of two large sums would lose a small error.)
   std::optional<Weight> left = std::nullopt;
 
   Weight weight(std::uint64_t bytes, double gain) const;
-  /// Whether all of `weight`, on top of what is bought, may be bought. A size is never exceeded; an error is
-  /// brought down until the limit is reached.
+  /// Returns whether all of `weight` may be bought on top of `bought`. A size is never exceeded; an error is brought
+  /// down until the limit is reached.
   bool admits(Weight bought, Weight weight) const { return unit == 0 ? bought + weight <= limit : bought < limit; }
-  /// Whether a whole class of keys can be bought without looking at its members.
+  /// Returns whether a whole class of keys can be bought without looking at its members.
   bool admits_all(Weight bought, Weight weight) const {
     return unit == 0 ? bought + weight <= limit : bought + weight < limit;
   }
@@ -41,51 +40,52 @@ struct PurchaseGoal {
 /// Where buying ends.
 struct Threshold {
   double key = 0;                  ///< everything above it is bought; 0: everything can be
-  PurchaseGoal::Weight above = 0;  ///< the sum of that
-  /// Regions, rising, that have something of that very key, or are it; none where the search did not look.
+  PurchaseGoal::Weight above = 0;  ///< the weight of everything above `key`
+  /// Indices, rising, of the regions that have a purchase of exactly `key`, or are one. Absent if the search did not
+  /// look.
   std::optional<std::vector<std::int64_t>> tied{};
-  /// Bytes of all that has that key or a higher one, but for upper nodes: of an error's, with a preview, where the
-  /// steps are held.
+  /// Bytes of everything with a key of at least `key`, except upper nodes. Set only if the goal is an error, the file
+  /// has a preview and the steps are held.
   std::optional<std::uint64_t> bytes{};
 };
 
 class CutSearch {
  public:
-  /// Over the keys of `tree` (region_keys.h) and of the leaves' steps; all must outlive the object. `held`: the steps
-  /// of likely_keys(), or of every_key() where an error is the goal whose unit is not known before (error_unit()), or
-  /// null. `counts`: what those of likely_keys() take, or null.
+  /// Searches the keys of `tree` (region_keys.h) and of the leaves' steps. All arguments must outlive the object.
+  /// `held`: the steps of likely_keys(), or of every_key() if the goal is an error and error_unit() is not known
+  /// beforehand; or null. `counts`: the weights of the steps of likely_keys(), or null.
   CutSearch(const GainRule& rule, const RowStore& rows, const TreeRegions& tree, const HeldSteps* held,
             const KeyCounts* counts)
       : rule_(rule), rows_(rows), tree_(tree), held_(held), counts_(counts) {}
 
-  /// Where the cut is looked for first.
+  /// Returns the range of keys in which the search looks for the cut first.
   static KeyRange likely_keys(const GainRule& rule);
-  /// Of what is required, too.
+  /// Returns the range of all keys, kRequiredKey included.
   static KeyRange every_key();
-  /// The unit that saved errors are summed in, where it is known before they are: a bound of the error of nothing
-  /// bought is 2^112 of it. 0 where it is not.
+  /// Returns the unit in which saved errors are summed, or 0 if it is not known before they are. The unit is 2^-112 of
+  /// a bound of the error with nothing bought.
   static double error_unit(const GainRule& rule);
 
-  /// The smallest key for which everything above it can be bought for `goal`.
+  /// Returns the smallest key for which everything above it can be bought for `goal`.
   Threshold find_threshold(PurchaseGoal& goal);
 
  private:
   Threshold search(PurchaseGoal& goal);
-  // Of all that can be bought, by the range; and without the upper nodes.
+  // count() sums all purchases by `range`. count_steps() adds those below the upper nodes to `total`.
   KeyCounts count(const KeyRange& range, const PurchaseGoal& goal) const;
   void count_steps(const PurchaseGoal& goal, KeyCounts& total) const;
-  // Holds the `items` steps of the range where there is room.
+  // Holds the `items` steps of the range if there is room.
   void hold(const KeyRange& range, std::uint64_t items, const PurchaseGoal& goal);
   Threshold sorted_threshold(const PurchaseGoal& goal, PurchaseGoal::Weight above, const KeyRange& range) const;
-  // Calls begin() for each region, and what that returned with each step below the upper nodes that can be bought
-  // there; what has a key below `least_key` may be left out.
+  // Calls begin() for each region. Calls the function that begin() returned with each step in the region that can be
+  // bought. Upper nodes are left out; steps with keys below `least_key` may be.
   template <typename Begin>
   void for_each_key(const Begin& begin, double least_key = 0) const;
-  // The same with the parts of the held steps, of their range.
+  // The same with the parts of the held steps in place of regions: visits the steps in the held range.
   template <typename Begin>
   void for_each_held(const Begin& begin) const;
   bool holds(const KeyRange& range) const { return held_ != nullptr && held_->range().holds(range); }
-  // Whether what lies outside of the held range is known in the goal's weights.
+  // Returns whether the weights outside the held range are known in the goal's unit.
   bool knows_outside(const PurchaseGoal& goal) const {
     return goal.unit == 0 || goal.unit == held_->unit() || holds(every_key());
   }
@@ -95,7 +95,7 @@ class CutSearch {
   const TreeRegions& tree_;
   const HeldSteps* held_;
   const KeyCounts* counts_;
-  std::unique_ptr<HeldSteps> narrowed_;                         // of the range that the cut was found in
+  std::unique_ptr<HeldSteps> narrowed_;                         // steps of the range in which the cut was found
   mutable tbb::enumerable_thread_specific<RegionGains> gains_;  // of the region that a thread looks at
 };
 

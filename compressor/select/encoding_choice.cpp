@@ -11,7 +11,7 @@
 namespace weir {
 namespace {
 
-// Whether a packed file is too short for the preview that it has, where it need not have one.
+// Return whether a packed file is too short for an optional preview.
 bool is_short(std::uint64_t file_bytes, std::uint64_t preview_bytes) {
   return file_bytes < kLeastOfPreview * preview_bytes;
 }
@@ -36,13 +36,14 @@ class Candidate {
     return file_size_for(budget, dense, bytes_, request_.path);
   }
 
-  /// Whether the smallest file is as small as the budget, which is a size.
+  /// Returns whether the smallest file fits the budget, which is a size.
   bool fits(const Budget& budget) const {
     const std::uint64_t dense = float32_bytes(request_.domain);
     return bytes_.minimum.file_bytes <= asked_bytes(budget, dense);
   }
 
-  /// The first choice for the budget: of a target, the smallest file whose error is expected to meet it.
+  /// Makes the first choice for the budget. For an error target, that is the smallest file with an expected error that
+  /// meets it.
   void choose() {
     if (!request_.budget.by_error()) {
       size_ = size_for(request_.budget);
@@ -53,18 +54,18 @@ class Candidate {
       lowered_to_nothing && !ends_exact() ? choose_everything() : selection_.choose_error(target());
     } else {
       size_ = {0, "max_error", ""};
-      selection_.choose(bytes_.minimum.file_bytes);  // what the target requires is all there is
+      selection_.choose(bytes_.minimum.file_bytes);  // the target's required leaves are all there is to buy
     }
   }
 
-  /// Whether the chosen file is sure to be too short for its preview, before it is planned.
+  /// Returns whether, before it is planned, the chosen file is certain to be too short for its preview.
   bool is_sure_to_be_short() const {
     const std::optional<Selection::PreviewedBytes> bytes = selection_.previewed_bytes();
     return bytes &&
            is_short(bytes->most_of_file + bytes->most_of_file / 64, bytes->preview);  // more than roundings cost
   }
 
-  /// The chosen file; for a PSNR, where blocks are kept without loss, one that meets it.
+  /// Plans the chosen file. For a PSNR, if blocks can be kept without loss, the planned file meets it.
   FilePlan plan_chosen() {
     FilePlan file = plan_until_met();
     selection_.release_steps();  // another candidate may need their memory
@@ -82,7 +83,7 @@ class Candidate {
   FilePlan plan_until_met() {
     FilePlan file = planned(size_);
     if (request_.budget.kind != Budget::Kind::psnr || !ends_exact()) return file;
-    // The plan's error can come as near to nothing as is asked. Sums round.
+    // The plan's error can come as near to 0 as is asked. Because sums round, the target is lowered until it is met.
     for (double slack = 0x1p-48; file.plan.expected_error > target(); slack *= 256) {
       tree_ = std::move(file.tree);
       slack < 1 ? selection_.choose_error(target() * (1 - slack)) : choose_everything();
@@ -92,9 +93,9 @@ class Candidate {
     return file;
   }
 
-  // Whether every step that can be bought leads to no error.
+  // Returns whether buying every step leaves no error.
   bool ends_exact() const { return encoding_ == Encoding::float32 || encoding_ == Encoding::packed; }
-  // Of a plan for a PSNR.
+  // Returns the squared error of a plan for a PSNR.
   double target() const { return encoding_ == Encoding::float32 ? request_.squared_error : request_.planned_error; }
   void choose_everything() { selection_.choose(bytes_.full.file_bytes); }
 
@@ -116,13 +117,14 @@ class Candidate {
     return file;
   }
 
-  // Of an error that every voxel must be within, and of what is kept without loss, there is nothing to choose.
+  // Returns the kind of cut to search for. With a largest error for every voxel, or without loss, there is nothing to
+  // choose.
   static Selection::Search search_of(const Budget& budget) {
     if (budget.kind == Budget::Kind::lossless || budget.kind == Budget::Kind::max_error) return Selection::Search::no;
     return budget.kind == Budget::Kind::psnr ? Selection::Search::of_error : Selection::Search::of_bytes;
   }
 
-  // Every voxel reads a value in the volume's range, or the background.
+  // Returns a bound of the squared error: every voxel reads a value in the volume's range, or the background.
   static double most_error(const FileRequest& request) {
     const auto background = static_cast<double>(request.rule.fill.background);
     const double low = std::min(static_cast<double>(request.packed.constants.minimum), background);
@@ -147,7 +149,7 @@ class Candidate {
   std::unique_ptr<TreeRegions> tree_;
   Selection selection_;
   SelectionBytes bytes_ = selection_.bytes();
-  FileSize size_;  // of the choice; 0 bytes: what it takes
+  FileSize size_;  // size of the chosen file; 0 bytes: as many as it takes
 };
 
 bool can_quantise(const FileRequest& request) {
@@ -156,19 +158,19 @@ bool can_quantise(const FileRequest& request) {
 
 bool countable(const FilePlan& file) { return countable(file.plan.layout.counts); }
 
-// Why a quantised file cannot be lossless.
+// Returns the reason why a quantised file cannot be lossless.
 std::string lossy_leaves_text(const Candidate& quantised) {
   const std::uint64_t leaves = quantised.bytes().lossy_leaves;
   return cat(leaves, leaves == 1 ? " block needs" : " blocks need", " full float32");
 }
 
-// Whether the file is expected to do what its plan was asked for.
+// Returns whether the file is expected to meet the request.
 bool meets(const FileRequest& request, const Candidate& candidate, const FilePlan& file) {
   if (request.budget.kind != Budget::Kind::psnr) return candidate.lossless();
   return file.plan.expected_error <= (request.adjusted ? request.planned_error : request.squared_error);
 }
 
-// Throws Error(budget) where the budget is lossless and the encoding is not.
+// Throws Error(budget) if the budget is lossless and the encoding cannot be.
 void check_lossless(const FileRequest& request, Encoding encoding, const Candidate& candidate) {
   if (request.budget.kind != Budget::Kind::lossless || candidate.lossless()) return;
   throw Error(ErrorKind::budget, compose(request.path, ": ", option("encoding", encoding_name(encoding)),
@@ -176,14 +178,14 @@ void check_lossless(const FileRequest& request, Encoding encoding, const Candida
                                          option("encoding", "auto"), " or float"));
 }
 
-// Throws Error(budget) where the largest error that is asked for cannot be had. What a PSNR comes to is expected only:
-// there decoded values decide.
+// Throws Error(budget) if the encoding cannot meet the asked largest error. For a PSNR it does not throw, because the
+// plan's PSNR is only expected: decoded values decide.
 void check_target(const FileRequest& request, Encoding encoding, const Candidate& candidate, const FilePlan& file) {
   if (request.budget.kind != Budget::Kind::max_error || request.adjusted || meets(request, candidate, file)) return;
   throw unmet_target(request, encoding, file.plan.expected_error);
 }
 
-// The file of one encoding, by the budget.
+// Plans the file of one encoding for the budget.
 FilePlan plan_by_budget(const FileRequest& request, Encoding encoding, Candidate& candidate) {
   check_lossless(request, encoding, candidate);
   candidate.choose();
@@ -192,7 +194,7 @@ FilePlan plan_by_budget(const FileRequest& request, Encoding encoding, Candidate
   return file;
 }
 
-// The packed file with a preview, where it is long enough for one.
+// Plans the packed file with a preview. Returns nullopt if it is not long enough for a preview.
 std::optional<FilePlan> plan_previewed(const FileRequest& request, const RowStore& rows, WorkDirectory& work) {
   Candidate candidate(request, Encoding::packed, rows, work, true);
   const bool asks_size = request.budget.by_size() || request.budget.kind == Budget::Kind::automatic;
@@ -239,7 +241,7 @@ FilePlan plan_lossless(const FileRequest& request, const RowStore& rows, WorkDir
   return plain.plan(size);
 }
 
-// Of a float file in place of `quantised`, where that may spare planning it.
+// Returns the bounds of a float file in place of `quantised`, if they may make planning that file unnecessary.
 std::optional<FloatBound> float_bound(const FileRequest& request, const RowStore& rows, const FilePlan& quantised) {
   const bool weighed = request.rule.visibility != nullptr;  // the bound is of what all voxels lose
   if (request.plans_float || weighed || !countable(quantised) || !rows.team().alone()) return std::nullopt;
@@ -251,12 +253,12 @@ FilePlan plan_best(const FileRequest& request, const RowStore& rows, WorkDirecto
   const FileSize size = candidate.size_for(request.budget);
   FilePlan quantised = candidate.plan(size);
   if (quantised.plan.loses_nothing && countable(quantised)) return quantised;
-  // A file of this kind may be shorter than what is allowed, as it has nothing to do with more.
+  // A quantised file may be shorter than the allowed size if it cannot use more bytes.
   const std::uint64_t dense = float32_bytes(request.domain);
   const std::uint64_t allowed = request.budget.by_size() ? asked_bytes(request.budget, dense) : size.bytes;
   if (const std::optional<FloatBound> bound = float_bound(request, rows, quantised)) {
     const double least = bound->least_error(allowed);
-    if (least > 0 && quantised.plan.expected_error <= least) {  // with no error, bits decide
+    if (least > 0 && quantised.plan.expected_error <= least) {  // without error, the bits decide
       quantised.float_error = least;
       quantised.float_error_is_bound = true;
       return quantised;
@@ -267,11 +269,11 @@ FilePlan plan_best(const FileRequest& request, const RowStore& rows, WorkDirecto
   if (size.kind == "minimum") return quantised;
   FilePlan plain = other.plan(other.size_for(request.budget));
   if (countable(plain) != countable(quantised)) return std::move(countable(plain) ? plain : quantised);
-  if (request.rule.visibility != nullptr) {  // what a scene weighs is not measured: expectations decide
+  if (request.rule.visibility != nullptr) {  // weighted errors are not measured: expected errors decide
     return plain.plan.expected_error <= quantised.plan.expected_error ? std::move(plain) : std::move(quantised);
   }
   if (plain.plan.expected_error == 0) return plain;
-  // The estimate may be wrong by a million, where values lie near a lattice that a width happens to hold.
+  // The estimate may be wrong by a factor of a million if values lie near a lattice that a width happens to hold.
   quantised.float_error = plain.plan.expected_error;
   return quantised;
 }

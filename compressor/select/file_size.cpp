@@ -10,8 +10,8 @@
 
 namespace weir {
 
-// 2.3 in binary is a little less than 2.3, and 92 bytes would become 41. In integers, because dense_bytes may
-// exceed 2^53.
+// The decimal digits count because 2.3 in binary is a little less than 2.3, and 92 bytes would become 41. Integers,
+// because dense_bytes may exceed 2^53.
 std::uint64_t bytes_at_rate(std::uint64_t dense_bytes, double rate) {
   std::array<char, 32> text{};
   std::to_chars(text.data(), text.data() + text.size(), rate, std::chars_format::scientific);  // "2.3e+00"
@@ -34,7 +34,7 @@ std::uint64_t bytes_at_rate(std::uint64_t dense_bytes, double rate) {
     remainder = remainder * 10 % digits;
   }
   for (; power > 0 && quotient > 0; --power) {
-    remainder += quotient % 10;  // from here on only zero or not counts
+    remainder += quotient % 10;  // from here on it only matters whether it is 0
     quotient /= 10;
   }
   return quotient + (remainder > 0 ? 1 : 0);

@@ -1,4 +1,4 @@
-// The size that a file will have, from the budget that was asked for.
+// Computes the size of a file from the budget.
 #pragma once
 
 #include <cstdint>
@@ -17,13 +17,14 @@ struct FileSize {
   Message notice;  ///< one line for the user where the size is not what was asked, or pads a lot; may be empty
 };
 
-/// ceil(dense_bytes / rate), exact for the decimal number that `rate` was written as.
+/// Returns ceil(dense_bytes / rate), exact for the shortest decimal form of `rate`.
 std::uint64_t bytes_at_rate(std::uint64_t dense_bytes, double rate);
 
-/// What a budget of bytes asks for: its size, or that of its rate.
+/// Returns the bytes that a budget asks for: its size, or bytes_at_rate() of its rate.
 std::uint64_t asked_bytes(const Budget& budget, std::uint64_t dense_float32_bytes);
 
-/// Exact file size for a budget that is not by error. Throws Error(budget) naming the minimum where it is below that.
+/// Returns the exact file size for a budget that is not by error. Throws Error(budget) that names the minimum if the
+/// budget is below it.
 FileSize file_size_for(const Budget& budget, std::uint64_t dense_float32_bytes, const SelectionBytes& bytes,
                        const std::string& path);
 

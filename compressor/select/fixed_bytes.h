@@ -1,4 +1,4 @@
-// What a file takes besides what is bought for its blocks: the part of a budget that is spent before selection.
+// The bytes of a file that are not bought for its blocks: the part of a budget that is spent before selection.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +9,12 @@
 
 namespace weir {
 
-/// Regions of 128^3 voxels that a domain has a part in.
+/// Returns the number of regions of 128^3 voxels that overlap `domain`.
 std::uint64_t region_count(const Box& domain);
 
-/// Bytes of a file over `domain` in which all upper nodes and `regions` lower ones are open and nothing else is kept:
-/// head, tree, macrocells, of a packed one also its tables and its regions' directories. With Preview::automatic a
-/// packed file of `asked` bytes, which has a preview where that is a small part of it.
+/// Returns the bytes of a file over `domain` with all upper nodes and `regions` lower nodes open and nothing else kept:
+/// head, tree and macrocells, and for a packed file also its tables and its regions' directories. With
+/// Preview::automatic, a packed file has a preview if that is a small part of `asked` bytes.
 std::uint64_t fixed_bytes(const Box& domain, Encoding encoding, Preview preview, std::uint64_t asked,
                           std::uint64_t regions);
 

@@ -13,17 +13,18 @@
 namespace weir {
 namespace {
 
-// More than sums of a volume's errors are rounded by, whatever their order.
+// More than the relative rounding of sums of a volume's errors, in any order.
 constexpr double kSlack = 0x1p-20;
 
 constexpr unsigned kShift = 51;  // of the bits of an error, to its class
 
 std::uint64_t class_of(double error) { return std::bit_cast<std::uint64_t>(error) >> kShift; }
 
-// The least error of a class.
+// Returns the least error of a class.
 double least_of(std::size_t index) { return std::bit_cast<double>(std::uint64_t{index} << kShift); }
 
-// What a leaf loses at least as a tile: its squared deviations from its mean, which the row's `mean` is rounded from.
+// Returns the least error of a leaf as a tile: its squared deviations from its exact mean. The row's `mean` is that
+// mean, rounded.
 double error_of_dropped(const LeafRow& row) {
   if (row.finite == 0) return 0;
   const auto residual = static_cast<double>(row.residual);

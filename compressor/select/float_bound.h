@@ -1,5 +1,5 @@
-// What a file of float32 leaves loses at least at a size, and takes at least for an error: from one pass over the rows,
-// where planning that file takes several.
+// Lower bounds for a file of float32 leaves: its error at a size, and its size for an error. One pass over the rows
+// finds them, while planning the file takes several passes.
 #pragma once
 
 #include <cstdint>
@@ -10,21 +10,21 @@
 
 namespace weir {
 
-/// Bounds that no choice of leaves and no value of their tiles can go below: as if nodes took no bytes, and every leaf
-/// that is dropped read the mean of its values. For stores of one process.
+/// Bounds that hold for every choice of leaves and of tile values. They are computed as if nodes took no bytes and
+/// every dropped leaf read the mean of its values. For stores of one process.
 class FloatBound {
  public:
   FloatBound(const TreeRegions& tree, const RowStore& rows);
 
-  /// Of the squared error over the finite voxels of a file of so many bytes.
+  /// Returns a lower bound of the squared error over the finite voxels of a file of `file_bytes`.
   double least_error(std::uint64_t file_bytes) const;
-  /// Of the bytes of a file that loses at most `squared_error`.
+  /// Returns a lower bound of the bytes of a file that loses at most `squared_error`.
   std::uint64_t least_bytes(double squared_error) const;
 
  private:
-  // Leaves that lose about the same where they are dropped, two classes an octave.
+  // Leaves that lose about the same error when dropped. There are two classes an octave.
   struct Class {
-    double error = 0;  // of all of them
+    double error = 0;  // sum over the class
     std::uint64_t leaves = 0;
   };
 

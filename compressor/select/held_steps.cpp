@@ -13,7 +13,7 @@ bool HeldSteps::Part::grow() {
       count_into(*counts);
       counts_ = std::move(counts);
     }
-    pieces_.clear();  // of use to nobody; their memory goes with the object
+    pieces_.clear();  // the steps are no longer useful; their memory is freed with the object
     return false;
   }
   pieces_.push_back(piece);

@@ -1,5 +1,6 @@
-// The steps that a selection can buy, where a window is known those about its cut, held in memory as a pass over the
-// rows finds them, so that the cut among them is found without further passes; where they are too many, what they take.
+// Holds the steps that a selection can buy in memory as one pass over the rows finds them, so that no further pass is
+// needed to find the cut. If a window is known, only steps near the cut are held. If there are too many steps, only
+// their bytes are counted.
 #pragma once
 
 #include <tbb/enumerable_thread_specific.h>
@@ -18,15 +19,15 @@
 
 namespace weir {
 
-/// Holds the steps whose keys lie in a range; of all others only the sums of bytes and of saved errors. Steps of one
-/// thread lie together.
+/// Holds the steps with keys in a range, and only the sums of bytes and of saved errors of all other steps. The steps
+/// of one thread lie together.
 class HeldSteps {
  public:
   /// The opening of a region, or a step of a leaf in it.
   class Step {
    public:
     static Step opening(std::int64_t region, double key, double gain) { return {region, key, gain, 0}; }
-    /// `position` is the leaf's.
+    /// `position` is the leaf's position in the region.
     static Step of_leaf(std::int64_t region, double key, std::size_t position, const LeafStep& step) {
       const auto of_leaf = static_cast<std::uint32_t>(position) | std::uint32_t{step.level} << kPositionBits;
       return {region, key, step.gain, of_leaf | step.bytes << kBytesShift};
@@ -37,7 +38,7 @@ class HeldSteps {
     std::int32_t region;
 
     bool opens() const { return level() == 0; }
-    /// What the file grows by; `region_bytes` where it opens a region.
+    /// Returns the bytes by which the step makes the file grow: `region_bytes` if it opens a region.
     std::uint32_t bytes(std::uint64_t region_bytes) const {
       return opens() ? static_cast<std::uint32_t>(region_bytes) : leaf_ >> kBytesShift;
     }
@@ -57,19 +58,18 @@ class HeldSteps {
     std::uint32_t leaf_;
   };
 
-  /// Takes up to `most_bytes` of memory, as it is needed. An opening takes `region_bytes` in the file. `counts`:
-  /// whether the bytes of steps that find no room are counted. Saved errors are summed in units of `unit`, unless that
-  /// is 0.
+  /// Takes up to `most_bytes` of memory as needed. Opening a region takes `region_bytes` in the file. `counts`: whether
+  /// the bytes of steps without room are counted. Saved errors are summed in units of `unit`, unless `unit` is 0.
   HeldSteps(const KeyRange& range, std::uint64_t most_bytes, std::uint64_t region_bytes, bool counts = false,
             double unit = 0)
       : range_(range), pieces_(most_bytes), region_bytes_(region_bytes), counting_(counts), unit_(unit) {}
   HeldSteps(const HeldSteps&) = delete;
   HeldSteps& operator=(const HeldSteps&) = delete;
 
-  /// Memory for so many steps of this machine's threads.
+  /// Returns the memory in bytes for `steps` steps, found by this machine's threads.
   static std::uint64_t bytes_for(std::uint64_t steps);
 
-  /// One thread's. Keys of 0 are never bought.
+  /// The steps of one thread. Steps with a key of 0 are ignored because they are never bought.
   class Part {
    public:
     explicit Part(HeldSteps& all) : all_(&all) {}
@@ -85,9 +85,9 @@ class HeldSteps {
         counts_->add(step.key, step.bytes(all_->region_bytes_));
       }
     }
-    /// How many it holds: those of a region are added by one thread, one after the other.
+    /// Returns the number of steps held. One thread adds all steps of a region, one after the other.
     std::size_t size() const { return pieces_.size() * kPieceSteps - room_; }
-    /// Calls visit(step) for those from `first` on, so many.
+    /// Calls visit(step) for `count` steps from step `first` on.
     template <typename Visit>
     void for_each(std::size_t first, std::size_t count, const Visit& visit) const {
       for (std::size_t i = first; i < first + count; ++i) {
@@ -104,26 +104,27 @@ class HeldSteps {
     HeldSteps* all_;
     std::vector<std::span<std::byte>> pieces_;
     Step* next_ = nullptr;
-    std::size_t room_ = 0;  // steps that the last piece still takes
+    std::size_t room_ = 0;  // steps that still fit the last piece
     OutsideSums outside_;
     OutsideSums outside_gains_;
-    std::unique_ptr<KeyCounts> counts_;  // of the range, in place of steps
+    std::unique_ptr<KeyCounts> counts_;  // of the range, once steps find no room
   };
   Part& part() { return parts_.local(); }
 
-  /// Whether every step of the range is held.
+  /// Returns whether every step of the range is held.
   bool complete() const { return !overflown_; }
-  /// Whether further steps are of use.
+  /// Returns whether adding further steps is useful.
   bool takes_more() const { return complete() || counting_; }
-  /// Of all steps, held or counted; those of the range where it counts, or is complete.
+  /// Returns the counts of all steps, held or counted. Those inside the range are valid if complete() or if bytes are
+  /// counted.
   KeyCounts counts() const;
   const KeyRange& range() const { return range_; }
-  /// Bytes of the others.
+  /// Returns the bytes of the steps outside the range.
   OutsideSums outside() const { return sum_of(&Part::outside_); }
-  /// What the others save, in units of unit().
+  /// Returns the error that the steps outside the range save, in units of unit().
   OutsideSums outside_gains() const { return sum_of(&Part::outside_gains_); }
   double unit() const { return unit_; }
-  /// In no order.
+  /// Returns the held steps, in no order.
   std::vector<std::span<const Step>> steps() const;
 
  private:

@@ -1,4 +1,4 @@
-// The weights of what can be bought in a range of keys, in buckets of it.
+// Histograms of the weights of purchases over a range of keys.
 #pragma once
 
 #include <algorithm>
@@ -10,17 +10,17 @@
 
 namespace weir {
 
-/// Sums of purchases whose keys lie in a range, in buckets of 2^shift consecutive keys (as bits), and the sums of those
-/// outside the range.
+/// Sums of purchases with keys in a range, in buckets of 2^shift consecutive keys (as bits), and sums of the purchases
+/// with keys outside the range.
 struct KeyCounts {
-  // As many as a core's cache holds.
+  // As many buckets as a core's cache holds.
   static constexpr std::uint64_t kMostBuckets = std::uint64_t{1} << 14U;
 
   explicit KeyCounts(const KeyRange& keys) : range(keys) {
     while ((range.end - range.first - 1) >> shift >= kMostBuckets) ++shift;
     buckets.resize(((range.end - range.first - 1) >> shift) + 1);
   }
-  /// A key of 0 is never bought.
+  /// Adds a purchase. A key of 0 is ignored because it is never bought.
   void add(double key, PurchaseSum::Weight weight) {
     if (!(key > 0)) return;
     const PurchaseSum one{weight, 1};
@@ -30,7 +30,7 @@ struct KeyCounts {
       outside.add(range, key, one);
     }
   }
-  /// Of the same range.
+  /// Adds counts of the same range.
   void operator+=(const KeyCounts& other) {
     for (std::size_t i = 0; i < buckets.size(); ++i) buckets[i] += other.buckets[i];
     outside += other.outside;

@@ -1,4 +1,4 @@
-// What purchases come to, by their keys.
+// Sums of purchases: their weight and number, also split by whether their keys are required, above or below a range.
 #pragma once
 
 #include <algorithm>
@@ -11,9 +11,9 @@
 
 namespace weir {
 
-/// Bytes, or saved error in the units of a PurchaseGoal (cut_search.h).
+/// A sum of purchases. `weight` is bytes, or saved error in the units of a PurchaseGoal (cut_search.h).
 struct PurchaseSum {
-  // Whole numbers, so that sums do not depend on the order of the threads.
+  // Integers, so that sums do not depend on the order of the threads.
   using Weight = unsigned __int128;
   Weight weight = 0;
   std::uint64_t items = 0;
@@ -23,8 +23,8 @@ struct PurchaseSum {
   }
 };
 
-/// The whole part of a number from 0, of either sign, to below 2^128, by its bits: a conversion by the compiler is a
-/// call.
+/// Returns the integer part of `value`, which is 0 (of either sign) or positive and below 2^128. Works on the bits
+/// because the compiler's conversion is a function call.
 inline PurchaseSum::Weight whole_part(double value) {
   constexpr int kMantissaBits = 52;
   const auto bits = std::bit_cast<std::uint64_t>(value);
@@ -34,10 +34,10 @@ inline PurchaseSum::Weight whole_part(double value) {
   return shift < 0 ? digits >> -shift : PurchaseSum::Weight{digits} << shift;
 }
 
-/// A saved error in units of `unit`, an error too.
+/// Returns the saved error `gain` in units of the error `unit`; 0 if `gain` is negative.
 inline PurchaseSum::Weight gain_weight(double gain, double unit) { return whole_part(std::max(0.0, gain) / unit); }
 
-/// Of purchases whose keys are not in a range.
+/// Sums of purchases with keys outside a range.
 struct OutsideSums {
   enum Part : std::size_t { required, above, below };
   std::array<PurchaseSum, 3> parts{};

@@ -1,5 +1,5 @@
-// What becomes of the leaves of a 128^3 region: each a tile, or kept at some level,
-// in the order of the lower node's masks (x<<8 | y<<4 | z), and a spill file of them.
+// The choices for the leaves of a 128^3 region: each leaf becomes a tile or is kept at some level. Choices are in the
+// order of the lower node's masks (x<<8 | y<<4 | z), and are spilled to a file.
 #pragma once
 
 #include <array>
@@ -24,11 +24,11 @@ constexpr std::uint32_t leaf_bytes(LeafWidth width) {
 }
 static_assert(leaf_bytes(LeafWidth::float32) == nvdb::kFloatLeafBytes);
 
-/// How a block is kept: a LeafWidth, or of a packed block a level of its ladder (compressor/packed/packed_ladder.h).
+/// How a block is kept: a LeafWidth, or for a packed block a level of its ladder (compressor/packed/packed_ladder.h).
 /// 0: as a tile, or without a stream.
 using KeptLevel = std::uint8_t;
 
-/// Besides a leaf's level, whether anything of it can be seen: by a scene, if one decides what matters.
+/// The level of each leaf of a region, and whether anything of the leaf can be seen. Without a scene, all can be seen.
 class LeafChoices {
  public:
   static constexpr std::size_t kLeaves = 4096;
@@ -56,7 +56,7 @@ class LeafChoices {
 };
 static_assert(sizeof(LeafChoices) == 4096, "choices are spilled as they are");
 
-/// Where the kept leaves of a region lie among each other.
+/// The place of each kept leaf among the kept leaves of its region.
 class LeafPlaces {
  public:
   explicit LeafPlaces(const LeafChoices& choices) : choices_(choices) {
@@ -68,7 +68,7 @@ class LeafPlaces {
 
   struct Place {
     std::uint32_t leaves = 0;  ///< kept before this position
-    std::uint32_t bytes = 0;   ///< of those
+    std::uint32_t bytes = 0;   ///< of these leaves
   };
 
   LeafWidth width(std::size_t position) const { return choices_.width(position); }
@@ -78,7 +78,7 @@ class LeafPlaces {
     for (std::size_t p = position / kRow * kRow; p < position; ++p) advance(place, p);
     return place;
   }
-  /// Of all leaves.
+  /// Returns the number and bytes of all kept leaves.
   Place total() const { return rows_.back(); }
 
  private:

@@ -38,7 +38,7 @@ double distance(Metric metric, const BrickRange& range, float background) {
   return 0;
 }
 
-// Rank of the brick of so many leaves along an axis that holds a leaf, in its region.
+// Returns the rank, in its region, of the brick that holds `leaf`. A brick has kSide leaves along each axis.
 template <std::int64_t kSide>
 std::uint32_t brick_of(const Index3& leaf) {
   constexpr std::int64_t kBricks = kLowerLeaves / kSide;
@@ -56,8 +56,8 @@ LeafStep step_to(LeafWidth width, LeafWidth from, double gain) {
   return {gain, gain / static_cast<double>(bytes), bytes, static_cast<KeptLevel>(width)};
 }
 
-// Bits a voxel that hold a leaf of `voxels` in-domain voxels without loss, `background` in the place of those without a
-// value; 0: more than 16, or not known.
+// Returns the bits a voxel that hold a leaf of `voxels` in-domain voxels without loss, with `background` in place of
+// voxels without a finite value. 0: more than 16 bits, or not known.
 unsigned exact_bits(const LeafRow& row, std::int64_t voxels, float background) {
   if (row.finite == voxels || row.exact_bits == 0) return row.exact_bits;
   const float low = std::min(row.min, background);
@@ -71,7 +71,7 @@ unsigned exact_bits(const LeafRow& row, std::int64_t voxels, float background) {
   return lattice ? bits_for(lattice->largest) : 0;
 }
 
-// The widest width of FpN that can be of use to a leaf: what is exact needs no more bits.
+// Returns the widest width of FpN that is useful to a leaf: a leaf that is exact needs no more bits.
 LeafWidth widest(const LeafRow& row, std::int64_t voxels, float background) {
   const unsigned exact = exact_bits(row, voxels, background);
   LeafWidth width = LeafWidth::bits1;
@@ -81,7 +81,8 @@ LeafWidth widest(const LeafRow& row, std::int64_t voxels, float background) {
   return width;
 }
 
-// Steps on the lower convex hull of (bytes, error) from `from`, whose error is `error`, to `last`; error_at(width).
+// Adds the steps on the lower convex hull of (bytes, error) from width `from`, with error `error`, to width `last`.
+// error_at(width) returns the error at a width.
 template <typename ErrorAt>
 void add_hull(const ErrorAt& error_at, LeafWidth from, double error, LeafWidth last, LeafGain& leaf, RegionGains& out) {
   std::array<double, 5> errors{};
@@ -101,7 +102,7 @@ void add_hull(const ErrorAt& error_at, LeafWidth from, double error, LeafWidth l
   }
 }
 
-// What the leaf's last step keeps it at.
+// Returns the width at which the leaf's last step keeps it.
 LeafWidth last_width(const LeafGain& leaf) {
   return leaf.step_count == 0 ? LeafWidth::tile : static_cast<LeafWidth>(leaf.steps[leaf.step_count - 1].level);
 }
@@ -180,7 +181,7 @@ void GainRule::add_bounded_step(const LeafRow& row, std::int64_t voxels, float t
                                 LeafGain& leaf, RegionGains& out) const {
   const bool seen = weights.tile > 0;
   leaf.required = leaf.required || (seen && row.max_abs_about(tile) > *max_error);
-  leaf.lossless = !leaf.required;  // met by the tile
+  leaf.lossless = !leaf.required;  // the tile meets the error
   if (!leaf.required) return;
   LeafWidth width = LeafWidth::tile;
   for (const LeafWidth candidate : widths_of(encoding)) {

@@ -1,5 +1,5 @@
-// What keeping a leaf is worth: the steps by which its error is bought down, and
-// so the order in which leaves are bought.
+// The worth of keeping a leaf: the steps that buy its error down. Their keys decide the order in which leaves are
+// bought.
 #pragma once
 
 #include <array>
@@ -21,12 +21,12 @@
 
 namespace weir {
 
-/// All of a leaf that is kept, narrowest first.
+/// All widths of a kept leaf, narrowest first.
 inline constexpr std::array kLeafWidths{LeafWidth::bits1, LeafWidth::bits2,  LeafWidth::bits4,
                                         LeafWidth::bits8, LeafWidth::bits16, LeafWidth::float32};
 
-/// The widths that a decided encoding may use for a leaf, narrowest first; of packed that of the corners of its
-/// preview.
+/// Returns the widths that an encoding may use for a leaf, narrowest first. For packed: the width of the corner leaves
+/// of its preview.
 constexpr std::span<const LeafWidth> widths_of(Encoding encoding) {
   const std::span<const LeafWidth> all = kLeafWidths;
   switch (encoding) {
@@ -46,46 +46,47 @@ constexpr std::span<const LeafWidth> widths_of(Encoding encoding) {
   return all.last(1);
 }
 
-/// From one way to keep a leaf to the next better one. Without initial values, so that room for many costs nothing.
+/// A step from one way to keep a leaf to the next better one. Members have no initial values, so that allocating room
+/// for many steps costs nothing.
 struct LeafStep {
   double gain;          ///< squared error saved, or the brick's distance
   double key;           ///< for sse gain / bytes, else gain: steps are bought by falling key
-  std::uint32_t bytes;  ///< what the file grows by
+  std::uint32_t bytes;  ///< by which the file grows
   KeptLevel level;
 };
 
 struct LeafGain {
-  /// In the order they are bought, keys falling: the convex hull of error over bytes. None where the tile
-  /// reads the same bits. They live in the RegionGains.
+  /// The steps in the order in which they are bought, keys falling: the convex hull of error over bytes. None if the
+  /// tile reads the same bits. The RegionGains own them.
   LeafStep* steps = nullptr;
   std::uint32_t step_count = 0;
-  std::uint32_t brick = 0;     ///< rank of its brick in the region; of itself for sse
+  std::uint32_t brick = 0;     ///< rank of its brick in the region; for sse the leaf's own rank
   std::uint16_t position = 0;  ///< in the lower node's masks: x<<8 | y<<4 | z
   bool exact = false;          ///< its tile reads the same bits: never worth a leaf
   bool required = false;       ///< always a leaf: its first step is taken whatever it saves
   bool lossless = false;  ///< the last step, or the tile, reads the same bits (within max_error, or cannot be seen)
 
   std::span<const LeafStep> all_steps() const { return {steps, step_count}; }
-  /// Of the first step; 0 where there is none.
+  /// Returns the gain of the first step; 0 if there is no step.
   double first_gain() const { return step_count == 0 ? 0 : steps[0].gain; }
 };
 
 /// The gains of a region's leaves, in leaf-index order. Movable, not copyable: leaves point to their steps.
 class RegionGains {
  public:
-  /// Most steps of one leaf.
+  /// The most steps of one leaf.
   static constexpr std::size_t kMostSteps = 36;
   static_assert(kMostSteps > PackedLadder::kMostRungs + PackedLadder::kMostNear, "each way of a ladder, the exact one");
-  /// Most bytes of a region's.
+  /// The most bytes of a region's gains and steps.
   static constexpr std::uint64_t kMostBytes = LeafChoices::kLeaves * (sizeof(LeafGain) + kMostSteps * sizeof(LeafStep));
 
-  // Pages that no step touches cost nothing.
+  // Not initialised: pages that no step touches cost nothing.
   RegionGains()
       : leaves_(std::make_unique_for_overwrite<LeafGain[]>(LeafChoices::kLeaves)),
         steps_(std::make_unique_for_overwrite<LeafStep[]>(LeafChoices::kLeaves * kMostSteps)) {}
 
   void clear() { leaf_count_ = step_count_ = 0; }
-  /// The steps that come are those of `leaf`.
+  /// Begins `leaf`: the steps that add() gets next belong to it.
   void begin(LeafGain& leaf) { leaf.steps = steps_.get() + step_count_; }
   void add(LeafGain& leaf, const LeafStep& step) {
     steps_[step_count_++] = step;
@@ -100,7 +101,7 @@ class RegionGains {
   std::size_t size() const { return leaf_count_; }
   const LeafGain& operator[](std::size_t i) const { return leaves_[i]; }
 
-  /// Of a packed region: the values by which its steps were found.
+  /// For a packed region: the shared values by which its steps were found.
   SharedValues shared;
 
  private:
@@ -110,46 +111,45 @@ class RegionGains {
   std::size_t step_count_ = 0;
 };
 
-/// Decides gains; the same for every thread, plan and memory ceiling.
+/// The rule that decides gains. The result is the same for every number of threads, plan and memory ceiling.
 struct GainRule {
   Metric metric = Metric::sse;
   std::int64_t brick_leaves = 1;  ///< leaves along a brick of the paper's metrics: 1, 2 or 4
   Fill fill;
   Encoding encoding = Encoding::float32;  ///< not automatic
-  /// Every voxel must read within this of its value: a leaf whose tile does not is required, at the first
-  /// width that does (quantised over its whole range), and nothing else is worth a byte. What no width can do
-  /// counts as lossy.
+  /// The largest error that a voxel may have. If a leaf's tile exceeds it, the leaf is required at the first width that
+  /// meets it (quantised over the leaf's whole range). Nothing else is worth a byte. A leaf that no width can hold
+  /// within the error counts as lossy.
   std::optional<double> max_error = std::nullopt;
-  /// Where a scene decides what matters: errors are weighted by what it shows of them, and what it cannot show is
-  /// never worth a byte. For Metric::sse, over rows with reaches.
+  /// The visibility by a scene, or null. Errors are weighted by what the scene shows of them, and a leaf that it cannot
+  /// show is never worth a byte. For Metric::sse, over rows with reaches.
   const Visibility* visibility = nullptr;
-  /// Blocks are packed: the steps of each are those of its ladder, over rows that have one.
+  /// Set if blocks are packed: the steps of each block come from its ladder, which the rows then have.
   std::optional<PackedRule> packed = std::nullopt;
 
-  /// What opening a region takes in the file, and opening an upper node.
+  /// Return the bytes that opening a region and opening an upper node take in the file.
   std::uint64_t region_bytes() const {
     if (!packed) return nvdb::kLowerBytes;
     return kChunkCost + (packed->preview ? nvdb::kLowerBytes : 0);
   }
   std::uint64_t upper_bytes() const { return packed ? 0 : nvdb::kUpperBytes; }
 
-  /// Weight of the error where a block of that reach reads `tile`.
+  /// Returns the weight of the error of a block of that `reach` that reads `tile`.
   double tile_weight(const MinMax& reach, float tile) const;
 
-  /// Gains of a region's leaves in leaf-index order. The two corner leaves of the domain, those that hold
-  /// non-finite values to keep, and packed blocks without a finite value that would not read the background are
-  /// required. Leaves that are not, and whose steps all have keys below `least_key`, may have none: to find their steps
-  /// is most of the work.
+  /// Finds the gains of a region's leaves in leaf-index order. Required are the two corner leaves of the domain, leaves
+  /// that hold non-finite values to keep, and packed blocks without a finite value that would not read the background.
+  /// Other leaves may get no steps if all their keys are below `least_key`, because finding steps is most of the work.
   void gains(const TreeRegions& tree, const RegionRows& rows, RegionGains& out, double least_key = 0) const;
 
-  /// Adds a packed block's steps to `out`: `leaf` says whether a block without a stream reads the same bits, and
-  /// whether it is required. `reach` is null where everything counts alike.
+  /// Adds a packed block's steps to `out`. `leaf` says whether the block reads the same bits without a stream, and
+  /// whether it is required. `reach` is null if all errors count alike.
   void add_packed_steps(const PackedLadder& ladder, const SharedValues& region, const RegionStreams& streams,
                         const LeafRow& row, std::int64_t voxels, const MinMax* reach, LeafGain& leaf,
                         RegionGains& out) const;
 
  private:
-  // What a squared error counts where the leaf reads its tile, and where it is kept.
+  // The weights of a squared error if the leaf reads its tile, and if the leaf is kept.
   struct Weights {
     double tile = 1;
     double kept = 1;
@@ -159,20 +159,21 @@ struct GainRule {
   void add_steps(const LeafRow& row, std::int64_t voxels, float tile, const Weights& weights, LeafGain& leaf,
                  RegionGains& out) const;
   Weights weights_of(const MinMax* reach, float tile) const;
-  // Whether no step of a leaf that may be a tile has a key of `least_key`, as far as is known without its steps.
+  // Returns whether it is certain, without finding the steps, that all keys of a leaf that may be a tile are below
+  // `least_key`.
   bool keys_below(double least_key, const LeafRow& row, float tile, const Weights& weights) const;
-  // The paper's metrics: gain of each leaf from its brick's range.
+  // For the paper's metrics: sets the gain of each leaf from its brick's range.
   void rank_bricks(const RegionRows& rows, RegionGains& leaves) const;
 };
 
-/// Squared error over the finite values of a leaf of `voxels` in-domain voxels kept at `width`, the others replaced
-/// by `background`: 0 where keeps_every_bit(), else an estimate.
+/// Returns the squared error over the finite values of a leaf of `voxels` in-domain voxels that is kept at `width`,
+/// with `background` in place of its other values: 0 if keeps_every_bit(), otherwise an estimate.
 double quantised_error(const LeafRow& row, std::int64_t voxels, float background, LeafWidth width);
-/// Bound of |decoded - value| over a leaf's in-domain voxels at `width`, quantised over its whole range: half a
-/// quantum, and what the decoder rounds, fused or not. `background` takes the place of non-finite values.
+/// Returns a bound of |decoded - value| over a leaf's in-domain voxels at `width`, quantised over its whole range: half
+/// a quantum plus the decoder's rounding, fused or not. `background` takes the place of non-finite values.
 double bounded_error(const LeafRow& row, std::int64_t voxels, float background, LeafWidth width);
-/// Whether a leaf of `voxels` in-domain voxels, kept at `width`, reads every bit, and `background` in the place of
-/// non-finite values.
+/// Returns whether a leaf of `voxels` in-domain voxels reads every bit if it is kept at `width` with `background` in
+/// place of non-finite values.
 bool keeps_every_bit(const LeafRow& row, std::int64_t voxels, float background, LeafWidth width);
 
 }  // namespace weir

@@ -14,7 +14,7 @@
 namespace weir {
 namespace {
 
-// The leaves of a box, and those around it.
+// The leaves of a box and the leaves around it.
 struct Neighbourhood {
   Box box;
   std::vector<LeafRow> rows;
@@ -30,7 +30,7 @@ class Reaches {
   Reaches(const NodeLattice& leaves, const Fill& fill, const CellPlaces* places)
       : leaves_(leaves), fill_(fill), places_(places) {}
 
-  // Where the leaf's voxels lie in the volume that a scene shows.
+  // Returns where the leaf's voxels lie in the volume that the scene shows.
   Box place_of(const Index3& leaf) const {
     const Box voxels = leaves_.voxels(leaf);
     if (places_ == nullptr) return voxels;
@@ -62,13 +62,15 @@ class Reaches {
   }
 
  private:
-  // Where in the leaf a value is not finite is not known: the background may be anywhere.
+  // Widens `reach` by the background if it replaces a value of the leaf. The position of that value is not known, so
+  // the background may be anywhere in the leaf.
   void widen_by_background(const Index3& leaf, const LeafRow& row, MinMax& reach) const {
     const bool keeps = fill_.non_finite == NonFinitePolicy::keep;
     if (!keeps && row.finite < leaves_.voxels(leaf).voxels()) widen(reach, {fill_.background, fill_.background});
   }
 
-  // By one layer beyond the face toward another cell, as the bounds change from the opposite face to that one.
+  // Widens `reach` by one layer beyond the face toward another cell. The bounds continue to change as they do from the
+  // opposite face to this face.
   static void extrapolate(const LeafFaces& faces, const Index3& toward, const Index3& extent, MinMax& reach) {
     if (std::abs(toward.x) + std::abs(toward.y) + std::abs(toward.z) != 1) return;
     const MinMax& near = faces.touched_from(toward);

@@ -77,7 +77,7 @@ std::optional<float> commonest(std::vector<std::uint32_t> values) {
   return std::bit_cast<float>(values[best]);
 }
 
-// The median of the blocks' means, each counted by its finite voxels.
+// Returns the median of the blocks' means, each weighted by its finite voxels.
 float median_of(const RegionRows& rows, float fallback) {
   std::vector<std::pair<float, std::uint32_t>> means;
   std::uint64_t count = 0;
@@ -167,7 +167,8 @@ float shared_value(const RegionRows& rows, const Fill& fill, const SharedUse& us
   if (8 * voxels_if([&](const LeafRow& row) { return rule.may_spare(row); }) >= 7 * all) {
     if (const float median = median_of(rows, fill.background); 8 * spared_by(median) >= 7 * all) return median;
   }
-  // Blocks of few voxels, as at a border, often have one value. What reads that instead of the mean is far off.
+  // Blocks of few voxels, for example at a border, often have one value. A block that reads that value instead of the
+  // mean is far off.
   const bool spares = rule.is_strict() || 128 * with_uniform >= all;
   return uniform && spares ? *uniform : sums.mean;
 }

@@ -11,14 +11,14 @@
 namespace weir {
 namespace {
 
-// A way to keep a packed block. Without initial values, as is a corner: there is room for many, and few are there.
+// A way to keep a packed block. Like Corner, it has no initial values, because there is room for many but few are used.
 struct PackedPoint {
   std::uint32_t bytes;
   double error;
   KeptLevel level;
 };
 
-// The error that a byte saves from one way to a longer one.
+// Returns the error saved per byte from one way to a longer one.
 double key_between(const PackedPoint& from, const PackedPoint& to) {
   return (from.error - to.error) / static_cast<double>(to.bytes - from.bytes);
 }

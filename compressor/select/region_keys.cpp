@@ -8,9 +8,10 @@
 namespace weir {
 namespace {
 
-// The best ratio of saved error to bytes over opening a region and taking the k best steps of its leaves: all whose own
-// ratio is higher. The ratio of those above any ratio is at most the best one, so that each pass leaves out what the
-// last one took too much, until none is left (Dinkelbach 1967): four or five of them. The steps of each leaf fall.
+// Returns the best ratio of saved error to bytes of opening a region and taking the k best steps of its leaves. The
+// best steps are all steps with a higher ratio of their own. For any given ratio, opening and the steps above that
+// ratio together reach at most the best ratio. So each pass drops the steps that the last pass took too many of, until
+// none is left to drop (Dinkelbach 1967): four or five passes. The keys of each leaf's steps fall.
 double hull_step(double opening_gain, std::uint64_t opening_bytes, const RegionGains& gains) {
   const auto ratio_with = [&](const auto& takes) {
     double saved = opening_gain;
@@ -43,10 +44,10 @@ void RegionKeys::summarize_region(std::int64_t index, const RegionRows& rows, co
     builder.sums.valued = builder.sums.valued || row.valued();
   });
   builder.close_mean(rule_.fill.background);
-  // A region of one value keeps its very bits: a mean of -0.0 would be +0.0.
+  // A region of one value keeps that value's bits: a computed mean of -0.0 would be +0.0.
   const LeafRow& first = rows.at(rows.leaf_box().lo);
   if (first.uniform() && builder.sums.min == builder.sums.max) builder.sums.mean = first.mean;
-  // Packed blocks without a stream, and regions without any, read one value.
+  // Packed blocks without a stream, and regions without streams, read one shared value.
   const std::optional<float> shared_value = rule_.packed ? std::optional(gains.shared.value) : std::nullopt;
   const float tile = shared_value ? *shared_value : tile_value(rule_.fill, builder.sums);
   region.packed_value = tile;
@@ -88,7 +89,7 @@ void RegionKeys::summarize_region(std::int64_t index, const RegionRows& rows, co
   }
 }
 
-// The weighted errors of a region: sets that of its one tile, returns that of its leaves' tiles.
+// Sets the region's weighted error as one tile, and returns the weighted error of its leaves' tiles.
 double RegionKeys::weigh_region(Region& region, const RegionRows& rows, float tile,
                                 std::optional<float> shared_value) const {
   region.tile_error = 0;
@@ -103,7 +104,7 @@ double RegionKeys::weigh_region(Region& region, const RegionRows& rows, float ti
   return dropped_leaves;
 }
 
-// Whether anything of a region that reads `tile` can be seen.
+// Returns whether anything of a region that reads `tile` can be seen.
 bool RegionKeys::sees(const Region& region, float tile) const {
   return rule_.visibility == nullptr || rule_.tile_weight(region.reach, tile) > 0;
 }
@@ -122,7 +123,7 @@ void RegionKeys::summarize_upper(std::int64_t index) {
   const float tile = tile_value(rule_.fill, builder.sums);
   builder.sums.exact = builder.sums.keeps_values = true;
   double tiles = 0;     // squared error with one tile per region
-  double weighted = 0;  // and with one for all, where a scene weighs
+  double weighted = 0;  // squared error with one tile for all regions, if a scene weighs
   bool seen = false;
   bool exceeded = false;
   tree_.for_each_region_of(index, [&](std::int64_t r) {
@@ -142,14 +143,14 @@ void RegionKeys::summarize_upper(std::int64_t index) {
   upper.sums = builder.sums;
   if (rule_.packed) {
     upper.tile_error = tiles;
-    upper.key = kRequiredKey;  // costs nothing here: what the tree takes is in every file alike
+    upper.key = kRequiredKey;  // costs nothing here: the tree's bytes are the same in every file
     return;
   }
   upper.tile_error = rule_.visibility == nullptr ? upper.sums.sse_about(tile) : std::max(weighted, tiles);
   set_key(upper, tiles, seen, exceeded);
 }
 
-// Counts, bounds and mean of an upper node's regions; their squares can be added.
+// Returns counts, bounds and mean over an upper node's regions, in a builder to which the squares can be added.
 TileSumsBuilder RegionKeys::sums_to_mean(std::int64_t upper) const {
   TileSumsBuilder builder;
   const TileSums* first = nullptr;
@@ -165,8 +166,9 @@ TileSumsBuilder RegionKeys::sums_to_mean(std::int64_t upper) const {
   return builder;
 }
 
-// Key and opening gain of an upper node whose key is its regions' highest so far. `tiles`: its squared error with one
-// tile per region; `seen`, `exceeded`: whether its one tile is seen anywhere, and further off than the rule allows.
+// Sets key and opening gain of an upper node. Its key so far is the highest key of its regions. `tiles`: its squared
+// error with one tile per region. `seen`: its one tile can be seen somewhere. `exceeded`: its one tile exceeds the
+// rule's largest error somewhere.
 void RegionKeys::set_key(Upper& upper, double tiles, bool seen, bool exceeded) const {
   const double opening_gain = std::max(0.0, upper.tile_error - tiles);
   if (rule_.fill.splits(upper.sums.finite, kUpperDim * kUpperDim * kUpperDim)) {

@@ -1,5 +1,5 @@
-// The sums and keys of the inner levels of the tree: what a 128^3 region or a 4096^3
-// block is worth as a node, from the rows and gains of its leaves.
+// The sums and keys of the inner levels of the tree: the worth of a 128^3 region or a 4096^3 block as a node, from the
+// rows and gains of its leaves.
 #pragma once
 
 #include <cstdint>
@@ -11,15 +11,15 @@
 
 namespace weir {
 
-/// Fills the entries of `tree`, which with the rule must outlive the object.
+/// Fills the entries of `tree`. The tree and the rule must outlive the object.
 class RegionKeys {
  public:
   RegionKeys(const GainRule& rule, TreeRegions& tree) : rule_(rule), tree_(tree) {}
 
-  /// Sums, tile error, opening gain and key of the region, its reach where a scene weighs, and its packed value and
-  /// means; its leaves have those rows and gains. Thread-safe for different regions.
+  /// Sets the region's sums, tile error, opening gain and key, its reach if a scene weighs errors, and its packed value
+  /// and means. `rows` and `gains` belong to its leaves. Thread-safe for different regions.
   void summarize_region(std::int64_t index, const RegionRows& rows, const RegionGains& gains);
-  /// The same of all upper nodes, from their regions.
+  /// Sets the same for all upper nodes, from their regions.
   void summarize_uppers();
 
  private:

@@ -17,7 +17,7 @@ bool all_held(const RowStore& store) {
          (store.ladders() == nullptr || store.ladders()->held() != nullptr);
 }
 
-// The rows of a box of leaves, where they lie or read into buffers.
+// The rows of a box of leaves: in memory where they lie, or read into buffers.
 class BoxRows {
  public:
   BoxRows(const RowStore& store, const Box& box, RowBuffers& buffers) : first_(box.lo), extent_(box.extent()) {
@@ -63,8 +63,8 @@ RegionRows read_region(const RowStore& store, const Box& leaf_box, RowBuffers& b
 
 void for_each_region(const TreeRegions& tree, const RowStore& store, const Box& regions,
                      const std::function<void(std::int64_t, const RegionRows&)>& visit) {
-  // One task: a region, or where rows are read a segment of regions along x, whose rows lie in long runs; shorter where
-  // threads would have no work.
+  // One task is a region or, if rows are read from a file, a segment of regions along x, because its rows lie in long
+  // runs. Segments are shorter if threads would otherwise have no work.
   const Index3 extent = regions.extent();
   const std::int64_t busy = 4 * static_cast<std::int64_t>(tbb::this_task_arena::max_concurrency());
   const std::int64_t longest = all_held(store) ? 1 : store.room().segment_regions;

@@ -18,15 +18,15 @@ class RegionRows {
              const PackedLadder* ladders = nullptr)
       : rows_(rows), reaches_(reaches), ladders_(ladders), row_extent_(row_extent), leaf_box_(leaf_box) {}
 
-  /// Lattice positions of its leaves.
+  /// Returns the lattice positions of the region's leaves.
   const Box& leaf_box() const { return leaf_box_; }
-  /// Row of the leaf at lattice position `leaf`.
+  /// Returns the row of the leaf at lattice position `leaf`.
   const LeafRow& at(const Index3& leaf) const { return rows_[linear_index(leaf - leaf_box_.lo, row_extent_)]; }
 
-  /// Values that lookups in or next to that leaf can give; only where the store has reaches.
+  /// Returns the range of values that lookups in or next to `leaf` can give. Only if the store has reaches.
   const MinMax& reach(const Index3& leaf) const { return reaches_[linear_index(leaf - leaf_box_.lo, row_extent_)]; }
 
-  /// Of the block at lattice position `leaf`; only where the store has ladders.
+  /// Returns the ladder of the block at lattice position `leaf`. Only if the store has ladders.
   const PackedLadder& ladder(const Index3& leaf) const {
     return ladders_[linear_index(leaf - leaf_box_.lo, row_extent_)];
   }
@@ -49,7 +49,7 @@ class RegionRows {
   Box leaf_box_;
 };
 
-/// Bytes of the rows of one region, with their reaches, and of their ladders where blocks are packed.
+/// Bytes of the rows and reaches of one region, and bytes of its ladders if blocks are packed.
 inline constexpr std::uint64_t kRegionRowsBytes = 16ULL * 16 * 16 * (sizeof(LeafRow) + sizeof(MinMax));
 inline constexpr std::uint64_t kRegionLaddersBytes = 16ULL * 16 * 16 * sizeof(PackedLadder);
 
@@ -60,15 +60,15 @@ struct RowBuffers {
   std::vector<PackedLadder> ladders;
 };
 
-/// The rows of one region, read into `buffers` where they do not lie in memory.
+/// Returns the rows of one region, read into `buffers` if they do not lie in memory.
 RegionRows read_region(const RowStore& store, const Box& leaf_box, RowBuffers& buffers);
 
-/// Calls visit(region index, rows) once for each region of a box of region-lattice positions; regions
-/// next to each other in x come one after the other on one thread, others in parallel and in any order.
+/// Calls visit(region index, rows) once for each region of a box of region-lattice positions. One thread visits a run
+/// of neighbours in x one after the other. Runs are visited in parallel and in any order.
 void for_each_region(const TreeRegions& tree, const RowStore& store, const Box& regions,
                      const std::function<void(std::int64_t, const RegionRows&)>& visit);
 
-/// The same for the regions of this rank of the store's team: all of them where there is no other.
+/// Does the same for the regions of this rank of the store's team: all regions if there is no other rank.
 void for_each_own_region(const TreeRegions& tree, const RowStore& store,
                          const std::function<void(std::int64_t, const RegionRows&)>& visit);
 

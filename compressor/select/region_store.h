@@ -1,4 +1,4 @@
-// One record of each region, in a file.
+// A file with one record per region.
 #pragma once
 
 #include <cstdint>
@@ -29,13 +29,13 @@ class RegionStore {
     read_into(region, record);
     return record;
   }
-  /// Of records too large for the stack.
+  /// Returns a region's record on the heap, for records too large for the stack.
   std::unique_ptr<Record> read_allocated(std::int64_t region) const {
     auto record = std::make_unique<Record>();
     read_into(region, *record);
     return record;
   }
-  /// After each rank has written those of its regions.
+  /// Shares the file among the ranks. Call it after each rank has written the records of its regions.
   void publish(Team& team) { team.publish(*file_); }
 
  private:

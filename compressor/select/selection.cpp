@@ -100,7 +100,7 @@ void Selection::hold(std::int64_t index, const RegionGains& gains) {
   HeldSteps::Part& part = held_->part();
   const std::size_t first = part.size();
   part.add(HeldSteps::Step::opening(index, region.key, region.opening_gain));
-  if (region.key != 0) {  // else no leaf in it has a higher one
+  if (region.key != 0) {  // with a region key of 0, no leaf in it has a higher key
     std::byte* const levels = levels_ == nullptr ? nullptr : levels_->bytes().data() + i * LeafChoices::kLeaves;
     const std::uint64_t end = held_->range().end;
     for_each_step(gains, region.key, [&](double key, const LeafGain& leaf, const LeafStep& step) {
@@ -117,7 +117,7 @@ void Selection::release_steps() {
   held_.reset();
 }
 
-// Of a file in which so much is bought.
+// Returns the layout of a file with the purchases in `bought`.
 TreeLayout Selection::layout_of(const Purchases& bought) const {
   NodeCounts counts;
   counts.root_tiles = tree_.uppers.size();
@@ -169,7 +169,7 @@ void Selection::resolve_ties(const PurchaseGoal& goal, const Threshold& threshol
     rule_.gains(tree_, read_region(rows_, tree_.leaf_box(index), buffers), gains);
     const std::vector<LeafPurchase> ties = tied_steps(gains, region.key, cut_.threshold);
     for (std::size_t first = 0; first < ties.size();) {
-      std::size_t end = first + 1;  // a brick goes as one
+      std::size_t end = first + 1;  // a brick is bought as a whole
       while (rule_.metric != Metric::sse && end < ties.size() && ties[end].leaf->brick == ties[first].leaf->brick)
         ++end;
       LeafStep all{};
@@ -181,7 +181,7 @@ void Selection::resolve_ties(const PurchaseGoal& goal, const Threshold& threshol
       first = end;
     }
   }
-  // What is left are upper nodes that save error by themselves, with one tile per region.
+  // Upper nodes remain that save error by themselves, with one tile per region.
   for (Upper& upper : tree_.uppers) {
     if (upper.key == cut_.threshold && !upper.open) upper.open = buy(rule_.upper_bytes(), upper.opening_gain);
     if (upper.key == cut_.threshold && !upper.open) return;
@@ -200,7 +200,7 @@ void Selection::choose(std::uint64_t file_bytes) {
     for (Upper& upper : tree_.uppers) upper.open = upper.key > 0;
     return;
   }
-  // Everything but what is bought has the same size in every file of this domain.
+  // Everything that is not bought has the same size in every file of this domain.
   const std::uint64_t fixed = bytes_.minimum.content_end - required_bytes_;
   buy_for({0, file_bytes - fixed});
 }
@@ -211,12 +211,14 @@ void Selection::choose_error(double squared_error) {
   const double error = all_tiles.value();
   cut_ = Cut{};
   most_bytes_.reset();
-  // Every gain is at most the error of nothing bought, which is 2^84 units or more, so that sums of small ones do not
-  // round. Where no bound of it is known before, or one far above it, it is 2^90: sums of 2^37 gains fit.
+  // Every gain is at most the error with nothing bought. That error is 2^84 units or more, so that sums of small gains
+  // do not round. If no bound of the error is known beforehand, or a bound far above it, the error is 2^90 units: sums
+  // of 2^37 gains fit.
   PurchaseGoal goal;
   goal.unit = CutSearch::error_unit(rule_);
   if (goal.unit == 0 || error < std::ldexp(goal.unit, 84)) goal.unit = std::ldexp(error, -90);
-  // Nothing need be bought: sums of gains may round to more than this error, and would buy for the difference.
+  // If nothing needs to be bought, the search is skipped: sums of gains may round to more than this error, and the
+  // difference would be bought.
   if (error <= squared_error) return choose(bytes_.minimum.file_bytes);
   if (!(goal.unit > 0)) return choose(bytes_.full.file_bytes);
   const bool ends_exact = rule_.packed || rule_.encoding == Encoding::float32;
@@ -226,7 +228,7 @@ void Selection::choose_error(double squared_error) {
     goal.limit = goal.weight(0, error - squared_error);
   }
   buy_for(goal);
-  // Of so small an error the sums round, and a plan that misses it is followed by others.
+  // For so small an error the sums round. A plan that misses the error is followed by further plans.
   if (squared_error < std::ldexp(error, -40)) most_bytes_.reset();
 }
 
@@ -272,7 +274,7 @@ std::optional<LeafChoices> Selection::held_choices(std::int64_t index) const {
     tied = tied || step.key == cut_.threshold;
     if (step.key > cut_.threshold) choices.set(step.position(), step.level());
   });
-  // Of ties the order decides.
+  // The order of purchases decides ties, and the held steps alone do not tell it.
   if (tied && index <= cut_.tie_region) return std::nullopt;
   return choices;
 }
@@ -284,7 +286,7 @@ LeafChoices Selection::choices(std::int64_t index, const RegionRows& rows, Regio
   if (const std::optional<LeafChoices> held = held_choices(index)) return *held;
   rule_.gains(tree_, rows, gains, cut_.threshold);
   for (const LeafGain& leaf : gains) {
-    // Keys fall from step to step: the last one above the cut is the width.
+    // Keys fall from step to step: the last step above the cut decides the width.
     for (std::uint32_t i = 0; i < leaf.step_count && step_key(leaf, i, region.key) > cut_.threshold; ++i) {
       choices.set(leaf.position, leaf.steps[i].level);
     }

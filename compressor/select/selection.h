@@ -1,15 +1,17 @@
-// Selection under a byte budget: which leaves are kept, which 128^3 regions become lower nodes, which 4096^3 blocks
-// upper nodes.
+// Selection under a byte budget: decides which leaves are kept, which 128^3 regions become lower nodes, and which
+// 4096^3 blocks become upper nodes.
 //
-// Everything that can be bought has a key, the error it saves per byte: a leaf's step to its next better width
-// (leaf_gain.h), a lower node (33,856 bytes) and an upper node (270,400). A node's key is at least that of anything
-// below it: a region's is the best ratio over all k of what opening it and taking the k best steps of its leaves saves
-// to what they cost (its step on the convex hull), and no step in it has a higher one. The budget then buys in the
-// order of keys, so that any larger budget buys a superset: error never grows with size. An error to be met instead of
-// a size ends the same way, with the error saved counted in place of the bytes. The steps: region_keys.h gives regions
-// and upper nodes their keys, cut_search.h finds the cut, and of what has the cut's own key as much is bought as fits:
-// by region index, then by key, then by leaf index (step_keys.h). Memory is that of TreeRegions, for any number of
-// leaves, and that of the steps that are held where there is room (held_steps.h).
+// Every purchase has a key, the error it saves per byte. The purchases are a leaf's step to its next better width
+// (leaf_gain.h), a lower node (33,856 bytes) and an upper node (270,400 bytes). A node's key is at least the key of
+// anything below it. A region's key is the best ratio of saved error to bytes, over all k, of opening the region and
+// taking the k best steps of its leaves (its step on the convex hull). No step in the region has a higher key. The
+// budget buys in the order of keys, so a larger budget buys a superset: error never grows with size. If an error must
+// be met instead of a size, buying ends in the same way, but saved error is counted in place of bytes.
+//
+// The stages: region_keys.h gives regions and upper nodes their keys, then cut_search.h finds the cut. Of the purchases
+// whose key equals the cut, as many are bought as fit: by region index, then by key, then by leaf index (step_keys.h).
+// Memory is that of TreeRegions, for any number of leaves, plus the steps that are held if there is room
+// (held_steps.h).
 #pragma once
 
 #include <cstdint>
@@ -29,25 +31,25 @@
 
 namespace weir {
 
-/// The decided cut. Keys above `threshold` are bought; of those equal to it, all in regions before
-/// `tie_region`, the first `tie_steps` steps in it, and none after it.
+/// The decided cut. Keys above `threshold` are bought. Of the keys equal to it, all in regions before `tie_region`, the
+/// first `tie_steps` steps in `tie_region`, and none after it are bought.
 struct Cut {
   double threshold = 0;
   std::int64_t tie_region = 0;
   std::uint32_t tie_steps = 0;
 };
 
-/// What a selection comes to in the file.
+/// The bytes that a selection can take in the file.
 struct SelectionBytes {
-  TreeLayout minimum;              ///< the smallest file these rules allow
-  TreeLayout full;                 ///< every step of every leaf: more bytes buy nothing
-  std::uint64_t lossy_leaves = 0;  ///< leaves that lose something even then; 0 for float leaves
-  bool by_scene = false;           ///< what a scene cannot show is left out of all this
+  TreeLayout minimum;              ///< the smallest file that the rule allows
+  TreeLayout full;                 ///< the file with every step of every leaf: more bytes buy nothing
+  std::uint64_t lossy_leaves = 0;  ///< leaves that lose something even in the full file; 0 for float leaves
+  bool by_scene = false;           ///< all figures leave out leaves that a scene cannot show
 };
 
 class Selection {
  public:
-  /// Which cut will be searched for: steps are held for it, where there is room.
+  /// The kind of cut that will be searched for. Steps are held for it if there is room.
   enum class Search { no, of_bytes, of_error };
 
   /// Computes sums and keys of all regions and upper nodes: one pass over the rows.
@@ -55,29 +57,29 @@ class Selection {
 
   SelectionBytes bytes() const { return bytes_; }
 
-  /// Buys for a file of at most `file_bytes`, which is at least bytes().minimum: sets `open` of regions
-  /// and upper nodes in the tree.
+  /// Buys for a file of at most `file_bytes`, which is at least bytes().minimum. Sets `open` of regions and upper nodes
+  /// in the tree.
   void choose(std::uint64_t file_bytes);
 
-  /// Buys as little as brings the squared error expected of the finite voxels, weighted where the rule weighs, down
-  /// to `squared_error`; all there is where that is not enough. For Metric::sse.
+  /// Buys as little as brings the expected squared error of the finite voxels, weighted if the rule weighs, down to
+  /// `squared_error`. Buys everything if that is not enough. For Metric::sse.
   void choose_error(double squared_error);
 
-  /// What becomes of the leaves of a region, after choose(). `gains` is room to work in.
+  /// Returns the choices for the leaves of a region, after choose(). `gains` is scratch memory.
   LeafChoices choices(std::int64_t region, const RegionRows& rows, RegionGains& gains) const;
-  /// Gives back the memory of the steps that are held for choose() and choices(), which take longer without them.
+  /// Frees the steps that are held for choose() and choices(). Both take longer without the steps.
   void release_steps();
 
   const Cut& cut() const { return cut_; }
-  /// The key at which buying ended; nullopt where all was bought, or only what is required.
+  /// Returns the key at which buying ended; nullopt if all or only required steps were bought.
   std::optional<double> cut_key() const {
     const bool between = cut_.threshold > 0 && cut_.threshold < std::numeric_limits<double>::max();
     return between ? std::optional(cut_.threshold) : std::nullopt;
   }
   const GainRule& rule() const { return rule_; }
 
-  /// Of a packed file with a preview, after choose() or choose_error(): a bound of its bytes, which rounding may exceed
-  /// by a few thousandths, and the bytes of its preview. Nullopt where no bound is known.
+  /// For a packed file with a preview, after choose() or choose_error(): a bound of its bytes, which rounding may
+  /// exceed by a few thousandths, and the bytes of its preview. nullopt if no bound is known.
   struct PreviewedBytes {
     std::uint64_t most_of_file = 0;
     std::uint64_t preview = 0;
@@ -91,7 +93,7 @@ class Selection {
     std::uint64_t leaves = 0;
     std::uint64_t leaf_bytes = 0;
   };
-  // Where the steps of a region are held.
+  // The place of a region's held steps.
   struct HeldRegion {
     const HeldSteps::Part* part = nullptr;
     std::size_t first = 0;
@@ -99,7 +101,7 @@ class Selection {
   };
   void begin_holding(Search search);
   void hold(std::int64_t region, const RegionGains& gains);
-  // By the held steps; nullopt where these do not tell.
+  // Returns the choices by the held steps; nullopt if the held steps do not decide them.
   std::optional<LeafChoices> held_choices(std::int64_t region) const;
   TreeLayout layout_of(const Purchases& bought) const;
   void buy_for(PurchaseGoal goal);
@@ -109,10 +111,10 @@ class Selection {
   const RowStore& rows_;
   TreeRegions& tree_;
   SelectionBytes bytes_;
-  std::uint64_t required_bytes_ = 0;  // of what is bought whatever the goal
+  std::uint64_t required_bytes_ = 0;  // of purchases that every goal requires
   std::unique_ptr<HeldSteps> held_;
-  std::vector<HeldRegion> held_regions_;  // empty: what is chosen is found by the rows
-  // By region and position: a leaf's last step whose key is above the range of the held ones. Null: there are none.
+  std::vector<HeldRegion> held_regions_;  // empty: choices are found from the rows
+  // By region and position: the level of a leaf's last step with a key above the held range. Null: no such steps.
   std::unique_ptr<PageBuffer> levels_;
   std::unique_ptr<KeyCounts> counts_;  // of steps that are too many to be held
   Cut cut_;

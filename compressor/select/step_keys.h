@@ -1,5 +1,5 @@
-// The order in which a selection buys: the key of everything that can be bought is
-// the error that it saves per byte, and what has the higher key is bought first.
+// The order in which a selection buys. The key of a purchase is the error that it saves per byte. Higher keys are
+// bought first.
 #pragma once
 
 #include <bit>
@@ -11,15 +11,15 @@
 
 namespace weir {
 
-/// The key of what is bought whatever the budget.
+/// The key of a purchase that every budget requires.
 inline constexpr double kRequiredKey = std::numeric_limits<double>::infinity();
-/// Saves nothing that can be measured, but without it not every bit is kept: bought last.
+/// The key of a step that saves no measurable error but is needed to keep every bit: bought last.
 inline constexpr double kLastKey = std::numeric_limits<double>::denorm_min();
 
-/// Keys are not negative, so that their bits sort as they do.
+/// Returns the bits of `key`. Keys are not negative, so their bits sort in the same order.
 inline std::uint64_t key_bits(double key) { return std::bit_cast<std::uint64_t>(key); }
 
-/// Keys whose bits are in [first, end).
+/// The keys with bits in [first, end).
 struct KeyRange {
   std::uint64_t first;
   std::uint64_t end;
@@ -28,7 +28,8 @@ struct KeyRange {
   bool operator==(const KeyRange&) const = default;
 };
 
-/// Key of step `i` of a leaf in a region of `region_key`: never above it, and falling from step to step.
+/// Returns the key of step `i` of a leaf in a region with key `region_key`. Keys fall from step to step and are never
+/// above `region_key`, except a required first step, which has kRequiredKey.
 double step_key(const LeafGain& leaf, std::uint32_t i, double region_key);
 
 /// Calls visit(key, leaf, step) for the steps of a region's leaves.
@@ -45,8 +46,8 @@ struct LeafPurchase {
   std::uint32_t step;
 };
 
-/// The steps of a region's leaves whose key is `threshold`, in the order they are bought: the higher own key first,
-/// which is a leaf's earlier step too, then whole bricks, then the leaf index.
+/// Returns the steps of a region's leaves with the key `threshold`, in the order in which they are bought: first the
+/// step with the higher own key (of one leaf, the earlier step), then whole bricks, then by leaf index.
 std::vector<LeafPurchase> tied_steps(const RegionGains& gains, double region_key, double threshold);
 
 }  // namespace weir

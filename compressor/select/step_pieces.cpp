@@ -6,7 +6,7 @@
 
 namespace weir {
 
-// The kernel takes a tenth of a second for a GB of small pages, unless several threads give them back.
+// Several threads free the blocks, because the kernel takes a tenth of a second to free a GB of small pages.
 StepPieces::~StepPieces() {
   tbb::parallel_for(std::size_t{0}, blocks_.size(), [&](std::size_t i) { blocks_[i] = PageBuffer(0); });
 }

@@ -15,14 +15,14 @@ namespace {
 
 Kept kept_of_tiles(const TileSums& sums) { return kept_of(sums.keeps_values, sums.exact); }
 
-// What merges without regard to order.
+// The figures of a plan that can be merged in any order.
 struct PlanTally {
   double max_abs = 0;
   double seen_max_abs = 0;
   Kept kept = Kept::all;         // by tiles
-  Kept seen_kept = Kept::all;    // by those that can be seen
+  Kept seen_kept = Kept::all;    // by visible tiles
   std::uint64_t zeros_lost = 0;  // to tiles
-  bool leaves_exact = true;      // at their widths, where they can be seen
+  bool leaves_exact = true;      // visible leaves are exact at their widths
   std::array<std::uint64_t, 6> leaves_by_width{};
   std::array<std::uint64_t, kPackedKinds> blocks{};
 
@@ -40,9 +40,9 @@ struct PlanTally {
 
 // Squared errors of a region.
 struct RegionErrors {
-  double seen = 0;      // of what reads a tile and can be seen
-  double expected = 0;  // of kept leaves and, where a scene weighs, tiles; weighted
-  // Of what other readers see of a packed region.
+  double seen = 0;      // of visible voxels that read a tile
+  double expected = 0;  // of kept leaves and, if a scene weighs, of tiles; weighted
+  // Errors of the preview of a packed region, which other readers see.
   double preview = 0;
   double preview_max_abs = 0;
 };
@@ -52,14 +52,14 @@ class RegionPlanner {
  public:
   RegionPlanner(const GainRule& rule, const TreeRegions& tree) : rule_(rule), tree_(tree) {}
 
-  // Marks what can be seen.
+  // Marks the leaves that can be seen.
   void mark(const RegionRows& rows, LeafChoices& choices) const {
     rows.for_each([&](const Index3& leaf, const LeafRow&) {
       if (seen(rows, leaf)) choices.set_seen(tree_.mask_position(leaf));
     });
   }
 
-  // The leaves of an open region: `region.squared_error` is of those that became tiles.
+  // Adds the leaves of an open region. Sets `region.squared_error` to the error of the leaves that became tiles.
   RegionErrors add_leaves(const LeafChoices& choices, const RegionRows& rows, Region& region, PlanTally& tally) const {
     CompensatedSum squares;
     CompensatedSum seen_squares;
@@ -100,7 +100,7 @@ class RegionPlanner {
     return {seen_squares.value(), expected.value()};
   }
 
-  // A region that reads `value` all over.
+  // Adds a region in which every voxel reads `value`.
   RegionErrors add_tile(const RegionRows& rows, float value, Kept kept, Region& region, PlanTally& tally) const {
     region.squared_error = region.sums.sse_about(value);
     tally.max_abs = std::max(tally.max_abs, region.sums.max_abs_about(value));
@@ -115,7 +115,7 @@ class RegionPlanner {
     return {seen_squares.value(), expected.value()};
   }
 
-  // What a reader of the tree alone sees: in an open region each block's mean, else `value`.
+  // Adds the errors of a reader of the tree alone. It reads each block's mean if `means` is set, otherwise `value`.
   void add_preview(const RegionRows& rows, bool means, float value, RegionErrors& errors) const {
     CompensatedSum squares;
     rows.for_each([&](const Index3&, const LeafRow& row) {
@@ -145,7 +145,7 @@ class RegionPlanner {
   const TreeRegions& tree_;
 };
 
-// Of a packed file: chunks in the order of the nodes they would be. Returns the streams.
+// Numbers the chunks of a packed file in the order that their nodes would have. Returns the number of streams.
 std::uint64_t number_chunks(const PackedRule& rule, TreeRegions& tree, NodeCounts& counts) {
   std::uint64_t streams = 0;
   std::uint64_t bytes = 0;
@@ -189,7 +189,7 @@ void number_in_file_order(TreeRegions& tree, NodeCounts& counts) {
   });
 }
 
-// The streams of a region: `leaves` and `leaf_bytes` become those of its chunk.
+// Plans the streams of a region. Its `leaves` and `leaf_bytes` become the streams and bytes of its chunk.
 void plan_region_streams(const GainRule& rule, TreeRegions& tree, const RegionRows& rows, const LeafChoices& choices,
                          std::int64_t index, PlannedStreamsStore& streams) {
   Region& region = tree.regions[static_cast<std::size_t>(index)];
@@ -202,7 +202,7 @@ void plan_region_streams(const GainRule& rule, TreeRegions& tree, const RegionRo
   region.leaf_bytes = places.chunk_bytes();
 }
 
-// What plans are made from, and where their parts go.
+// The inputs of a plan, and the stores for its parts.
 struct PlanParts {
   const Selection& selection;
   TreeRegions& tree;
@@ -210,7 +210,7 @@ struct PlanParts {
   PlannedStreamsStore* streams;
 };
 
-// Plans a region: its choices, how much of it is kept, and what it loses.
+// Plans a region: its choices, the number of leaves kept, and its errors.
 RegionErrors plan_region(const PlanParts& parts, const RegionPlanner& planner, std::int64_t index,
                          const RegionRows& rows, RegionGains& gains, PlanTally& tally) {
   const GainRule& rule = parts.selection.rule();
@@ -244,7 +244,7 @@ RegionErrors plan_region(const PlanParts& parts, const RegionPlanner& planner, s
   return errors;
 }
 
-// The errors of all regions, in their order.
+// Returns a plan with the errors of all regions, summed in the regions' order.
 TreePlan summed(const GainRule& rule, const TreeRegions& tree, const std::vector<RegionErrors>& errors,
                 const PlanTally& total) {
   TreePlan plan;

@@ -1,6 +1,6 @@
-// The inner levels of the tree over a domain, held in memory: one small record
-// per 128^3 region (a lower node or one upper-level tile) and per 4096^3 block
-// (an upper node or one root tile). 10^12 voxels are 477,000 regions, 65 MB.
+// The inner levels of the tree over a domain, held in memory: one small record per 128^3 region (a lower node or one
+// tile of the upper node) and per 4096^3 block (an upper node or one root tile). 10^12 voxels have 477,000 regions,
+// 65 MB.
 #pragma once
 
 #include <cstddef>
@@ -18,30 +18,30 @@ namespace weir {
 /// Sums over the finite values of an inner node's in-domain voxels.
 struct TileSums {
   float mean = 0;  ///< rounded to float
-  float min = 0;   ///< valid where finite > 0
+  float min = 0;   ///< valid if finite > 0
   float max = 0;
   bool exact = false;         ///< one tile of the fill value reads every voxel bit for bit (Fill::exact)
-  bool keeps_values = false;  ///< it reads every finite value bit for bit
+  bool keeps_values = false;  ///< one tile of the fill value reads every finite value bit for bit
   bool valued = false;        ///< any voxel has a value, finite or not
   std::uint64_t finite = 0;
   std::uint64_t zeros = 0;
   double residual = 0;  ///< sum of (value - mean)
   double sse = 0;       ///< sum of (value - mean)^2
 
-  /// Zeros that a reader of `fill` in place of the values does not see.
+  /// Returns the number of zeros that are lost if every voxel reads `fill`.
   std::uint64_t zeros_lost_to(float fill) const { return fill == 0 ? 0 : zeros; }
-  /// Sum of (value - fill)^2.
+  /// Returns the sum of (value - fill)^2.
   double sse_about(float fill) const;
   double max_abs_about(float fill) const;
 };
 
-/// Value of the tile that replaces all voxels behind `sums`.
+/// Returns the value of the tile that replaces all voxels of `sums`.
 inline float tile_value(const Fill& fill, const TileSums& sums) {
   return fill.mode == FillMode::background || sums.finite == 0 ? fill.background : sums.mean;
 }
 
-/// Calls visit(position) for the lattice positions of a box in the order of NanoVDB, which sorts nodes and the entries
-/// of their tables by x first, z fastest.
+/// Calls visit(position) for the lattice positions of a box in NanoVDB's order: x slowest, z fastest. NanoVDB sorts
+/// nodes and the entries of their tables in this order.
 template <typename Visit>
 void for_each_in_file_order(const Box& box, const Visit& visit) {
   for (std::int64_t x = box.lo.x; x < box.hi.x; ++x) {
@@ -51,39 +51,40 @@ void for_each_in_file_order(const Box& box, const Visit& visit) {
   }
 }
 
-/// Whether the leaves of a box of lattice positions lie in the domain, all of each.
+/// Returns whether all leaves of a box of lattice positions lie entirely in the domain.
 inline bool are_whole(const NodeLattice& leaves, const Box& leaf_box) {
   const Index3 last = leaf_box.hi - Index3{1, 1, 1};
   return leaves.voxels(leaf_box.lo) == leaves.node_box(leaf_box.lo) && leaves.voxels(last) == leaves.node_box(last);
 }
 
-/// Whether a leaf is the first or the last of a volume: the box that others find is the domain by these two.
+/// Returns whether a leaf is the first or the last leaf of a volume. These two are always kept, so that the bounding
+/// box that other readers find is the domain.
 inline bool is_corner(const NodeLattice& leaves, const Index3& leaf) {
   return leaf == Index3{0, 0, 0} || leaf == leaves.count - Index3{1, 1, 1};
 }
 
 struct Region {
   TileSums sums;
-  double key = 0;                ///< error saved per byte by opening the region; +inf where it must be
-  double tile_error = 0;         ///< squared error as one tile, weighted where a scene weighs
-  double opening_gain = 0;       ///< what of that its leaves' tiles save
-  MinMax reach = kNoBounds;      ///< over the reaches of its leaves; where a scene weighs
+  double key = 0;                ///< error saved per byte by opening the region; +inf if it must be open
+  double tile_error = 0;         ///< squared error as one tile, weighted if a scene weighs
+  double opening_gain = 0;       ///< the part of `tile_error` that its leaves' tiles save
+  MinMax reach = kNoBounds;      ///< over the reaches of its leaves; set if a scene weighs
   bool open = false;             ///< a lower node; otherwise one tile of the upper node
   std::uint32_t leaves = 0;      ///< kept ones
   std::uint64_t node = 0;        ///< ordinal of the lower node in the file
   std::uint64_t first_leaf = 0;  ///< ordinal of its first kept leaf in the file
   std::uint64_t first_byte = 0;  ///< of that leaf, from the first leaf of the file
-  std::uint32_t leaf_bytes = 0;  ///< of its kept leaves; of a packed region its chunk
-  float packed_value = 0;        ///< of a packed file: what its blocks read that have no stream
-  MeanRange packed_means;        ///< and the range of the means of blocks that are not uniform
+  std::uint32_t leaf_bytes = 0;  ///< of its kept leaves; for a packed region, of its chunk
+  float packed_value = 0;        ///< for a packed file: the value of its blocks without a stream
+  MeanRange packed_means;        ///< for a packed file: the range of the means of blocks that are not uniform
   double squared_error = 0;      ///< of the finite voxels that read a tile
 };
 
 struct Upper {
   TileSums sums;
   double key = 0;
-  double tile_error = 0;    ///< squared error as one tile, weighted where a scene weighs
-  double opening_gain = 0;  ///< what of that its regions' tiles save
+  double tile_error = 0;    ///< squared error as one tile, weighted if a scene weighs
+  double opening_gain = 0;  ///< the part of `tile_error` that its regions' tiles save
   bool open = false;        ///< an upper node; otherwise one root tile
   std::uint64_t node = 0;   ///< ordinal of the upper node in the file
 };
@@ -97,17 +98,17 @@ struct TreeRegions {
 
   explicit TreeRegions(const Box& domain);
 
-  /// Lattice positions of the leaves of region i.
+  /// Returns the lattice positions of the leaves of `region`.
   Box leaf_box(std::int64_t region) const;
-  /// Position of a leaf in the masks of its lower node: x<<8 | y<<4 | z.
+  /// Returns the position of a leaf in the masks of its lower node: x<<8 | y<<4 | z.
   std::size_t mask_position(const Index3& leaf) const {
     static_assert(kLowerLeaves == 16);
     const Index3 node = leaves.first + leaf;
     return static_cast<std::size_t>((node.x & 15) << 8 | (node.y & 15) << 4 | (node.z & 15));
   }
-  /// Linear index of the upper node above region i.
+  /// Returns the linear index of the upper node above `region`.
   std::int64_t upper_of(std::int64_t region) const;
-  /// Position of a region in its upper node's table.
+  /// Returns the position of a region in its upper node's table.
   Index3 entry_of(std::int64_t region) const;
 
   /// Calls visit(upper index) in file order: by x, then y, then z.
@@ -126,11 +127,11 @@ struct TreeRegions {
   Box region_box(std::int64_t upper) const;
 };
 
-/// Sums of several parts (leaves or regions), added in a fixed order. Two passes: all parts must be
-/// added to the mean before the first is added to the squares.
+/// Builds the sums of several parts (leaves or regions), added in a fixed order. There are two passes: all parts must
+/// be added to the mean before the first part is added to the squares.
 class TileSumsBuilder {
  public:
-  /// A part of `finite` values with this mean, sum of deviations from it, and extrema.
+  /// Adds a part of `finite` values with this mean, sum of deviations from the mean, and extrema.
   void add_mean(std::uint64_t finite, double mean, double residual, float min, float max);
   void close_mean(float fallback);
   void add_squares(std::uint64_t finite, double mean, double residual, double sse);

@@ -18,14 +18,14 @@ namespace {
 
 struct Sample {
   float value;
-  std::uint32_t packed;  // twice the voxels it stands for, and 1 where it is several of that value
+  std::uint32_t packed;  // twice the number of voxels it stands for, plus 1 if it merges several samples
 
   std::uint32_t weight() const { return packed >> 1U; }
   bool repeated() const { return (packed & 1U) != 0; }
 };
 static_assert(std::max(kExactModeVoxels, kModeSamples* kLeafVoxels) < std::int64_t{1} << 31U);
 
-// Empty space gives one value over and over.
+// Adds a sample, or merges it with the last one if their values are equal: empty space gives one value many times.
 void add_sample(float value, std::uint32_t weight, std::vector<Sample>& samples) {
   if (!samples.empty() && samples.back().value == value) {
     samples.back().packed = (samples.back().packed + 2 * weight) | 1U;
@@ -38,7 +38,7 @@ std::size_t fullest(std::span<const std::uint64_t> counts) {
   return static_cast<std::size_t>(std::max_element(counts.begin(), counts.end()) - counts.begin());
 }
 
-// The values of this rank's part of the volume.
+// Calls visit(values) for each block of this rank's part of the volume.
 template <typename Visit>
 void for_each_own_value(VolumeSource& source, const BlockPlan& plan, const StreamOptions& options, Team& team,
                         Visit&& visit) {
@@ -63,7 +63,7 @@ Background mode_of_counts(const Survey& survey, std::size_t bin) {
   return best;
 }
 
-// The value with the most weight; none where no value occurs in two samples.
+// Returns the value with the most weight. `method` is empty if no value occurs in two samples.
 Background mode_of_samples(std::vector<Sample>& samples, double total, const std::string& method) {
   tbb::parallel_sort(samples.begin(), samples.end(),
                      [](const Sample& a, const Sample& b) { return a.value < b.value; });
@@ -75,7 +75,7 @@ Background mode_of_samples(std::vector<Sample>& samples, double total, const std
     for (; end < samples.size() && samples[end].value == samples[i].value; ++end) {
       weight += static_cast<double>(samples[end].weight());
     }
-    // A leaf's sample stands for many voxels and is no evidence by itself; a counted voxel likewise.
+    // A single sample is no evidence, even if it stands for the many voxels of a leaf.
     if ((end - i >= 2 || samples[i].repeated()) && weight > most) {
       most = weight;
       best = {samples[i].value + 0.0F, method, weight / total};
@@ -138,7 +138,7 @@ Background middle_of(const Survey& survey, std::size_t bin, std::uint64_t count)
 
 constexpr std::size_t kPaperBins = 1024;
 
-// The published code's arithmetic, all in Real = float.
+// The arithmetic of the published code, which uses Real = float throughout.
 template <typename Real>
 std::size_t paper_bin_in(Real value, Real min, Real max) {
   Real v = value - min;
@@ -152,7 +152,7 @@ Real paper_edge_in(std::size_t bin, Real min, Real max) {
   return static_cast<Real>(bin) / static_cast<Real>(kPaperBins - 1) * (max - min) + min;
 }
 
-// In double where the range overflows float, which ends in NaN in the published code.
+// Computes in double if the range overflows float. The published code gets NaN there.
 std::size_t paper_bin(float value, float min, float max) {
   return std::isfinite(max - min) ? paper_bin_in(value, min, max) : paper_bin_in<double>(value, min, max);
 }

@@ -35,7 +35,7 @@ BlockSurvey::ValueTable BlockSurvey::value_table(const SourceInfo& info) {
 // Surveys the leaves of one block.
 class BlockSurvey::Leaves {
  public:
-  // `faces` and `ladders` are empty where they are not asked for.
+  // `faces` and `ladders` are empty if they are not wanted.
   Leaves(const BlockSurvey& survey, const Block& block, const Box& leaf_box, std::span<LeafRow> rows,
          std::span<LeafFaces> faces, std::span<PackedLadder> ladders)
       : leaves_(survey.rows_.leaves()),
@@ -52,7 +52,7 @@ class BlockSurvey::Leaves {
         faces_(faces),
         ladders_(ladders) {}
 
-  // Takes the row of a leaf that was held back.
+  // Returns a function that stores the row of a leaf that SideBySide held back, and counts its values.
   auto keep_row(Tally& tally) const {
     return [this, &tally](const SideBySide::Leaf& leaf, std::span<const float> distinct, const LeafRow& row) {
       rows_[leaf.at] = row;
@@ -62,7 +62,7 @@ class BlockSurvey::Leaves {
     };
   }
 
-  // Leaves [first, end) of the block, x fastest.
+  // Surveys leaves [first, end) of the block, x fastest.
   void run(std::int64_t first, std::int64_t end, Tally& tally) const {
     SideBySide held(widths_);
     for_each_leaf(first, end, [&](std::size_t at, const Index3& leaf) {
@@ -73,7 +73,7 @@ class BlockSurvey::Leaves {
     held.finish(keep_row(tally));
   }
 
-  // Their ladders, once their rows are there, by what a coder has found of them where it has.
+  // Builds the ladders of leaves [first, end). Their rows must exist. Uses what a coder has `found`, if it is enough.
   void run_ladders(std::int64_t first, std::int64_t end, const std::optional<SurveyedBlocks>& found,
                    std::span<PackedLadder> ladders, Tally& tally) const {
     for_each_leaf(first, end, [&](std::size_t at, const Index3& leaf) {
@@ -117,13 +117,13 @@ class BlockSurvey::Leaves {
     }
   }
 
-  // The in-domain values of a leaf, x fastest.
+  // Returns the in-domain values of a leaf, x fastest.
   std::span<const float> gather(const Index3& leaf, std::array<float, kLeafVoxels>& values) const {
-    // Of the next leaf but one, in another line of the cache.
+    // Prefetches the next leaf but one, which lies in another cache line.
     return copy_leaf(block_.values, block_.voxels, leaves_.voxels(leaf), 2 * kLeafDim, values);
   }
 
-  // Surveys the leaf at `at` of the block, or holds it back, and returns false.
+  // Surveys leaf number `at` of the block and returns true, or gives the leaf to `held` and returns false.
   bool survey_leaf(const Index3& leaf, std::size_t at, SideBySide& held, Tally& tally) const {
     const Box inside = leaves_.voxels(leaf);
     const Index3 extent = inside.extent();
@@ -166,7 +166,7 @@ class BlockSurvey::Leaves {
                : tally.builder(*aim_).build_non_finite(block, row, rungs);
   }
 
-  // Each of `finite` so many times.
+  // Counts each value of `finite` `times` times.
   void count_values(std::span<const float> finite, std::size_t times, const LeafRow& row, Tally& tally) const {
     tally.min = std::min(tally.min, row.min);
     tally.max = std::max(tally.max, row.max);
@@ -221,7 +221,7 @@ class BlockSurvey::Leaves {
   const BlockSample& sample_;
   Counting counting_;
   bool has_missing_;
-  LeafCache* cache_;  // null where there is none
+  LeafCache* cache_;  // null if nothing is cached
   const Block& block_;
   const Box& leaf_box_;
   std::span<LeafRow> rows_;
@@ -252,10 +252,10 @@ void BlockSurvey::add(const Block& block, const Box& leaf_box, Sharing sharing) 
   std::vector<LeafRow> block_rows(static_cast<std::size_t>(volume(extent)));
   std::vector<LeafFaces> block_faces(faces_ == nullptr ? 0 : block_rows.size());
   std::vector<PackedLadder> block_ladders(ladders_ ? block_rows.size() : 0);
-  // A coder looks at the blocks while their rows are made here.
+  // A coder looks at the blocks while this function makes their rows.
   std::unique_ptr<LoadedBlocks> loaded;
   BlockCoder* const coder = ladders_ ? ladders_->surveying_coder() : nullptr;
-  if (coder != nullptr && !holds_one_value(block.values)) {  // empty space is not worth the way
+  if (coder != nullptr && !holds_one_value(block.values)) {  // empty space is not worth the transfer
     const NodeLattice& lattice = rows_.leaves();
     loaded = coder->load(block.values, block.voxels, lattice.nodes_box(leaf_box));
     if (loaded) loaded->begin_survey(ladders_->rung_ask());
@@ -268,7 +268,7 @@ void BlockSurvey::add(const Block& block, const Box& leaf_box, Sharing sharing) 
       part(first, end, tallies_.local());
     };
     if (sharing == Sharing::alone) return survey(0, volume(extent));
-    // Rows of a sample are short; of leaves that repeat their values several are looked at at once.
+    // The rows of a sample are short, hence 4. Leaves that repeat their values are surveyed several at once.
     const std::size_t least_run = block.parts == nullptr ? 4 : 4 * kLeafLanes;
     tbb::parallel_for(tbb::blocked_range<std::int64_t>(0, volume(extent), least_run),
                       [&](const auto& range) { survey(range.begin(), range.end()); });
@@ -307,7 +307,7 @@ bool BlockSurvey::take(const SurveyedBlock& found, const BlockSummary& summary, 
 }
 
 std::vector<std::uint32_t> BlockSurvey::take(const SurveyedBlocks& found, const Box& leaf_box) {
-  constexpr std::int64_t kRun = 128;  // rows and ladders of so many leaves stay in a core's cache
+  constexpr std::int64_t kRun = 128;  // leaves; their rows and ladders stay in a core's cache
   const NodeLattice& lattice = rows_.leaves();
   const Index3 extent = leaf_box.extent();
   const Index3 runs{ceil_div(extent.x, kRun), extent.y, extent.z};

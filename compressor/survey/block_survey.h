@@ -1,5 +1,5 @@
-// Surveys blocks that a pass over the volume, a simulation or several processes hand over, in any order and from
-// several threads.
+// Surveys blocks of a volume, in any order and from several threads. The blocks come from a pass over the volume, from
+// a simulation or from several processes.
 #pragma once
 
 #include <tbb/enumerable_thread_specific.h>
@@ -24,43 +24,45 @@
 
 namespace weir {
 
-/// Thread-safe but for tally().
+/// Thread-safe except for tally().
 class BlockSurvey {
  public:
-  /// Who counts the values of a volume: the survey, as they come, or who has them all (add_counts()).
+  /// Who counts the values of a volume: the survey, block by block, or the caller, who passes the counts to
+  /// add_counts().
   enum class Counting { here, elsewhere };
-  /// `rows` and, where not null, `faces` get what is kept of each leaf; all must outlive the object. `widths` and
-  /// `ladders` as for survey_volume.
+  /// `rows`, and `faces` if it is not null, receive the records of each leaf. All arguments must outlive the object.
+  /// `widths` and `ladders` are as in SurveyTask.
   BlockSurvey(const SourceInfo& info, RowStore& rows, LeafStore<LeafFaces>* faces, bool widths, Trace* trace,
               const std::optional<LadderAim>& ladders = std::nullopt, Counting counting = Counting::here);
 
-  /// Who surveys the leaves of a block: the calling thread, or TBB's workers too.
+  /// Who surveys the leaves of a block: the calling thread alone, or TBB's workers too.
   enum class Sharing { alone, shared };
-  /// Surveys all leaves of `leaf_box` (lattice positions), whose in-domain voxels are those of `block`. Each leaf once.
+  /// Surveys all leaves of `leaf_box` (lattice positions). `block` holds their in-domain voxels. Add each leaf once.
   void add(const Block& block, const Box& leaf_box, Sharing sharing);
 
-  /// Keeps what a device has found of the blocks of a box, where that is enough. Returns the positions in the box of
-  /// the other leaves: their rows and ladders are undefined until survey_left() was called for each, with its 512
-  /// values in leaf order; in any order, from several threads. Neither counts values: add_counts() does.
+  /// Stores the rows and ladders of the leaves in `leaf_box` for which a device has `found` enough. Returns the
+  /// positions in the box of the other leaves. Their rows and ladders are undefined until survey_left() is called for
+  /// each leaf with its 512 values in leaf order, in any order and from several threads. Neither function counts
+  /// values: call add_counts() for that.
   std::vector<std::uint32_t> take(const SurveyedBlocks& found, const Box& leaf_box);
   void survey_left(const Index3& leaf, const float* block);
-  /// Takes the counts of all finite values of a volume whose blocks a device has.
+  /// Adds the counts of all finite values of a volume that a device holds.
   void add_counts(const RangeHistogram& histogram) { tallies_.local().histogram.merge(histogram); }
 
-  /// Of all blocks so far; no add may be in progress.
+  /// Returns the tally of all blocks so far. No add() may be in progress.
   SurveyTally tally() const;
 
-  /// The survey that `tally`, of the whole volume, sums up.
+  /// Returns the survey that `tally` sums up. `tally` must cover the whole volume.
   Survey result(const SurveyTally& tally) const;
 
  private:
-  // Smallest value and number of values of an 8- or 16-bit integer type; zero values where they are scaled, and for
-  // wider types.
+  // The smallest value and the number of values of an 8- or 16-bit integer type. The number is 0 if the values are
+  // scaled, and for wider types.
   struct ValueTable {
     int offset = 0;
     std::size_t size = 0;
   };
-  // What one thread has seen. Copies begin with no builder.
+  // The tally of one thread. A copy begins without a ladder builder.
   struct Tally : SurveyTally {
     Tally() = default;
     Tally(const Tally& other) : SurveyTally(other), uniform(other.uniform) {}
@@ -70,10 +72,11 @@ class BlockSurvey {
       if (!ladders) ladders = std::make_unique<LadderBuilder>(aim);
       return *ladders;
     }
-    std::unique_ptr<LadderBuilder> ladders;  // made where first needed
+    std::unique_ptr<LadderBuilder> ladders;  // made at first use
   };
   class Leaves;
-  // A leaf that lies wholly in the volume, by what was found of it. False where that is not enough.
+  // Makes the row and the ladder of a leaf that lies wholly in the volume from what a device has found. Returns false
+  // if that is not enough.
   bool take(const SurveyedBlock& found, const BlockSummary& summary, const Index3& leaf, Tally& tally, LeafRow& row,
             PackedLadder& ladder) const;
   static ValueTable value_table(const SourceInfo& info);
@@ -84,7 +87,7 @@ class BlockSurvey {
   std::optional<LadderAim> ladders_;
   BlockSample sample_;
   Counting counting_;
-  bool has_missing_;  // some values of the source stand for "no data"
+  bool has_missing_;  // whether the source has values that mean "no data"
   Trace* trace_;
   ValueTable table_;
   Tally fresh_;

@@ -1,4 +1,4 @@
-// The volume as what comes after the survey reads it: out of memory what that cached there, the rest from its source.
+// The volume for the passes after the survey: values that the survey cached come from memory, the rest from the source.
 #pragma once
 
 #include "compressor/survey/leaf_cache.h"
@@ -7,8 +7,8 @@
 
 namespace weir {
 
-/// For stream_blocks(): of `source`, which the values of `cache` are from; both must outlive it. A box is read from the
-/// source where one of its leaves is not cached, and where `cache` is null.
+/// A source for stream_blocks(). `cache` holds values of `source`; both must outlive the object. A box is read from
+/// `source` if one of its leaves is not cached, or if `cache` is null.
 class CachedSource final : public ForwardedSource {
  public:
   CachedSource(VolumeSource& source, const LeafCache* cache) : ForwardedSource(source), cache_(cache) {}
@@ -16,7 +16,7 @@ class CachedSource final : public ForwardedSource {
   ConversionLoss read(const Box& box, std::span<float> values) override {
     if (!has(box)) return source().read(box, values);
     cache_->copy(box, values, kIoThreads);
-    return {};  // counted by the survey
+    return {};  // the survey has counted the loss
   }
   ConversionLoss read_alone(const Box& box, std::span<float> values) override {
     if (!has(box)) return source().read_alone(box, values);

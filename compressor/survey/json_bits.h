@@ -1,4 +1,4 @@
-// Floating-point numbers in JSON, bit for bit: JSON has no infinity, and not every reader tells -0.0 from 0.0.
+// Writes floating-point numbers to JSON as their bits, because JSON has no infinity and some readers take -0.0 for 0.0.
 #pragma once
 
 #include <bit>

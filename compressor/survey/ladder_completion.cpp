@@ -16,13 +16,13 @@
 namespace weir {
 namespace {
 
-// Whether the ladder of a leaf is built anew.
+// Returns whether the ladder of a leaf is built anew.
 bool is_incomplete(const MissingLadders& missing, const NodeLattice& leaves, const Index3& leaf, const LeafRow& row) {
   const LadderPart part = ladder_part(row, leaves.voxels(leaf).voxels());
   return part != LadderPart::kept && (missing.all || (missing.filled && part == LadderPart::filled));
 }
 
-// The rows of a box that hold incomplete leaves.
+// Returns the part of `box` to read: the rows along x that hold incomplete leaves.
 Box box_to_read(const RowStore& rows, const MissingLadders& missing, const Box& box, std::vector<LeafRow>& buffer) {
   rows.read_box(box, buffer);
   RowsToRead found(box);

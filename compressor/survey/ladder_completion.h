@@ -1,5 +1,5 @@
-// The ladders of packed blocks that the survey alone cannot build, or should not: of blocks in which values are
-// missing or not finite, whose place the background takes, and the near rungs, of use where nearly everything is kept.
+// Builds the ladders that the survey cannot or should not build. Blocks with missing or non-finite values need the
+// background, which replaces these values. Near rungs are only of use when the file keeps nearly everything.
 #pragma once
 
 #include "compressor/packed/ladder_builder.h"
@@ -12,12 +12,12 @@ namespace weir {
 
 /// Which ladders are built anew.
 struct MissingLadders {
-  bool filled = false;  ///< of blocks with some values that are not finite: `aim.background` is set
-  bool all = false;     ///< those and all others
+  bool filled = false;  ///< the ladders of blocks with some values that are not finite; `aim.background` must be set
+  bool all = false;     ///< the ladders of all blocks with two or more different values
 };
 
-/// Reads those blocks once more and sets their ladders in `rows`, of a finished survey.
-/// Throws as VolumeSource::read, Error(input) where the source has changed since the survey.
+/// Reads the blocks that `missing` names once more and sets their ladders in `rows`. The survey must be finished.
+/// Throws as VolumeSource::read, and Error(input) if the source has changed since the survey.
 void complete_ladders(VolumeSource& source, const BlockPlan& plan, RowStore& rows, const LadderAim& aim,
                       const MissingLadders& missing, const StreamOptions& options);
 

@@ -15,36 +15,37 @@
 
 namespace weir {
 
-/// Leaves of a volume, as they come, until a given memory is full; of those whose values have the same bits only one.
-/// Leaves may be added by several threads at once, each once.
+/// Caches leaves in the order in which they are added, until a given memory is full. Of a uniform leaf, whose values
+/// all have the same bits, only one value is kept. Several threads may add leaves at once. Add each leaf once.
 class LeafCache final : public HeldLeaves {
  public:
-  /// For the leaves of `leaves` in `bytes` of memory, index included; pages of it are taken as they are needed. Throws
-  /// Error(io) where the kernel refuses.
+  /// Makes a cache for the leaves of `leaves` in `bytes` of memory, index included. Memory pages are taken when they
+  /// are first used. Throws Error(io) if the kernel refuses the memory.
   LeafCache(const NodeLattice& leaves, std::uint64_t bytes);
 
-  /// The same; null where the kernel refuses: nothing is lost without them but time.
+  /// The same, but returns null if the kernel refuses the memory: a missing cache costs only time.
   static std::unique_ptr<LeafCache> where_there_is_room(const NodeLattice& leaves, std::uint64_t bytes);
 
-  /// Bytes of the index alone: with less, nothing is cached.
+  /// Returns the bytes of the index alone. With less memory nothing is cached.
   static std::uint64_t index_bytes(const NodeLattice& leaves);
-  /// Bytes of all leaves and the index: more is never taken.
+  /// Returns the bytes of all leaves and the index. A cache never takes more.
   static std::uint64_t whole_bytes(const NodeLattice& leaves);
 
-  /// `values` are those of the leaf's voxels in the domain, x fastest; `uniform`: all have the same bits.
+  /// Adds the leaf with linear index `leaf`. `values` are the leaf's in-domain voxels, x fastest. `uniform` says that
+  /// all values have the same bits.
   void add(std::int64_t leaf, std::span<const float> values, bool uniform);
 
-  /// Only of a leaf that has() tells of.
+  /// Returns the values of the leaf with the in-domain voxels `inside`. Call it only if has(inside).
   std::span<const float> leaf(const Box& inside, std::array<float, kLeafVoxels>& room) const override;
 
-  /// Whether all leaves under `voxels`, which lies in the domain, are cached.
+  /// Returns whether all leaves under `voxels` are cached. `voxels` must lie in the domain.
   bool has(const Box& voxels) const;
-  /// Their values, x fastest over `voxels`, by up to `threads` threads. Only where has(voxels).
+  /// Copies the values of `voxels` to `values`, x fastest, on up to `threads` threads. Call it only if has(voxels).
   void copy(const Box& voxels, std::span<float> values, std::size_t threads) const;
 
  private:
   struct Entry {
-    std::uint32_t place = 0;  // kNone, kUniform, or that of the values and kFirst
+    std::uint32_t place = 0;  // kNone, kUniform, or kFirst plus the place of the values in values_
     float value = 0;          // of a uniform leaf
   };
   static constexpr std::uint32_t kNone = 0;
@@ -54,10 +55,10 @@ class LeafCache final : public HeldLeaves {
   void copy_leaf(const Index3& leaf, const Box& voxels, std::span<float> values) const;
 
   NodeLattice leaves_;
-  PageBuffer values_;  // kLeafVoxels for each place
+  PageBuffer values_;  // kLeafVoxels values per place
   std::vector<Entry> entries_;
   std::size_t places_;
-  std::atomic<std::size_t> taken_{0};  // places; beyond places_ where there were more leaves
+  std::atomic<std::size_t> taken_{0};  // places; more than places_ if more leaves were added than fit
 };
 
 }  // namespace weir

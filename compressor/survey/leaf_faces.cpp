@@ -12,7 +12,7 @@ struct Stretch {
   std::int64_t end;
 };
 
-// Positions along an axis that a neighbour on that side touches.
+// Returns the positions along an axis of length `extent` that a neighbour on side `side` (-1, 0 or 1) touches.
 Stretch touched(std::int64_t side, std::int64_t extent) { return {side > 0 ? extent - 1 : 0, side < 0 ? 1 : extent}; }
 
 }  // namespace

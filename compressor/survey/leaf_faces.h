@@ -1,5 +1,4 @@
-// Bounds of the values in the outer layers of a leaf: what a neighbour's lookups
-// can touch of it.
+// Bounds of the values in the outer layers of a leaf. Lookups in a neighbouring leaf can touch only these layers.
 #pragma once
 
 #include <array>
@@ -12,11 +11,12 @@
 namespace weir {
 
 struct LeafFaces {
-  /// By direction, (x + 1) + 3 (y + 1) + 9 (z + 1): of the finite values of that layer, edge or corner, min > max where
-  /// there is none. The middle one is unused.
+  /// Bounds of the finite values of the layer, edge or corner in each direction, at index direction(). min > max if
+  /// there is no finite value. The entry in the middle is unused.
   std::array<MinMax, 27> bounds;
 
-  /// What the leaf's neighbour in direction `toward` (-1, 0 or 1 along each axis, not all 0) touches.
+  /// Returns the bounds of the values that the neighbour in direction `toward` touches. `toward` is -1, 0 or 1 along
+  /// each axis, and not 0 along all.
   const MinMax& touched_from(const Index3& toward) const { return bounds[direction(toward)]; }
   static constexpr std::size_t direction(const Index3& toward) {
     return static_cast<std::size_t>(toward.x + 1 + 3 * (toward.y + 1) + 9 * (toward.z + 1));
@@ -24,7 +24,7 @@ struct LeafFaces {
 };
 static_assert(sizeof(LeafFaces) == 216, "faces are spilled as they are");
 
-/// Of the `extent` in-domain values of a leaf, x fastest.
+/// Returns the faces of a leaf. `values` are its `extent` in-domain values, x fastest.
 LeafFaces faces_of(std::span<const float> values, const Index3& extent);
 
 }  // namespace weir

@@ -1,5 +1,5 @@
-// One fixed-size record per leaf of a lattice, in a file in linear order (x fastest), so that 10^12 voxels take disk,
-// not memory; the file itself lies in memory where there is room for it.
+// One fixed-size record per leaf of a lattice, in a file in linear order (x fastest), so that 10^12 voxels take disk
+// space and not memory. The file itself lies in memory if there is room for it.
 #pragma once
 
 #include <cstdint>
@@ -14,13 +14,13 @@
 
 namespace weir {
 
-/// Thread-safe: positioned reads and writes only.
+/// Thread-safe, because it only uses positioned reads and writes.
 template <typename Record>
 class LeafStore {
   static_assert(std::is_trivially_copyable_v<Record>, "records are spilled as they are");
 
  public:
-  /// Reserves the records of `leaves` in `file`; a full disk is known here.
+  /// Reserves space in `file` for the records of `leaves`. A full disk fails here and not later.
   LeafStore(std::shared_ptr<File> file, const NodeLattice& leaves) : file_(std::move(file)), leaves_(leaves) {
     file_->preallocate(static_cast<std::uint64_t>(leaves.size()) * sizeof(Record));
     if (!file_->memory().empty()) held_ = reinterpret_cast<const Record*>(file_->memory().data());
@@ -28,10 +28,10 @@ class LeafStore {
 
   const NodeLattice& leaves() const { return leaves_; }
   File& file() { return *file_; }
-  /// All of them, in linear order, where they lie in memory; else null.
+  /// Returns all records in linear order if the file lies in memory, otherwise null.
   const Record* held() const { return held_; }
 
-  /// Consecutive leaves, from linear index `first` on.
+  /// Writes the records of consecutive leaves, from linear index `first` on. read() reads them.
   void write(std::int64_t first, std::span<const Record> records) {
     file_->write_at(static_cast<std::uint64_t>(first) * sizeof(Record), std::as_bytes(records));
   }
@@ -39,7 +39,7 @@ class LeafStore {
     file_->read_at(static_cast<std::uint64_t>(first) * sizeof(Record), std::as_writable_bytes(records));
   }
 
-  /// The leaves in `box` (lattice positions), x fastest.
+  /// Writes the records of the leaves in `box` (lattice positions), x fastest. read_box() reads them.
   void write_box(const Box& box, std::span<const Record> records) {
     for_each_run(box,
                  [&](std::int64_t first, std::size_t at, std::size_t run) { write(first, records.subspan(at, run)); });
@@ -52,7 +52,8 @@ class LeafStore {
   }
 
  private:
-  // Runs of whole x rows, or of whole planes, are consecutive in the file.
+  // Calls visit(first, at, run) for each run of records that is consecutive in the file: an x row of `box`, or all rows
+  // of a plane if they span the lattice along x.
   template <typename Visit>
   void for_each_run(const Box& box, const Visit& visit) const {
     const Index3 extent = box.extent();
@@ -69,7 +70,7 @@ class LeafStore {
 
   std::shared_ptr<File> file_;
   NodeLattice leaves_;
-  const Record* held_ = nullptr;  // stays: the file is as long as it will be
+  const Record* held_ = nullptr;  // stays valid: the file does not grow any more
 };
 
 }  // namespace weir

@@ -1,4 +1,4 @@
-// Goes through items that a device works on: while the host takes what was made of one, the device has the next.
+// Goes through items that a device works on: the device works on the next item while the host takes the last result.
 #pragma once
 
 #include <tbb/parallel_for.h>
@@ -12,9 +12,9 @@
 
 namespace weir {
 
-/// Calls begin(i, item) for each i < count and then end(item), in some order, by several threads; of the items, which
-/// are used again, no more than `most_begun`, or two, are between the two calls. After an exception no item is begun;
-/// it is thrown once all threads have come to their end.
+/// Calls begin(i, item) and then end(item) for each i < count, in any order and on several threads. Items are reused.
+/// At most `most_begun` items, but at least two, are between the two calls. After an exception no further item begins,
+/// and the exception is thrown when all threads have ended.
 template <class Item, class Begin, class End>
 void one_ahead(std::size_t count, std::size_t most_begun, const Begin& begin, const End& end) {
   std::atomic<std::size_t> next = 0;

@@ -1,4 +1,4 @@
-// The moments between two blocks of a pass, at which it can say how far it is.
+// The moments between two blocks of a pass, when the pass can save its progress.
 #pragma once
 
 #include <functional>
@@ -6,8 +6,8 @@
 namespace weir {
 
 struct Pauses {
-  std::function<bool()> due;   ///< whether the pass is to bring its state up to date now
-  std::function<void()> save;  ///< called when it has
+  std::function<bool()> due;   ///< returns whether the pass must bring its state up to date now
+  std::function<void()> save;  ///< called after the pass has brought its state up to date
 };
 
 }  // namespace weir

@@ -11,26 +11,26 @@
 namespace weir {
 namespace {
 
-// The smallest positive float is 2^-149: finer bins tell nothing more.
+// The smallest positive float is 2^-149, so finer bins would tell nothing more.
 constexpr int kFinest = -149;
 
-// Bin of each value. floor() comes before the subtraction: both operands are then integers that
-// double holds exactly, where value * scale - base could round across an edge.
+// Finds the bin of each value. floor() comes before the subtraction, because both operands are then integers that a
+// double holds exactly. value * scale - base could round across an edge.
 void bins_one_by_one(std::span<const float> values, double scale, double base, std::int32_t* bins) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     bins[i] = static_cast<std::int32_t>(std::floor(static_cast<double>(values[i]) * scale) - base);
   }
 }
 
-// The same for a multiple of eight values whose floor(value * scale) fits 32 bits; `width` is 1 / scale. The products
-// with powers of two are exact, but where one is below any normal number: towards zero that is 0 all the same.
+// Does the same for `count` values, a multiple of eight, if floor(value * scale) fits 32 bits. `width` is 1 / scale.
+// Products with powers of two are exact, except below the smallest normal number, and there they are cut to 0 anyway.
 WEIR_SIMD void bins_by_eight(const float* values, std::size_t count, float scale, float width, std::int32_t base,
                              std::int32_t* bins) {
   for (std::size_t i = 0; i < count; i += 8) {
     Floats8 v;
     std::memcpy(&v, values + i, sizeof v);
     const Ints8 cut = __builtin_convertvector(v * scale, Ints8);            // towards zero
-    const Ints8 above = __builtin_convertvector(cut, Floats8) * width > v;  // -1 where that is not the floor
+    const Ints8 above = __builtin_convertvector(cut, Floats8) * width > v;  // -1 if `cut` is not the floor
     const Ints8 bin = cut + above - base;
     std::memcpy(bins + i, &bin, sizeof bin);
   }
@@ -65,7 +65,7 @@ void RangeHistogram::grow(int exponent, const std::function<Bins(int)>& other) {
     }
     exponent_ = exponent;
     scale_ = std::ldexp(1.0, -exponent);
-    base_ = all.first + 0.0;  // of -0.0 and 0.0 either may be the first
+    base_ = all.first + 0.0;  // makes -0.0 a 0.0: either may come first
     bins_ = static_cast<std::size_t>(all.last - all.first) + 1;
     return;
   }
@@ -85,7 +85,7 @@ void RangeHistogram::add(std::span<const float> values, float low, float high, s
   cover(low, high);
   constexpr std::size_t kPiece = 512;
   std::array<std::int32_t, kPiece> bins;
-  // Where float holds scale and width, and 32 bits the bins.
+  // True if a float holds scale and width, and 32 bits hold the bins.
   const bool small = std::abs(base_) < 0x1p30 && exponent_ > -std::numeric_limits<float>::max_exponent;
   const auto scale = small ? static_cast<float>(scale_) : 0.0F;
   const float width = small ? std::ldexp(1.0F, exponent_) : 0.0F;

@@ -20,12 +20,12 @@
 namespace weir {
 namespace {
 
-// Blocks that the device looks at together, in rows along x: what it finds of them is at most 6 MiB.
+// The most blocks, in rows along x, that the device looks at together. Its findings take at most 6 MiB.
 constexpr std::int64_t kMostBlocks = 8192;
-// Of those that it leaves to the host, so many have their values copied together.
+// The most blocks that the device leaves to the host and copies to it together.
 constexpr std::size_t kMostLeft = 4096;
 
-// Boxes of lattice positions that cover all of it: rows, or parts of one.
+// Returns boxes of lattice positions that together cover a lattice of `count`: whole rows, or parts of a row.
 std::vector<Box> leaf_boxes(const Index3& count) {
   const std::int64_t x_most = std::min(count.x, kMostBlocks);
   const std::int64_t y_most = std::clamp<std::int64_t>(kMostBlocks / x_most, 1, count.y);
@@ -66,11 +66,11 @@ class ResidentSurvey {
   }
 
  private:
-  // A box that the device works on. Used again, for the memory that it has.
+  // A box that the device works on. Objects are reused to keep their memory.
   struct Begun {
     Box leaf_box;
-    std::unique_ptr<ResidentBlocks> blocks{};  // null: to be read
-    std::vector<float> read{};                 // values of leaves that the device does not give
+    std::unique_ptr<ResidentBlocks> blocks{};  // null: the host reads the box from the source
+    std::vector<float> read{};                 // values of leaves that the device cannot copy to the host
 
     Index3 leaf(std::size_t at) const {
       return leaf_box.lo + index_at(static_cast<std::int64_t>(at), leaf_box.extent());
@@ -128,7 +128,7 @@ class ResidentSurvey {
     survey_.add({0, voxels, values, loss}, leaf_box, BlockSurvey::Sharing::shared);
   }
 
-  // By the bins that the volume's range has in the end.
+  // Counts all values in the histogram bins of the final range, which is known only now.
   void count() {
     const SurveyTally tally = survey_.tally();
     if (tally.finite == 0) return;
@@ -164,8 +164,8 @@ class ResidentSurvey {
   std::int64_t done_ = 0;
 };
 
-// Makes the pages of the rows, where these lie in memory: a sample has rows in nearly every one, and would wait for
-// each.
+// Makes the memory pages of the rows and ladders, if these lie in memory. A sample has rows in nearly every page, so
+// that its survey would wait for each page.
 void make_pages_of(RowStore& rows, tbb::task_group& tasks) {
   for (File* const file : {&rows.file(), &rows.ladders()->file()}) {
     const std::span<const std::byte> all = file->memory();

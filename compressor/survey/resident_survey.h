@@ -1,4 +1,5 @@
-// The survey of packed blocks of a volume that lies on a device: its values do not cross the host's memory.
+// Surveys the packed blocks of a volume that lies on a device. Values reach the host's memory only for the blocks that
+// the device leaves to the host.
 #pragma once
 
 #include <span>
@@ -12,14 +13,14 @@
 
 namespace weir {
 
-/// Fills `rows` and their ladders with what survey_volume() finds of the same values, and returns what it returns. What
-/// the device has no room for, or fails at, is done by reading `source`, which has those values. Throws as
+/// Fills `rows` and their ladders, and returns the survey, exactly as survey_volume() does for the same values. Where
+/// the device has no room or fails, the host reads the values from `source`, which holds the same volume. Throws as
 /// VolumeSource::read, and Error(interrupted).
 Survey survey_resident(ResidentVolume& resident, VolumeSource& source, RowStore& rows, const LadderAim& ladders,
                        const StreamOptions& options);
 
-/// The same of some boxes of blocks (lattice positions), which are all of them sampled ones (BlockSample), without the
-/// figures of the whole.
+/// Does the same for `boxes` of blocks (lattice positions) only, and does not compute the figures of the whole volume.
+/// All blocks of `boxes` must be in the sample (BlockSample).
 void survey_resident_sample(ResidentVolume& resident, VolumeSource& source, RowStore& rows, const LadderAim& ladders,
                             std::span<const Box> boxes, const StreamOptions& options);
 

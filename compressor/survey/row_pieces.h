@@ -1,4 +1,4 @@
-// Walks over the survey's rows in the order of their leaves, a piece of them for each thread at a time.
+// Walks over the survey's rows in pieces of consecutive leaves, on several threads.
 #pragma once
 
 #include <tbb/enumerable_thread_specific.h>
@@ -13,8 +13,8 @@
 
 namespace weir {
 
-/// Calls visit(first, rows) for pieces that together are the leaves [begin, end) by linear index: the rows from leaf
-/// `first` on. On several threads at once, in no order. Throws as LeafStore::read.
+/// Calls visit(first, rows) for pieces that together cover the leaves [begin, end) by linear index. `rows` are the rows
+/// from leaf `first` on. Calls come from several threads at once, in any order. Throws as LeafStore::read.
 template <typename Visit>
 void for_each_row_piece(const RowStore& store, std::int64_t begin, std::int64_t end, const Visit& visit) {
   constexpr std::int64_t kPiece = 4096;

@@ -1,6 +1,5 @@
-// The survey's rows, 64 bytes a leaf, and, where a scene decides what matters,
-// which values can be seen around each, of packed files the blocks' ladders, and
-// the values of as many leaves as there is memory for.
+// What the survey stores: a row of 64 bytes per leaf; if a scene is given, the range of values that can be seen around
+// each leaf; for packed files, the ladder of each block; and the values of as many leaves as memory has room for.
 #pragma once
 
 #include <cstdint>
@@ -16,35 +15,35 @@
 
 namespace weir {
 
-/// Memory that selection may take.
+/// The memory that selection may use.
 struct SelectionRoom {
-  std::int64_t segment_regions = 1;  ///< rows of so many regions are held per thread
-  std::uint64_t step_bytes = 0;      ///< of steps that are held instead of being found again (held_steps.h)
+  std::int64_t segment_regions = 1;  ///< number of regions per thread that have their rows in memory
+  std::uint64_t step_bytes = 0;      ///< bytes for steps that are held instead of being found again (held_steps.h)
 };
 
-/// Thread-safe but for its setters.
+/// Thread-safe except for the setters.
 class RowStore : public LeafStore<LeafRow> {
  public:
-  /// `team` are the processes that fill the store together, each the rows of its own leaves (region_share.h), and
-  /// decide what comes of them.
+  /// `team` is the set of processes that fill the store together and then select together. Each process writes the rows
+  /// of its own leaves (region_share.h).
   RowStore(std::shared_ptr<File> file, const NodeLattice& leaves, const SelectionRoom& room, Team& team = no_team())
       : LeafStore(std::move(file), leaves), room_(room), team_(team) {}
 
   const SelectionRoom& room() const { return room_; }
   Team& team() const { return team_; }
 
-  /// Of each leaf (leaf_reach.h); null where everything counts alike.
+  /// Returns the reach of each leaf (leaf_reach.h); null if all values count alike.
   const LeafStore<MinMax>* reaches() const { return reaches_.get(); }
   void set_reaches(std::unique_ptr<LeafStore<MinMax>> reaches) { reaches_ = std::move(reaches); }
 
-  /// Of each block; null where none is packed.
+  /// Returns the ladder of each block; null if no block is packed.
   LeafStore<PackedLadder>* ladders() const { return ladders_.get(); }
   void set_ladders(std::unique_ptr<LeafStore<PackedLadder>> ladders) { ladders_ = std::move(ladders); }
 
-  /// The values of leaves; null where none are cached.
+  /// Returns the cached values of leaves; null if none are cached.
   LeafCache* cache() const { return cache_.get(); }
   void set_cache(std::unique_ptr<LeafCache> cache) { cache_ = std::move(cache); }
-  /// For whoever frees their memory.
+  /// Hands the cache over to a caller that frees its memory.
   std::unique_ptr<LeafCache> give_up_cache() { return std::move(cache_); }
 
  private:

@@ -1,4 +1,4 @@
-// Leaves of a block that repeat their values, held until there are enough to make their rows at once (LeafLanes).
+// Holds leaves of a block that repeat their values, until there are enough to make their rows together (LeafLanes).
 #pragma once
 
 #include <array>
@@ -15,16 +15,16 @@ namespace weir {
 class SideBySide {
  public:
   struct Leaf {
-    std::size_t at;       ///< in its block
-    std::int64_t linear;  ///< in the lattice of leaves
+    std::size_t at;       ///< index in the block
+    std::int64_t linear;  ///< linear index in the leaf lattice
     float sample;
     Digest digest;
   };
 
   explicit SideBySide(bool widths) : widths_(widths) {}
 
-  /// Holds a leaf that LeafLanes takes. Where no more may be held beside it, calls visit(leaf, distinct, row) of those
-  /// that are, first.
+  /// Holds a leaf that LeafLanes::takes(). If the leaf cannot join the held leaves, first calls
+  /// visit(leaf, distinct, row) for each held leaf and releases them.
   template <typename Visit>
   void add(const Leaf& leaf, std::span<const float> distinct, const Index3& by, const Visit& visit) {
     if (lanes_.full() || (lanes_.size() > 0 && lanes_.by() != by)) finish(visit);
@@ -33,7 +33,7 @@ class SideBySide {
     lanes_.add(distinct);
   }
 
-  /// Calls visit(leaf, distinct, row) of all that are held.
+  /// Calls visit(leaf, distinct, row) for all held leaves and releases them.
   template <typename Visit>
   void finish(const Visit& visit) {
     std::array<LeafRow, kLeafLanes> rows;

@@ -18,7 +18,7 @@ std::uint64_t sum_of(std::int64_t leaf, const Record& record) {
   return placed_checksum(static_cast<std::uint64_t>(leaf), std::as_bytes(std::span(&record, 1)));
 }
 
-// What one thread reads into.
+// The buffers and the sums of one thread.
 struct SpillBuffers {
   std::vector<LeafRow> rows;
   std::vector<LeafFaces> faces;
@@ -59,7 +59,7 @@ void SpillSums::add(const SpillSums& other) {
 
 std::optional<std::string_view> damaged_spill(const RowStore& rows, const LeafStore<LeafFaces>* faces,
                                               const BoxSet& done, const SpillSums& summed, RebuiltLadders rebuilt) {
-  constexpr std::int64_t kMostLeaves = 1024;  // 400 KiB of each thread
+  constexpr std::int64_t kMostLeaves = 1024;  // read together; 400 KiB per thread
   tbb::enumerable_thread_specific<SpillBuffers> buffers;
   for (const Box& box : done.boxes()) {
     const Index3 extent = box.extent();

@@ -1,5 +1,6 @@
-// Checksums of what the survey spills of a leaf, for a conversion that is continued by what an earlier process left on
-// disk. Sums of one checksum a record, with its place: they do not depend on order, and take no room in the journal.
+// Checksums of the records that the survey spills to disk, for a conversion that continues from what an earlier process
+// left there. Each sum adds one checksum per record, which includes the record's place. The sums do not depend on the
+// order of the records and take nearly no room in the journal.
 #pragma once
 
 #include <array>
@@ -18,14 +19,14 @@ class RowStore;
 template <typename Record>
 class LeafStore;
 
-/// Which ladders are built anew after the survey, by their rows.
+/// When the ladder of a leaf is built anew after the survey. The leaf's row decides.
 enum class LadderPart : std::uint8_t {
-  kept,    ///< none: all values are the same, or none is finite
-  filled,  ///< where the background takes the place of some values
-  whole,   ///< where others are asked for than the survey built
+  kept,    ///< never: all values are the same, or none is finite
+  filled,  ///< when the background is known: it replaces some values of the leaf
+  whole,   ///< when the conversion needs other ladders than the survey built
 };
 
-/// Of a leaf with that many voxels in the domain.
+/// Returns the part of a leaf with `voxels` in-domain voxels.
 inline LadderPart ladder_part(const LeafRow& row, std::int64_t voxels) {
   if (row.finite < voxels) return row.finite > 0 ? LadderPart::filled : LadderPart::kept;
   return row.uniform() ? LadderPart::kept : LadderPart::whole;
@@ -43,14 +44,14 @@ struct SpillSums {
   friend bool operator==(const SpillSums&, const SpillSums&) = default;
 };
 
-/// Which ladders need not be as they were summed: they are built anew.
+/// Which ladders need not match their sums, because they are built anew.
 struct RebuiltLadders {
   bool filled = false;
   bool whole = false;
 };
 
-/// "rows", "faces" or "ladders": the first of these whose records of the leaves in `done` are not those that were
-/// summed; nullopt where all are. `faces` may be null. Reads them once, on all threads. Throws as LeafStore::read.
+/// Returns the first of "rows", "faces" and "ladders" with records of the leaves in `done` that do not match `summed`;
+/// nullopt if all match. `faces` may be null. Reads the records once, on all threads. Throws as LeafStore::read.
 std::optional<std::string_view> damaged_spill(const RowStore& rows, const LeafStore<LeafFaces>* faces,
                                               const BoxSet& done, const SpillSums& summed, RebuiltLadders rebuilt);
 

@@ -13,7 +13,7 @@
 namespace weir {
 namespace {
 
-// What each rank has counted becomes what all have.
+// Merges the tallies of all ranks. Afterwards every rank holds the merged tally.
 void merge_tallies(SurveyTally& tally, Team& team) {
   if (team.alone()) return;
   const auto text_of = [](const Team::Bytes& bytes) {
@@ -33,7 +33,8 @@ void merge_tallies(SurveyTally& tally, Team& team) {
   tally = parse_tally(text_of(part));
 }
 
-// Whether a device that has the volume looks at it: at the rungs of packed blocks, which no journal keeps.
+// Returns whether the device that holds the volume surveys it. A device only looks at the rungs of packed blocks, and
+// no journal keeps its survey.
 bool surveys_resident(VolumeSource& source, const RowStore& rows, const SurveyTask& task) {
   const bool rungs = task.ladders && task.ladders->has_rungs() && !task.ladders->lattice;
   const bool begun = task.state != nullptr && !task.state->done.empty();
@@ -75,7 +76,7 @@ Survey survey_volume(VolumeSource& source, const BlockPlan& plan, RowStore& rows
       task.pauses.save();
     };
   }
-  stream.in_parts = !task.ladders || task.ladders->surveying_coder() == nullptr;  // a coder is given all voxels
+  stream.in_parts = !task.ladders || task.ladders->surveying_coder() == nullptr;  // a coder needs all voxels
   team.run([&] { survey_boxes(source, plan, leaf_boxes, stream, task.reading, survey); });
   tell(leaf_boxes.size());
   merge_tallies(known.tally, team);
@@ -97,7 +98,7 @@ void survey_boxes(VolumeSource& source, const BlockPlan& plan, std::span<const B
 }
 
 std::string source_digest(const RowStore& rows) {
-  constexpr std::int64_t kBatch = 1 << 18;  // digests of so many leaves are in memory
+  constexpr std::int64_t kBatch = 1 << 18;  // leaves; their digests are in memory at the same time
   DigestStream digest;
   std::vector<Digest> digests;
   const std::int64_t total = rows.leaves().size();

@@ -1,5 +1,5 @@
-// The survey pass: one streaming read of the volume that leaves a row per leaf
-// in the spill file, the finite range, the histogram and the source's digest.
+// The survey pass: one streaming read of the volume. The pass writes one row per leaf to the spill file, and finds the
+// range of the finite values, the histogram and the source's digest.
 #pragma once
 
 #include <span>
@@ -19,21 +19,22 @@
 
 namespace weir {
 
-/// What a survey finds besides the rows, and how.
+/// How a survey reads the volume, and what the survey finds besides the rows.
 struct SurveyTask {
   Reading reading = Reading::ahead;
-  /// What each width of a quantised leaf would cost, too (LeafRow::quantised and exact_bits); takes as long again.
+  /// Whether the survey also finds the cost of each width of a quantised leaf (LeafRow::quantised and exact_bits).
+  /// This doubles the survey's time.
   bool widths = false;
-  LeafStore<LeafFaces>* faces = nullptr;  ///< where given, gets the outer layers of each leaf (leaf_reach.h)
-  /// Where given, what is done already, by any plan. Updated when `pauses` ask for it; of the whole volume in the end,
-  /// but unchanged where a device surveys, of which a journal keeps nothing.
+  LeafStore<LeafFaces>* faces = nullptr;  ///< if not null, receives the outer layers of each leaf (leaf_reach.h)
+  /// If not null: on entry, the leaves that an earlier survey finished, by any plan. Updated when `pauses` ask for it.
+  /// At the end it covers the whole volume. It stays unchanged if a device surveys: a journal keeps no such survey.
   SurveyState* state = nullptr;
   Pauses pauses{};
-  std::optional<LadderAim> ladders{};  ///< where given, the rows' ladders are filled
+  std::optional<LadderAim> ladders{};  ///< if given, the survey fills the ladders of `rows`
 };
 
-/// Reads the volume once by `plan` and fills `rows`. The result does not depend on the plan or the number of threads,
-/// nor on the way of reading. Each rank of the rows' team reads its own part.
+/// Reads the volume once by `plan` and fills `rows`. The result does not depend on the plan, the number of threads or
+/// the way of reading. Each rank of the rows' team reads its own part.
 Survey survey_volume(VolumeSource& source, const BlockPlan& plan, RowStore& rows, const StreamOptions& options,
                      const SurveyTask& task = {});
 
@@ -41,7 +42,7 @@ Survey survey_volume(VolumeSource& source, const BlockPlan& plan, RowStore& rows
 void survey_boxes(VolumeSource& source, const BlockPlan& plan, std::span<const Box> leaf_boxes,
                   const StreamOptions& options, Reading reading, BlockSurvey& survey);
 
-/// xxh3-128 over the rows' digests in leaf order, 32 hex digits: the sidecar's source.digest.
+/// Returns the xxh3-128 over the rows' digests in leaf order as 32 hex digits: the sidecar's source.digest.
 std::string source_digest(const RowStore& rows);
 
 }  // namespace weir

@@ -1,4 +1,4 @@
-// What the survey pass says of a volume as a whole.
+// What the survey pass finds about a volume as a whole.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,14 @@
 namespace weir {
 
 struct Survey {
-  float min = 0;  ///< of the finite values; 0 where there is none
+  float min = 0;  ///< smallest finite value; 0 if there is none
   float max = 0;
   std::uint64_t finite = 0;      ///< voxels
   std::uint64_t missing = 0;     ///< voxels the source declares to hold no data
-  std::uint64_t non_finite = 0;  ///< voxels, the missing ones aside
-  Index3 first_non_finite;       ///< first in x-fastest order, index space; valid where non_finite > 0
+  std::uint64_t non_finite = 0;  ///< voxels, without the missing ones
+  Index3 first_non_finite;       ///< first in x-fastest order, index space; valid if non_finite > 0
   float first_non_finite_value = 0;
-  Index3 first_missing;      ///< the same, valid where missing > 0
+  Index3 first_missing;      ///< first missing voxel in x-fastest order, index space; valid if missing > 0
   RangeHistogram histogram;  ///< of the finite values
   /// Counts of every value of an 8- or 16-bit source, from `value_offset` on; empty for other types.
   std::vector<std::uint64_t> value_counts;

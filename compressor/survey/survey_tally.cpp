@@ -5,7 +5,7 @@
 namespace weir {
 
 void SurveyTally::merge(const SurveyTally& other) {
-  // Of -0.0 and 0.0 either may be met first: adding 0.0 makes both 0.0.
+  // Either of -0.0 and 0.0 may be met first. Adding 0.0 turns both into 0.0.
   min = std::min(min, other.min) + 0.0F;
   max = std::max(max, other.max) + 0.0F;
   finite += other.finite;

@@ -1,5 +1,5 @@
-// What a survey has counted so far: all that is known of the volume beyond the
-// rows of its leaves. Merges without regard to order.
+// What a survey has counted so far: everything it knows of the volume except the rows of the leaves. Tallies can be
+// merged in any order.
 #pragma once
 
 #include <cstdint>
@@ -16,24 +16,24 @@ namespace weir {
 struct SurveyTally {
   static constexpr std::int64_t kNowhere = std::numeric_limits<std::int64_t>::max();
 
-  float min = std::numeric_limits<float>::infinity();  ///< of the finite values
+  float min = std::numeric_limits<float>::infinity();  ///< smallest finite value
   float max = -std::numeric_limits<float>::infinity();
   std::uint64_t finite = 0;                  ///< voxels
   std::uint64_t missing = 0;                 ///< voxels the source declares to hold no data
-  std::uint64_t non_finite = 0;              ///< voxels, the missing ones aside
+  std::uint64_t non_finite = 0;              ///< voxels, without the missing ones
   std::int64_t first_non_finite = kNowhere;  ///< linear voxel index in the domain
   float first_non_finite_value = 0;
   std::int64_t first_missing = kNowhere;    ///< linear voxel index in the domain
   RangeHistogram histogram;                 ///< of the finite values that `value_counts` does not count
   std::vector<std::uint64_t> value_counts;  ///< of every value of an 8- or 16-bit type
   ConversionLoss loss;
-  SpillSums sums;  ///< of their rows, faces and ladders, where a checkpoint may be made of it
+  SpillSums sums;  ///< checksums of the spilled rows, faces and ladders; valid if the tally may go into a checkpoint
 
-  /// `other` is of the same volume.
+  /// Adds the counts of `other`, a tally of other leaves of the same volume.
   void merge(const SurveyTally& other);
 };
 
-/// A survey between two blocks: with the rows (and faces) of `done`, enough to go on from there.
+/// The state of a survey between two blocks. Together with the rows (and faces) of `done` it suffices to continue.
 struct SurveyState {
   SurveyTally tally;  ///< of the leaves in `done`
   BoxSet done;        ///< positions of the leaf lattice

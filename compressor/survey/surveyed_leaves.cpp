@@ -14,7 +14,7 @@ SurveyedLeaves::SurveyedLeaves(const RowStore& rows, const Box& leaf_box, const 
   if (!read) return;
   held_ = rows.held();
   if (held_ != nullptr) return;
-  std::vector<LeafRow> layer;  // one at a time: a row has more bytes
+  std::vector<LeafRow> layer;  // only one layer at a time, because a row is larger than a digest
   digests_.reserve(static_cast<std::size_t>(leaf_box.voxels()));
   for (std::int64_t z = leaf_box.lo.z; z < leaf_box.hi.z; ++z) {
     const Box box{{leaf_box.lo.x, leaf_box.lo.y, z}, {leaf_box.hi.x, leaf_box.hi.y, z + 1}};
@@ -28,7 +28,7 @@ void SurveyedLeaves::check(const Index3& leaf, std::span<const float> values, co
   const Box inside = leaves_.voxels(leaf);
   const Index3 rows = voxels.extent();
   if (held_ != nullptr) __builtin_prefetch(held_ + leaves_.linear(leaf));
-  // Leaves come by z: rows of the next one, where the voxels have it.
+  // Leaves come along z, so the rows of the next leaf are prefetched if `voxels` contains it.
   const std::int64_t next = inside.hi.z + kLeafDim <= voxels.hi.z ? kLeafDim * rows.x * rows.y : 0;
   std::array<float, kLeafVoxels> own;
   check(leaf, leaf_digest(copy_leaf(values, voxels, inside, next, own)));

@@ -1,5 +1,5 @@
-// What the survey recorded of the leaves that the encode pass reads. Their digests are compared with what it reads: if
-// the source changed in between, the certificate would be of other values than the file.
+// Checks that the leaves that the encode pass reads have the digests that the survey recorded. If the source changed in
+// between, the certificate would describe other values than the file holds.
 #pragma once
 
 #include <span>
@@ -12,19 +12,19 @@
 
 namespace weir {
 
-/// Of a box of leaves, 16 bytes each where the rows do not lie in memory. Thread-safe.
+/// Holds the recorded digests of a box of leaves: 16 bytes per leaf if the rows do not lie in memory. Thread-safe.
 class SurveyedLeaves {
  public:
-  /// `leaf_box`: lattice positions. `info`, of the source, must outlive the object. `read`: whether the values are read
-  /// once more; else they are those that the survey saw, and all checks hold.
+  /// `leaf_box` holds lattice positions. `info` describes the source and must outlive the object. `read` says whether
+  /// the values are read again. If not, they are the values that the survey saw, and every check passes.
   SurveyedLeaves(const RowStore& rows, const Box& leaf_box, const SourceInfo& info, bool read = true);
 
-  /// Throws Error(input) where the in-domain values of `leaf` (a lattice position in the box) are not those that were
-  /// surveyed. `values`, x fastest, are those over `voxels`, which hold the leaf's. Costs about 0.2 us.
+  /// Throws Error(input) if the in-domain values of `leaf` (a lattice position in the box) are not the surveyed ones.
+  /// `values` are the values of the box `voxels`, x fastest, which contains the leaf. Costs about 0.2 us.
   void check(const Index3& leaf, std::span<const float> values, const Box& voxels) const;
-  /// The same by the digest of its in-domain values.
+  /// The same check, given the digest of the leaf's in-domain values.
   void check(const Index3& leaf, const Digest& digest) const;
-  /// Fetches what check() needs of the leaves of layer `x` of the box, whose rows do not lie together.
+  /// Prefetches what check() needs for the leaves with lattice position `x` in the box. Their rows do not lie together.
   void prefetch_layer(std::int64_t x) const;
 
  private:
@@ -33,8 +33,8 @@ class SurveyedLeaves {
 
   const NodeLattice& leaves_;
   Box leaf_box_;
-  const LeafRow* held_ = nullptr;  // all rows of the volume, where they lie in memory
-  std::vector<Digest> digests_;    // else those of the box; neither where there is nothing to check
+  const LeafRow* held_ = nullptr;  // all rows of the volume, if they lie in memory
+  std::vector<Digest> digests_;    // otherwise the digests of the box; both unset if nothing is checked
   const SourceInfo& info_;
 };
 

@@ -1,4 +1,4 @@
-// What a survey has counted so far, as JSON, for a checkpoint and for other processes.
+// Converts a survey's tally to JSON and back, for a checkpoint and for other processes.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -9,11 +9,11 @@
 
 namespace weir {
 
-/// Nothing is lost on the way there and back. tally_of throws std::exception where that is none.
+/// Convert without loss in both directions. tally_of() throws std::exception if `json` is no tally.
 nlohmann::json tally_json(const SurveyTally& tally);
 SurveyTally tally_of(const nlohmann::json& json);
 
-/// The same as text.
+/// The same conversions with text. parse_tally() throws as tally_of().
 std::string tally_text(const SurveyTally& tally);
 SurveyTally parse_tally(std::string_view text);
 

@@ -33,7 +33,7 @@ Visibility::Visibility(const Scene& scene, const std::string& path, const Box& d
     low_ = (*volume.range)[0];
     high_ = (*volume.range)[1];
     const std::vector<float> table = opacity_table(volume.opacity);
-    std::vector<float> steps(table.size());  // the first has none before it
+    std::vector<float> steps(table.size());  // the first entry stays 0: no entry comes before it
     for (std::size_t i = 1; i < table.size(); ++i) steps[i] = std::fabs(table[i] - table[i - 1]);
     opacity_.emplace(table);
     steps_.emplace(std::move(steps));
@@ -69,7 +69,7 @@ double Visibility::weight(const MinMax& values) const {
   if (weighing_ == Weighing::alike || by_iso_ || !opacity_) return shows(values) ? 1 : 0;
   if (!(values.min <= values.max)) return 0;
   const Entries e = entries_of(values);
-  if (e.first == e.last) return 0;  // beyond the range, or one level: opacity and colour do not change
+  if (e.first == e.last) return 0;  // beyond the range, or exactly one entry: opacity and colour do not change
   const auto steepest = static_cast<double>(steps_->between(e.first + 1, e.last));
   const auto highest = static_cast<double>(opacity_->between(e.first, e.last));
   const double slope = steepest * static_cast<double>(opacity_->size() - 1) + highest;

@@ -1,5 +1,5 @@
-// What a scene can show of a volume: which values have an opacity (or touch its
-// iso surface), in which region, and how much of an error in them can be seen.
+// What a scene can show of a volume: which values have an opacity (or touch the iso surface), in which region, and how
+// much of an error in these values can be seen.
 #pragma once
 
 #include <optional>
@@ -15,25 +15,25 @@ namespace weir {
 class Visibility {
  public:
   enum class Weighing {
-    alike,      ///< all that can be seen counts the same: for a target, which is a promise
-    by_picture  ///< by how far the picture can change with the value: for a size, which is to be spent well
+    alike,      ///< everything visible counts the same; for an error target, which is a promise
+    by_picture  ///< by how much the picture can change with the value; for a size, to spend the bytes well
   };
 
-  /// `path` is the scene's file, for messages. Throws Error(usage) where the scene says nothing that decides
-  /// (no opacity, iso or region), where its opacities have no range, and where its region lies outside `domain`.
+  /// `path` is the scene's file, for messages. Throws Error(usage) if the scene has no opacity, iso value or region to
+  /// decide by, if its opacities have no range, or if its region lies outside `domain`.
   Visibility(const Scene& scene, const std::string& path, const Box& domain, Weighing weighing);
 
-  /// Whether a lookup in the region can touch a voxel of `voxels`: filters reach one voxel far.
+  /// Returns whether a lookup in the region can touch a voxel of `voxels`. Filters reach one voxel far.
   bool in_region(const Box& voxels) const { return !intersect(grown(voxels, 1), region_).empty(); }
-  /// Whether any value of the interval can be seen; false where it is empty.
+  /// Returns whether any value of the interval can be seen; false if the interval is empty.
   bool shows(const MinMax& values) const;
-  /// Weight of a squared error in a value of the interval, from 0, which nobody can see. By picture: the square of
-  /// the steepest slope of opacity and colour there, in parts of the scene's range; colours are taken to
-  /// change by one over it.
+  /// Returns the weight of a squared error in a value of the interval. 0 means that nobody can see the error. With
+  /// by_picture, the weight is the square of the steepest slope of opacity plus colour in the interval, per range of
+  /// the scene. Colours are assumed to change by one over that range.
   double weight(const MinMax& values) const;
 
  private:
-  // The table's entries around the interval.
+  // The first and the last entry of the opacity table around an interval of values.
   struct Entries {
     std::size_t first;
     std::size_t last;
@@ -44,9 +44,10 @@ class Visibility {
   Box region_;
   bool by_iso_ = false;
   float iso_ = 0;
-  double low_ = 0;  // values of the table's ends
+  double low_ = 0;  // values at the two ends of the table
   double high_ = 0;
-  // Of the scene's table, and the changes from each entry to the next; none: every value is seen alike.
+  // Maxima over the scene's opacity table, and over the changes from each entry to the next. Unset: the scene's opacity
+  // does not tell values apart.
   std::optional<RangeMax> opacity_;
   std::optional<RangeMax> steps_;
 };

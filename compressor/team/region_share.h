@@ -1,6 +1,5 @@
-// Which part of a volume is whose where several processes convert it: runs of
-// 128^3 regions in the order of their index, so that none has a leaf in common
-// with another.
+// How several processes share one volume: each gets a run of 128^3 regions in the order of their index. No leaf belongs
+// to two processes.
 #pragma once
 
 #include <vector>
@@ -10,17 +9,17 @@
 
 namespace weir {
 
-/// Positions [run.begin, run.end) of a lattice of `count`, x fastest, as five boxes at most, in their order.
+/// Returns positions [run.begin, run.end) of a lattice of `count`, x fastest, as at most five boxes in that order.
 std::vector<Box> boxes_of_run(const Index3& count, const Share& run);
 
-/// This rank's positions of the region lattice.
+/// Returns this rank's positions of the region lattice.
 std::vector<Box> own_regions(const NodeLattice& regions, const Team& team);
 
-/// This rank's positions of the leaf lattice: the leaves of its regions.
+/// This rank's positions of the leaf lattice: the leaves of own_regions().
 class OwnLeaves {
  public:
   OwnLeaves(const NodeLattice& leaves, const Team& team);
-  /// What of `box` is its own.
+  /// Returns the parts of `box` that belong to this rank.
   std::vector<Box> of(const Box& box) const;
 
  private:

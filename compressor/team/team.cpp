@@ -17,7 +17,8 @@ class NoTeam final : public Team {
   void merge(Bytes&, const Merge&) override {}
 };
 
-// An error as bytes: its kind, then its message, whose options each process words as its user knows them.
+// Returns an error as bytes: its kind, then its message. The message stays packed, so that each process names options
+// in the way that its own user knows.
 Team::Bytes failure_bytes(const Error& error) {
   const std::string text = error.message().packed();
   Team::Bytes bytes(1 + text.size());
@@ -66,7 +67,7 @@ void Team::lead(const std::function<void()>& work) {
 void Team::publish(File& file) {
   if (alone()) return;
   run([&] { file.sync(); });
-  run([&] { file.sync(); });  // and what others wrote is seen here
+  run([&] { file.sync(); });  // makes what other ranks wrote visible here
 }
 
 Team& no_team() {

@@ -1,6 +1,6 @@
-// The processes that convert one volume together. Each calls the same functions
-// in the same order, does its share of the work in them, and knows in the end
-// what all of them found; so the bytes do not depend on how many there are.
+// The processes that convert one volume together. Each process calls the same functions in the same order, does its
+// share of the work in them, and at the end knows what all processes found. So the bytes do not depend on the number of
+// processes.
 #pragma once
 
 #include <cstddef>
@@ -21,36 +21,36 @@ struct Share {
   std::int64_t end = 0;
 };
 
-/// The calls that concern all ranks are made by one thread of each at a time. Throws Error(io) where another process is
-/// out of reach.
+/// In each rank, one thread at a time makes the calls that concern all ranks. They throw Error(io) if another process
+/// cannot be reached.
 class Team {
  public:
   using Bytes = std::vector<std::byte>;
-  /// Adds the parts of higher ranks to those of lower ones.
+  /// Adds the part of a higher rank to the part of a lower rank.
   using Merge = std::function<void(Bytes& lower, const Bytes& higher)>;
 
   virtual ~Team() = default;
   virtual int rank() const = 0;  ///< 0 to size() - 1
   virtual int size() const = 0;
-  /// What the parts of all ranks come to, merged in the order of ranks, takes the place of `part` on each of them.
+  /// Merges the parts of all ranks in the order of ranks. Afterwards `part` holds the merged result on every rank.
   virtual void merge(Bytes& part, const Merge& both) = 0;
 
   bool alone() const { return size() == 1; }
-  /// Does what one process must do for all.
+  /// Returns whether this rank does the work that one process must do for all.
   bool leads() const { return rank() == 0; }
-  /// This rank's part of `count` items: parts differ by one item at most, and follow each other as the ranks do.
+  /// Returns this rank's part of `count` items. Parts differ by at most one item and follow each other in rank order.
   Share share(std::int64_t count) const;
 
-  /// Does `work`, which concerns this rank alone. Where it throws on any rank, the Error of the lowest such rank is
-  /// thrown on all of them. When it returns, all ranks have returned from theirs.
+  /// Does `work`, which concerns this rank alone, and returns when all ranks have finished theirs. If `work` throws on
+  /// any rank, throws the Error of the lowest such rank on all ranks.
   void run(const std::function<void()>& work);
-  /// The same for what the leading rank does alone.
+  /// Does `work` on the leading rank alone; otherwise as run().
   void lead(const std::function<void()>& work);
 
-  /// What any rank wrote to `file` before, every rank reads afterwards.
+  /// Makes everything that any rank wrote to `file` before the call readable for every rank after the call.
   void publish(File& file);
 
-  /// Sums by element, by +=; all ranks give as many.
+  /// Sums the values of all ranks element by element, with +=. All ranks must give the same number of values.
   template <typename T>
   void sum(std::span<T> values) {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -69,7 +69,7 @@ class Team {
     std::memcpy(values.data(), part.data(), part.size());
   }
 
-  /// The items of all ranks, those of lower ranks first.
+  /// Sets `items` to the items of all ranks, the items of lower ranks first.
   template <typename T>
   void concatenate(std::vector<T>& items) {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -80,7 +80,7 @@ class Team {
     if (!part.empty()) std::memcpy(items.data(), part.data(), part.size());
   }
 
-  /// Each rank's share of `items` is its own; the others' are filled in.
+  /// Fills in the shares of the other ranks in `items`. Each rank has set its own share().
   template <typename T>
   void gather(std::vector<T>& items) {
     if (alone()) return;
@@ -89,7 +89,7 @@ class Team {
     concatenate(items);
   }
 
-  /// What the leading rank has becomes everyone's.
+  /// Copies the items of the leading rank to all ranks.
   template <typename T>
   void follow(std::vector<T>& items) {
     if (alone()) return;
@@ -115,7 +115,7 @@ class Team {
   static void append(Bytes& lower, const Bytes& higher) { lower.insert(lower.end(), higher.begin(), higher.end()); }
 };
 
-/// A team of this process alone.
+/// Returns a team that consists of this process alone.
 Team& no_team();
 
 }  // namespace weir

@@ -1,4 +1,4 @@
-// The words of the configuration for what can be chosen.
+// The words of the configuration file for each setting with a fixed set of values.
 #pragma once
 
 #include <array>

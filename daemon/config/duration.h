@@ -1,4 +1,4 @@
-// Durations as a configuration writes them.
+// Reads durations as the configuration file has them.
 #pragma once
 
 #include <optional>
@@ -6,7 +6,8 @@
 
 namespace weir {
 
-/// Seconds of "90s", "10min", "2h", "3d" or "90", with a fraction or without; nullopt where the text is no duration.
+/// Returns the seconds of "90s", "10min", "2h", "3d" or "90", with or without a fraction; nullopt if the text is no
+/// duration.
 std::optional<double> parse_duration_s(std::string_view text);
 
 }  // namespace weir

@@ -1,4 +1,4 @@
-// The file that the configuration names as state, before SQLite opens it.
+// Checks the state file of the configuration before SQLite opens it.
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@ namespace weir {
 /// PRAGMA application_id of a state file, "weir".
 inline constexpr int kStateApplication = 0x77656972;
 
-/// Throws Error(input) where `path` is a file of something else: it has bytes, and neither SQLite's beginning, nor
-/// weir's application ID, nor zeros alone on its first page, nor a journal beside it. What has one of these may be a
-/// damaged state file. What cannot be read is left to who opens it. Not for a file that SQLite has open in this
-/// process: closing it drops that one's locks.
+/// Throws Error(input) if `path` is a file of something else. A file passes if it is empty, begins as an SQLite file,
+/// has weir's application ID, has only zeros on its first page, or has a journal beside it: it may be a damaged state
+/// file. An unreadable file is left to the code that opens it. Must not be called for a file that SQLite has open in
+/// this process, because closing the file drops SQLite's locks.
 void refuse_foreign_state(const std::string& path);
 
 }  // namespace weir

@@ -6,18 +6,19 @@
 namespace weir {
 namespace {
 
-/// The first component and what follows it; nullopt: there is nothing behind it, not even an empty component.
+/// Returns the first component and the rest of the path. The rest is nullopt if there is no slash; behind a slash, it
+/// may be an empty component.
 std::pair<std::string_view, std::optional<std::string_view>> cut(std::string_view path) {
   const std::size_t slash = path.find('/');
   if (slash == std::string_view::npos) return {path, std::nullopt};
   return {path.substr(0, slash), path.substr(slash + 1)};
 }
 
-/// Length of the set that `pattern` begins with, brackets included; 0 where it has no end.
+/// Returns the length of the set at the beginning of `pattern`, with its brackets; 0 if the set has no end.
 std::size_t set_length(std::string_view pattern) {
   std::size_t at = 1;
   if (at < pattern.size() && (pattern[at] == '!' || pattern[at] == '^')) ++at;
-  if (at < pattern.size() && pattern[at] == ']') ++at;  // the first one is a member
+  if (at < pattern.size() && pattern[at] == ']') ++at;  // a bracket at the first place is a member of the set
   while (at < pattern.size() && pattern[at] != ']') ++at;
   return at < pattern.size() ? at + 1 : 0;
 }
@@ -35,7 +36,7 @@ bool in_set(std::string_view set, char c) {
   return negated;
 }
 
-/// Length of the part of `pattern` that stands for the one byte `c`; 0 where it does not match.
+/// Returns the length of the part of `pattern` that matches the one byte `c`; 0 if it does not match.
 std::size_t match_byte(std::string_view pattern, char c) {
   if (pattern.empty()) return 0;
   if (pattern.front() == '?') return 1;
@@ -46,7 +47,7 @@ std::size_t match_byte(std::string_view pattern, char c) {
   return pattern.front() == c ? 1 : 0;
 }
 
-/// One component. What a star took is given back a byte at a time, and only to the last star: linear for each star.
+/// Matches one component. Backtracks only to the last star, one byte at a time: linear for each star.
 bool match_name(std::string_view pattern, std::string_view name) {
   if (name.starts_with('.') && !pattern.starts_with('.') && !pattern.starts_with("\\.")) return false;
   std::optional<std::string_view> after_star;
@@ -75,7 +76,7 @@ bool match_name(std::string_view pattern, std::string_view name) {
 bool matches_glob(std::string_view pattern, std::string_view path) {
   std::optional<std::string_view> patterns = pattern;
   std::optional<std::string_view> names = path;
-  std::optional<std::string_view> after_stars;  // as in match_name, a component at a time
+  std::optional<std::string_view> after_stars;  // backtracks like match_name, one component at a time
   std::optional<std::string_view> rest_of_stars;
   bool any_stars = false;
   while (names) {
@@ -94,7 +95,7 @@ bool matches_glob(std::string_view pattern, std::string_view path) {
         continue;
       }
     }
-    // `**` takes one more component; it is never a hidden one.
+    // `**` takes one more component, but never a hidden one.
     if (!any_stars || rest_of_stars->starts_with('.')) return false;
     rest_of_stars = cut(*rest_of_stars).second;
     patterns = after_stars;

@@ -20,7 +20,7 @@ constexpr std::array<std::string_view, 3> kJournals{"-wal", "-shm", "-journal"};
 struct WrittenFile {
   std::string key;
   std::string path;
-  bool beside = false;  ///< not named by the key, but made beside what it names
+  bool beside = false;  ///< a file made beside the one that the key names
 };
 
 std::vector<WrittenFile> written_files(const ServiceConfig& service) {
@@ -35,7 +35,7 @@ std::vector<WrittenFile> written_files(const ServiceConfig& service) {
   return files;
 }
 
-// What each one is, by its real path.
+// Returns by real path what each file is that the service reads.
 std::map<fs::path, std::string> read_files(const DaemonConfig& config) {
   std::map<fs::path, std::string> files{{real_path(config.path), "this file"}};
   if (!config.service.token_file.empty()) files.emplace(real_path(config.service.token_file), "the token_file");
@@ -46,7 +46,7 @@ std::map<fs::path, std::string> read_files(const DaemonConfig& config) {
   return files;
 }
 
-// The service renames weir.log to weir.1.log, and that to weir.2.log.
+// Log rotation renames weir.log to weir.1.log, and weir.1.log to weir.2.log.
 NumberedFiles rotated_logs(const fs::path& log) {
   return {(log.parent_path() / log.stem()).string() + ".", log.extension().string(), false};
 }
@@ -83,7 +83,7 @@ void exclude_own_files(DaemonConfig& config) {
   std::vector<NumberedFiles> numbered{{service.state + ".corrupt-", "", true}};
   if (!service.log_file.empty()) numbered.push_back(rotated_logs(service.log_file));
   std::erase(own, "");
-  // Each is looked up once: there may be as many as watches.
+  // Each path is resolved once, because there may be as many as watches.
   std::vector<fs::path> real(own.size());
   std::ranges::transform(own, real.begin(), real_path);
   std::vector<fs::path> real_numbered(numbered.size());

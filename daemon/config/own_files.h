@@ -9,13 +9,14 @@
 namespace weir {
 
 struct OwnFileConflict {
-  std::string key;      ///< of [service], the one that has to change
+  std::string key;      ///< key of [service] that must be changed
   std::string message;  ///< what is wrong and what to do
 };
 
-/// The first file that would be written over: state, log, port_file or control_socket, or what is made beside one of
-/// them under a name of its own, is one that the service reads (the configuration, token_file, the scene of a watch),
-/// or that another of those keys has. Symbolic links are followed as far as they exist.
+/// Returns the first conflict: the service would overwrite a file that it needs. The written files are state, log,
+/// port_file and control_socket, and the files that are made beside them under fixed names. Such a file must be
+/// neither a file that the service reads (the configuration, token_file, the scene of a watch) nor that of another of
+/// these keys. Symbolic links are followed as far as they exist.
 std::optional<OwnFileConflict> find_own_file_conflict(const DaemonConfig& config);
 
 /// Fills WatchConfig::excluded_paths and excluded_numbers.

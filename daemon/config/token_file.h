@@ -1,4 +1,4 @@
-// The token that clients of a server must know, and the file that holds it.
+// The token that clients of a server must know, and the file that contains it.
 #pragma once
 
 #include <string>
@@ -6,14 +6,15 @@
 
 namespace weir {
 
-/// The text of the file without white space at its end. Throws Error(input) "PATH: ..." where it is missing, or can be
-/// read by everybody: that is no secret; Error(io) where the system does not let this user read it.
+/// Returns the text of the file without white space at its end. Throws Error(input) "PATH: ..." if the file is
+/// missing or everybody can read it (then the token is no secret); Error(io) if this user may not read it.
 std::string read_token_file(const std::string& path);
 
-/// Why `token` cannot be one, with the remedy; empty where it can.
+/// Returns why `token` cannot be used, with the remedy; empty if it can.
 std::string token_fault(std::string_view token);
 
-/// A new one that nobody can guess: 256 random bits in hex. Throws Error(io) where the system gives none.
+/// Returns a new token that nobody can guess: 256 random bits in hex. Throws Error(io) if the system provides no
+/// random bits.
 std::string make_token();
 
 }  // namespace weir

@@ -18,15 +18,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where a watch reads and writes, symbolic links followed, and possible_names(). To ask the file system for each pair
-/// of watches took minutes for a thousand.
+/// The directories of a watch with symbolic links followed, and possible_names(). They are resolved once: asking the
+/// file system for each pair of watches took minutes for a thousand watches.
 struct Places {
   fs::path directory;
   fs::path output;
   std::vector<std::string> names;
 };
 
-// What stands for {dataset} and {step} may be nothing: a raw file has neither.
+// Returns `name` and its variants without {dataset} and {step}, because these words may be empty: a raw file has
+// neither.
 std::vector<std::string> without_words(std::string name) {
   std::vector<std::string> names{std::move(name)};
   for (const std::string_view word : {"{dataset}", "{step}"}) {
@@ -41,7 +42,8 @@ std::vector<std::string> without_words(std::string name) {
   return names;
 }
 
-// Of the default: convert puts more behind the stem where a file has several volumes and options choose of them.
+// Returns the default names. If a file has several volumes and options choose some of them, convert appends more
+// words to the stem.
 std::vector<std::string> default_names(const WatchConfig& watch) {
   constexpr std::array kChoosing{"dataset", "index", "component", "magnitude", "level"};
   const bool chooses =
@@ -50,19 +52,19 @@ std::vector<std::string> default_names(const WatchConfig& watch) {
   return {"{stem}.nvdb", "{stem}_{dataset}.nvdb", "{stem}_{step}.nvdb", "{stem}_{dataset}_{step}.nvdb"};
 }
 
-// Templates of all that an output may be called, in which no word stands for nothing.
+// Returns templates of all names that an output may have; no word in them is empty.
 std::vector<std::string> possible_names(const WatchConfig& watch) {
   return watch.name.empty() ? default_names(watch) : without_words(watch.name);
 }
 
-/// The first of `a` that is one of `b`, too; empty: none.
+/// Returns the first name of `a` that is also in `b`; empty if there is none.
 std::string_view common_name(const std::vector<std::string>& a, const std::vector<std::string>& b) {
   const auto at = std::ranges::find_first_of(a, b);
   return at == a.end() ? std::string_view() : std::string_view(*at);
 }
 
-/// "sub/deep" of "/in/sub/deep" below "/in"; empty where it does not lie below it. As text: lies_below() takes several
-/// times as long.
+/// Returns the part of `path` below `directory`: "sub/deep" for "/in/sub/deep" and "/in". Empty if it does not lie
+/// below. Compares text, because lies_below() takes several times as long.
 std::string_view place_below(const fs::path& path, const fs::path& directory) {
   const std::string_view text = path.native();
   const std::string_view above = directory.native() == "/" ? std::string_view() : directory.native();
@@ -70,7 +72,8 @@ std::string_view place_below(const fs::path& path, const fs::path& directory) {
   return is_below ? text.substr(above.size() + 1) : std::string_view();
 }
 
-/// Whether all that `watch` includes lies in other sub-directories than `place`: "run1/*.raw", of "run2".
+/// Returns whether all patterns that `watch` includes lie in other subdirectories than `place`: for example
+/// "run1/*.raw" if `place` is "run2".
 bool includes_others(const WatchConfig& watch, std::string_view place) {
   const auto lies_elsewhere = [&](std::string_view pattern) {
     const std::size_t end = pattern.find('/');
@@ -81,8 +84,9 @@ bool includes_others(const WatchConfig& watch, std::string_view place) {
   return !watch.include.empty() && std::ranges::all_of(watch.include, lies_elsewhere);
 }
 
-/// Whether `watch` excludes from its sub-directory `place` all that `inner` includes there, by the same patterns. One
-/// without a slash takes names at any depth: of a recursive `inner`, "place/**/" is to be before it.
+/// Returns whether `watch` excludes from its subdirectory `place` everything that `inner` includes there, by the same
+/// patterns. A pattern without a slash matches names at any depth: if `inner` is recursive, "place/**/" must precede
+/// it.
 bool leaves_to(const WatchConfig& watch, const WatchConfig& inner, std::string_view place) {
   const auto excludes = [&](const std::string& pattern) {
     const bool at_any_depth = inner.recursive && pattern.find('/') == std::string::npos;
@@ -91,8 +95,9 @@ bool leaves_to(const WatchConfig& watch, const WatchConfig& inner, std::string_v
   return !inner.include.empty() && std::ranges::all_of(inner.include, excludes);
 }
 
-/// Whether a recursive watch takes no file right in its sub-directory `place`: it is hidden, or excluded. For any name
-/// stands one that nobody gives, which a pattern without a set matches only where it matches every name.
+/// Returns whether a recursive watch takes no file directly in its subdirectory `place`, because it is hidden or
+/// excluded. To test for any name, a name is used that nobody gives: a pattern without a set matches it only if it
+/// matches every name.
 bool leaves_out(const WatchConfig& watch, std::string_view place) {
   const auto is_excluded = [&](std::string_view path, bool any_name = false) {
     return std::ranges::any_of(watch.exclude, [&](const std::string& pattern) {
@@ -106,8 +111,8 @@ bool leaves_out(const WatchConfig& watch, std::string_view place) {
   }
 }
 
-/// Where `inner` watches a sub-directory of the recursive `outer`, and both write what comes of a source there to one
-/// directory: that sub-directory, relative. Empty: it is not so.
+/// Returns the subdirectory (relative) of the recursive `outer` that `inner` watches, if both write the outputs of
+/// its sources to one directory. Empty otherwise.
 std::string_view twice_converted(const WatchConfig& outer, const Places& at_outer, const WatchConfig& inner,
                                  const Places& at_inner) {
   if (!outer.recursive) return {};
@@ -117,13 +122,13 @@ std::string_view twice_converted(const WatchConfig& outer, const Places& at_oute
   return apart ? std::string_view() : place;
 }
 
-/// Whether some file can be a source of both.
+/// Returns whether some file can be a source of both watches.
 bool share_sources(const WatchConfig& a, const Places& at_a, const WatchConfig& b, const Places& at_b) {
   return at_a.directory == at_b.directory || (a.recursive && lies_below(at_b.directory, at_a.directory)) ||
          (b.recursive && lies_below(at_a.directory, at_b.directory));
 }
 
-/// What the second one has to change where both write the same names; empty: they do not.
+/// Returns what the second watch must change because both write the same names; empty if they do not.
 std::string same_names(const WatchConfig& a, const Places& at_a, const WatchConfig& b, const Places& at_b) {
   const auto written = [&](std::string_view name, const WatchConfig& into) {
     return cat("the watch \"", a.label, "\" writes the same names, ", name, " in ", into.output,

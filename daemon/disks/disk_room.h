@@ -1,4 +1,4 @@
-// The room on the file system that a directory lies on, or will lie on.
+// The free space of the file system that a directory lies on, or will lie on.
 #pragma once
 
 #include <cstdint>
@@ -7,12 +7,12 @@
 namespace weir {
 
 struct DiskRoom {
-  std::uint64_t device = 0;  ///< tells file systems apart
+  std::uint64_t device = 0;  ///< distinguishes file systems
   std::uint64_t free = 0;    ///< bytes
   std::uint64_t total = 0;
 };
 
-/// Of the nearest directory there is; all 0 where none can be asked.
+/// Returns the figures of the nearest existing directory at or above `directory`; all 0 if the system cannot tell.
 DiskRoom room_in(const std::string& directory);
 
 }  // namespace weir

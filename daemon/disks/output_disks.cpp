@@ -19,11 +19,11 @@ using std::chrono::seconds;
 
 constexpr seconds kWindow{600};
 constexpr seconds kInterval{3};
-constexpr seconds kPatience{10};  ///< longer than a look takes
-constexpr seconds kAsked{60};     ///< after which a directory that nobody asks for is looked at no more
+constexpr seconds kPatience{10};  ///< longer than a look usually takes
+constexpr seconds kAsked{60};     ///< time without a request after which a directory is no longer looked at
 constexpr double kYear_s = 365.0 * 24 * 3600;
 
-// The highest directory above `directory` that is on the same file system.
+// Returns the highest directory at or above `directory` on the same file system.
 std::string mount_of(const std::string& directory, std::uint64_t device) {
   fs::path at = real_path(directory);
   std::string mount = at.string();
@@ -39,19 +39,19 @@ std::string mount_of(const std::string& directory, std::uint64_t device) {
 
 }  // namespace
 
-// Shared with its thread, which may outlive the object where a file server hangs; meanwhile it looks at no other one,
-// and their figures stay as they were.
+// Shared with the thread, which may outlive the object if a file server hangs. While a look hangs, the thread looks
+// at no other file system, and all figures stay as they were.
 struct OutputDisks::Looker {
   struct Place {
     std::string directory;
     std::string mount;  ///< empty: not looked at yet
     DiskRoom room;
-    std::optional<Time> begun;  ///< of the look that goes on
+    std::optional<Time> begun;  ///< start of the look in progress
   };
 
   struct Asked {
     std::optional<DiskRoom> room;  ///< none: not looked at yet
-    Time first;                    ///< asked for
+    Time first;                    ///< time of the first request
     Time last;
   };
 
@@ -77,7 +77,7 @@ struct OutputDisks::Looker {
         const DiskRoom room = room_in(directory);
         std::string mount = mount_of(directory, room.device);
         lock.lock();
-        if (again || over) break;  // the places are others
+        if (again || over) break;  // watch() has replaced the places
         places[i].room = room;
         places[i].mount = std::move(mount);
         places[i].begun.reset();

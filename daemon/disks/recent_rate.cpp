@@ -20,7 +20,7 @@ RecentRate::Rates RecentRate::at(Time now) const {
     sums.per_s += static_cast<double>(slot.count);
     sums.bytes_per_s += static_cast<double>(slot.bytes);
   }
-  // At least a slot: what came in the first moment says nothing of a second.
+  // Divides by one slot at least: the events of the first moment do not give a rate per second.
   const auto over = std::clamp<std::chrono::nanoseconds>(now - start_, window_ / kSlots, window_);
   const double seconds = std::chrono::duration<double>(over).count();
   return {sums.per_s / seconds, sums.bytes_per_s / seconds};

@@ -1,4 +1,4 @@
-// The recent rate of something, in numbers and in bytes, in constant memory.
+// The recent rate of events and of their bytes, in constant memory.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@ class RecentRate {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
-  /// Rates are over `window` before now, and since `start` where that is shorter.
+  /// Rates are averages over the last `window`, or since `start` if that is shorter.
   RecentRate(std::chrono::seconds window, Time start) : window_(window), start_(start) {}
 
   void add(std::uint64_t bytes, Time now);
@@ -20,13 +20,13 @@ class RecentRate {
     double per_s = 0;
     double bytes_per_s = 0;
   };
-  /// Exact to one slot, a kSlots-th of the window.
+  /// Returns the rates. They are accurate to one slot of the window.
   Rates at(Time now) const;
 
  private:
-  static constexpr std::int64_t kSlots = 60;  ///< of the window
+  static constexpr std::int64_t kSlots = 60;  ///< slots per window
   struct Slot {
-    std::int64_t number = -1;  ///< since `start`
+    std::int64_t number = -1;  ///< number of the slot, counted since `start`
     std::uint64_t count = 0;
     std::uint64_t bytes = 0;
   };

@@ -7,7 +7,7 @@
 namespace weir {
 namespace {
 
-// "localhost:8470", "127.0.0.1", "[::1]:8470". The port may be another: that of a tunnel.
+// Accepts "localhost:8470", "127.0.0.1", "[::1]:8470". The port is not checked: it may be that of a tunnel.
 bool names_loopback(std::string_view host) {
   if (host.starts_with('[')) {
     const std::size_t end = host.find(']');
@@ -16,12 +16,12 @@ bool names_loopback(std::string_view host) {
   return is_loopback(lower_case(host.substr(0, host.find(':'))));
 }
 
-// The media type without its parameters.
+// Compares the media type without its parameters.
 bool is_json(std::string_view content_type) {
   return lower_case(trimmed(content_type.substr(0, content_type.find(';')))) == "application/json";
 }
 
-// The token of an Authorization header; none where it is of another scheme.
+// Returns the token of an Authorization header; none if the header uses another scheme.
 std::optional<std::string_view> bearer_token(std::string_view authorization) {
   constexpr std::string_view kScheme = "bearer ";
   if (lower_case(authorization.substr(0, kScheme.size())) != kScheme) return std::nullopt;
@@ -38,7 +38,7 @@ HttpResponse refuse_token(const AccessRules& rules, bool given) {
 }  // namespace
 
 bool same_secret(std::string_view secret, std::string_view given) {
-  // Always as many steps as `given` has bytes, none of which depends on what was equal so far.
+  // The number of steps depends only on the length of `given`, and no step depends on earlier comparisons.
   std::size_t difference = secret.size() ^ given.size();
   for (std::size_t i = 0; i < given.size(); ++i) {
     const char expected = secret.empty() ? '\0' : secret[i % secret.size()];

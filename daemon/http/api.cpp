@@ -18,7 +18,7 @@
 namespace weir {
 namespace {
 
-// A request and where it goes, as a route's function sees it.
+// What a route's function receives: the request's target and the context.
 struct Call {
   Control& control;
   const RequestTarget& target;
@@ -31,7 +31,8 @@ struct Route {
   std::string_view path;  ///< "*" stands for any one segment
   bool open;              ///< needs no token
   HttpResponse (*answer)(const Call&);
-  const char* parameters = nullptr;  ///< all that it takes, between commas; null: others are ignored
+  const char* parameters =
+      nullptr;  ///< all parameters that the route accepts, separated by commas; null: unknown ones are ignored
 };
 
 HttpResponse ok(const OrderedJson& json) {
@@ -71,7 +72,7 @@ HttpResponse status(const Call& call) {
   return ok(json);
 }
 
-// Sets `value` from the parameter `name`, where there is one; whether that is fine.
+// Sets `value` from the parameter `name` if it is given. Returns whether the parameter is valid.
 bool read_count(const RequestTarget& target, const std::string& name, std::size_t max, std::size_t& value) {
   const auto found = target.query.find(name);
   if (found == target.query.end()) return true;
@@ -85,7 +86,7 @@ HttpResponse bad_limit(const RequestTarget& target) {
   return error_response(400, cat("limit=", target.query.at("limit"), ": give 0 to ", kMaxJobsPerPage));
 }
 
-// Sets `order` from the parameters sort and order, where there is one; whether they are fine.
+// Sets `order` from the parameters sort and order if they are given. Returns whether they are valid.
 bool read_order(const RequestTarget& target, std::optional<JobOrder>& order) {
   const auto sort = target.query.find("sort");
   const auto way = target.query.find("order");
@@ -153,7 +154,7 @@ HttpResponse thumbnail(const Call& call) {
   auto image = path ? read_thumbnail(*path) : std::nullopt;
   if (!image) return error_response(404, cat("job ", *id, " has no thumbnail ", place));
   HttpResponse response = text(200, std::move(*image), "image/png");
-  // The page asks for each with the time of its job's last change.
+  // A long cache time is safe, because the page adds the time of the job's last change to the address.
   response.headers.emplace_back("Cache-Control", "private, max-age=86400");
   return response;
 }
@@ -184,7 +185,8 @@ HttpResponse retry(const Call& call) {
 
 HttpResponse viewer(const Call& call) { return ok(to_json(call.control.viewer())); }
 
-// The page of the viewer, at that file; it says which series the page is of, and which job brings that back.
+// Returns the address of the viewer's page for this file. It names the page's series, and the job that opens the
+// series again.
 std::string view_address(const std::string& path, std::int64_t job, std::size_t output) {
   return cat("/view/?series=", series_digest(path), "&job=", job, "&output=", output,
              "#f=", percent_encode(path.substr(path.rfind('/') + 1)));
@@ -270,7 +272,7 @@ bool matches(std::string_view pattern, const std::vector<std::string>& path) {
                     [](const std::string& w, const std::string& p) { return w == "*" ? !p.empty() : w == p; });
 }
 
-// "there are sort, order and limit", "there is force", "there is none".
+// Returns "there are sort, order and limit", "there is force" or "there is none".
 std::string names_text(const std::vector<std::string>& names) {
   if (names.empty()) return "there is none";
   std::string text = cat(names.size() == 1 ? "there is " : "there are ", names.front());
@@ -278,7 +280,7 @@ std::string names_text(const std::vector<std::string>& names) {
   return text;
 }
 
-// A misspelt parameter would ask for something else than was meant.
+// Refuses unknown parameters: a misspelt one would ask for something else than was meant.
 std::optional<HttpResponse> refuse_parameters(const Route& route, const RequestTarget& target) {
   if (route.parameters == nullptr) return std::nullopt;
   std::vector<std::string> known = split(route.parameters, ',');

@@ -1,8 +1,7 @@
-// What the control server answers: the table of routes over Control.
-// docs/http-api.md describes them all.
+// The answers of the control server: the table of routes over Control. docs/http-api.md describes all routes.
 //
-// HEAD goes wherever GET does. Errors are {"error": "..."}. No path of the file
-// system is ever taken from a request.
+// HEAD is answered wherever GET is. Errors are {"error": "..."}. No path of the file system is ever taken from a
+// request.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +14,7 @@
 
 namespace weir {
 
-/// "GET /api/jobs/*" and so on: each method and path that is answered, * for any one segment.
+/// Returns each answered method and path as "GET /api/jobs/*"; * stands for any one segment.
 std::vector<std::string> api_routes();
 
 inline constexpr std::size_t kMaxJobsPerPage = 1000;
@@ -25,7 +24,7 @@ class Api {
   /// `control` must outlive the object.
   Api(Control& control, AccessRules rules) : control_(control), rules_(std::move(rules)) {}
 
-  /// Throws what `control` throws.
+  /// Returns the answer to `request`. Throws what `control` throws.
   HttpResponse answer(const HttpRequest& request) const;
 
  private:

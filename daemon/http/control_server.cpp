@@ -20,8 +20,8 @@ AccessRules rules_of(const ControlServerSettings& settings) {
   return {settings.token, loopback, settings.control_socket.empty() ? "" : control_address(settings).text()};
 }
 
-// The rights to the socket's path say who may connect. A browser gets there through a tunnel whose end is a loopback
-// port, so that the rule of Host holds here, too.
+// The access rights of the socket's path decide who may connect. A browser reaches the socket through a tunnel from a
+// loopback port, so the rule for Host headers holds here, too.
 AccessRules rules_of_socket() { return {"", true}; }
 
 HttpHandler answer_with(Control& control, const AccessRules& rules) {

@@ -1,5 +1,5 @@
-// The control server, on TCP and on a Unix socket where one is wanted: transport (http_server.h), who may ask
-// (access.h) and what is answered (api.h) put together. Lives on the io_context's thread.
+// The control server, on TCP and, if configured, on a Unix socket. Combines transport (http_server.h), access rules
+// (access.h) and answers (api.h). Lives on the io_context's thread.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -16,8 +16,9 @@ namespace weir {
 
 struct ControlServerSettings {
   ListenAddress address{"127.0.0.1", 8470};
-  std::string token;           ///< bearer token that every request for data must bring; empty: none, loopback only
-  std::string control_socket;  ///< path of a Unix socket that needs no token; POST is answered there alone. Empty: none
+  std::string token;  ///< bearer token that every request for data must have; empty: no token, allowed only on loopback
+  std::string control_socket;  ///< path of a Unix socket that needs no token; if set, only this socket answers POST.
+                               ///< Empty: no socket
   HttpLimits limits;
 };
 
@@ -25,9 +26,9 @@ class ControlServer {
  public:
   using Take = decltype(SocketHandler::take);
 
-  /// Listens from here on. `control` must outlive the server. `view` has the connections of requests below /view/,
-  /// while control.viewer() is ready. Throws Error(usage) for an address that others can reach without a token,
-  /// Error(io) where an address cannot be had.
+  /// Listens from here on. `control` must outlive the server. `view` receives the connections of requests below
+  /// /view/ while control.viewer() is ready. Throws Error(usage) if other machines can reach the address and there is
+  /// no token, Error(io) if the server cannot listen on an address.
   ControlServer(boost::asio::io_context& io, const ControlServerSettings& settings, Control& control,
                 const Take& view = nullptr);
 

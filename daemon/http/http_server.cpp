@@ -14,7 +14,7 @@ namespace {
 
 using boost::system::error_code;
 
-constexpr std::chrono::milliseconds kAcceptAgain{100};  // after a failure, as of no descriptor left
+constexpr std::chrono::milliseconds kAcceptAgain{100};  // wait after a failure, for example when no descriptor is left
 
 }  // namespace
 
@@ -57,9 +57,10 @@ class HttpServer::Listener : public std::enable_shared_from_this<Listener> {
     sessions_.back()->start();
   }
 
-  // Closes the connection that has waited longest for its next request, whether it sends one slowly or none: a fresh
-  // one has its turn before whoever holds connections without using them. Those that are being answered go last. Of
-  // this machine's own, from which health is asked, `local_share` are closed for nobody else's.
+  // Closes the connection that has waited longest for a complete request, whether it sends slowly or not at all: a
+  // new connection takes precedence over idle ones. Connections that are being answered are closed last.
+  // `local_share` connections of this machine, which asks for the service's health, are never closed for other
+  // clients.
   void make_room(bool for_local) {
     const auto locals = static_cast<std::size_t>(
         std::count_if(sessions_.begin(), sessions_.end(), [](const auto& session) { return session->local(); }));

@@ -1,6 +1,5 @@
-// Listens on one address and keeps the connections; each is an HttpSession.
-// Knows the limits, not what is asked or answered. One thread: that of the
-// io_context, which must outlive the server.
+// Listens on one address and owns the connections; each is an HttpSession. Enforces the limits, and knows nothing of
+// requests and answers. One thread: the io_context's. The io_context must outlive the server.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -17,15 +16,15 @@ namespace weir {
 
 class HttpServer {
  public:
-  /// Listens from here on, as ListeningSocket says. Connections that `sockets` wants go there.
+  /// Listens from here on, with the errors of ListeningSocket. Connections that `sockets` wants are handed to it.
   HttpServer(boost::asio::io_context& io, const ListenAddress& address, const HttpLimits& limits, HttpHandler handler,
              SocketHandler sockets = {});
-  /// Closes everything; no call of `handler` comes afterwards.
+  /// Closes all connections; `handler` is not called afterwards.
   ~HttpServer();
   HttpServer(const HttpServer&) = delete;
   HttpServer& operator=(const HttpServer&) = delete;
 
-  /// The port it listens on; 0 for a Unix socket.
+  /// Returns the port that it listens on; 0 for a Unix socket.
   std::uint16_t port() const;
 
  private:

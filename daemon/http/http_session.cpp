@@ -18,7 +18,8 @@ namespace {
 namespace http = boost::beast::http;
 using boost::system::error_code;
 
-// At most what is not parsed yet is in the buffer: a part of a header, or of a chunk's; a body moves on.
+// The buffer holds at most the bytes that are not parsed yet: a part of a header or of a chunk header. Bytes of a
+// body move on at once.
 constexpr std::size_t kReadBytes = 4 << 10;
 constexpr std::size_t kSpareBytes = 8 << 10;
 
@@ -53,7 +54,7 @@ void HttpSession::end() {
   ended_(*this);
 }
 
-// A new phase: its clock starts.
+// Begins a phase and starts its time limit.
 void HttpSession::enter(Phase phase, std::chrono::milliseconds limit) {
   phase_ = phase;
   timer_.expires_after(limit);
@@ -71,12 +72,12 @@ void HttpSession::on_timeout() {
 
 void HttpSession::await_request() {
   waiting_since_ = Clock::now();
-  if (buffer_.size() > 0) return begin_request();  // pipelined
+  if (buffer_.size() > 0) return begin_request();  // the next request is in the buffer already (pipelining)
   enter(Phase::idle, limits_.idle);
   receive(&HttpSession::begin_request);
 }
 
-// Appends what comes to the buffer and goes on with `next`.
+// Appends the received bytes to the buffer and continues with `next`.
 void HttpSession::receive(void (HttpSession::*next)()) {
   socket_.async_read_some(buffer_.prepare(kReadBytes),
                           [self = shared_from_this(), next](const error_code& error, std::size_t bytes) {
@@ -97,8 +98,8 @@ void HttpSession::begin_request() {
   parse();
 }
 
-// Not http::async_read: the parser's own limit is of each piece of a header that it is handed, so that many short
-// fields could fill the memory.
+// Does not use http::async_read: the parser's own limit applies to each piece of a header, so many short fields could
+// fill the memory.
 void HttpSession::parse() {
   while (!parser_->is_done()) {
     const bool in_header = !parser_->is_header_done();
@@ -167,7 +168,7 @@ void HttpSession::answer() {
 HttpResponse HttpSession::answer_to(const HttpRequest& request) const {
   try {
     return handler_(request);
-  } catch (const CorruptDatabase&) {  // ends the service
+  } catch (const CorruptDatabase&) {  // a corrupt state file ends the service
     throw;
   } catch (const std::exception& error) {
     spdlog::error("http: {} {}: {}", request.method, request.target, error.what());
@@ -175,7 +176,7 @@ HttpResponse HttpSession::answer_to(const HttpRequest& request) const {
   }
 }
 
-// The connection lives on, this object does not.
+// Hands the connection over. The connection lives on, and this session ends.
 void HttpSession::hand_over() {
   UpgradeRequest request = parser_->release();
   boost::asio::generic::stream_protocol::socket socket = std::move(socket_);
@@ -183,7 +184,7 @@ void HttpSession::hand_over() {
   end();
   try {
     sockets_.take(std::move(socket), std::move(request));
-  } catch (const std::exception& error) {  // the connection is gone with what took it
+  } catch (const std::exception& error) {  // the connection was destroyed together with its taker
     spdlog::error("http: handed over: {}", error.what());
   }
 }
@@ -206,8 +207,8 @@ void HttpSession::respond(HttpResponse response, bool keep_alive) {
   });
 }
 
-// Closing a socket with unread bytes resets the connection, and the client may lose the response: so the sending
-// half is closed, and what still comes is thrown away for a moment.
+// Closing a socket with unread bytes resets the connection, and the client may lose the response. So only the sending
+// half is closed, and bytes that still arrive are discarded for a moment.
 void HttpSession::drain() {
   error_code ignored;
   socket_.shutdown(boost::asio::socket_base::shutdown_send, ignored);

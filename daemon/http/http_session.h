@@ -1,7 +1,6 @@
-// One connection: reads a request, has it answered, writes the answer, and so on
-// until the client leaves, breaks the rules, takes too long or is handed over as a WebSocket. Requests of one
-// connection are answered one after the other, in order, pipelined or not.
-// Keeps itself alive while it waits; one thread, the io_context's.
+// One connection: reads a request, has it answered, writes the answer, and repeats this until the client leaves,
+// breaks the rules, takes too long or is handed over as a WebSocket. Requests of one connection are answered in
+// order, pipelined or not. The session keeps itself alive while it waits. One thread: the io_context's.
 #pragma once
 
 #include <boost/asio/generic/stream_protocol.hpp>
@@ -22,22 +21,22 @@ namespace weir {
 
 class HttpSession : public std::enable_shared_from_this<HttpSession> {
  public:
-  /// What the connection waits for.
+  /// The present activity of the connection.
   enum class Phase { idle, receiving, draining, responding };
   using Clock = std::chrono::steady_clock;
 
-  /// `ended` is called once, when the connection is closed for whatever reason but close().
+  /// `ended` is called once, when the connection is closed for any reason except close().
   HttpSession(boost::asio::generic::stream_protocol::socket socket, bool local, const HttpLimits& limits,
               HttpHandler handler, SocketHandler sockets, std::function<void(HttpSession&)> ended);
 
   void start();
-  /// At once; neither the handler nor `ended` is called from here on.
+  /// Closes the connection at once; neither the handler nor `ended` is called afterwards.
   void close();
 
   Phase phase() const { return phase_; }
-  /// Since when it waits for its next request: since it was accepted, or its last answer was taken.
+  /// Returns since when it waits for its next request: since it was accepted or its last answer was received.
   Clock::time_point waiting_since() const { return waiting_since_; }
-  /// Whether the client is this machine.
+  /// Returns whether the client is on this machine.
   bool local() const { return local_; }
 
  private:
@@ -69,7 +68,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   std::optional<boost::beast::http::response<boost::beast::http::string_body>> response_;
   Phase phase_ = Phase::idle;
   Clock::time_point waiting_since_ = Clock::now();
-  std::size_t header_bytes_ = 0;  ///< of the request so far, its first line included
+  std::size_t header_bytes_ = 0;  ///< bytes of the request's header so far, with its first line
   bool head_ = false;             ///< the request is HEAD: its response has no body
   bool timed_out_ = false;        ///< on_timeout gave the request up
   bool closed_ = false;

@@ -34,13 +34,13 @@ tcp::endpoint endpoint_of(const ListenAddress& address) {
   return {ip, address.port};
 }
 
-// Conversions are child processes: they inherit none of the server's sockets.
+// Conversions are child processes, which must not inherit the server's sockets.
 template <typename Socket>
 void close_on_exec(Socket& socket) {
   ::fcntl(socket.native_handle(), F_SETFD, FD_CLOEXEC);
 }
 
-// A socket for both kinds of address gives 127.0.0.1 as ::ffff:127.0.0.1.
+// A socket for both IP versions reports 127.0.0.1 as ::ffff:127.0.0.1.
 bool is_this_machine(const boost::asio::ip::address& address) {
   using namespace boost::asio::ip;
   if (address.is_v6() && address.to_v6().is_v4_mapped())
@@ -54,7 +54,7 @@ bool is_this_machine(const boost::asio::ip::address& address) {
                                  "another service.control_socket"));
 }
 
-// Held by whoever listens at `path`, or is about to.
+// Takes the lock of `path`. A process holds it while it listens at the path or prepares to.
 Descriptor lock_path(const std::string& path) {
   const std::string lock = path + ".lock";
   Descriptor file(::open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600));
@@ -76,11 +76,11 @@ bool is_socket(const std::string& path) {
   return ::lstat(path.c_str(), &status) == 0 && S_ISSOCK(status.st_mode);
 }
 
-// Refuses a path at which there is something else than a socket that nobody listens on any more: other programs take no
-// lock.
+// Throws if there is something at the path other than a socket without a listener. The lock does not show this,
+// because other programs take no lock.
 void require_free(boost::asio::io_context& io, const std::string& path) {
   struct stat status {};
-  if (::lstat(path.c_str(), &status) != 0) return;  // what else is wrong, bind says
+  if (::lstat(path.c_str(), &status) != 0) return;  // bind reports any other fault
   if (!S_ISSOCK(status.st_mode)) {
     throw Error(ErrorKind::io, cat(path, ": cannot listen: there is a file that is no socket; name another path"));
   }
@@ -132,16 +132,16 @@ void ListeningSocket::listen_on_tcp(const ListenAddress& address) {
   }
 }
 
-// 1. The socket is bound beside its path, so that nobody connects before 2.
-// 2. It gets its mode, listens,
-// 3. and is renamed to its path, in place of what a killed process left there.
+// 1. The socket is bound under another name beside its path, so that nobody connects before step 3.
+// 2. It gets its mode and listens.
+// 3. It is renamed to its path and replaces what a killed process left there.
 void ListeningSocket::listen_on_path(const std::string& path) {
   const std::string beside = cat(path, kBeside);
   const auto fail = [&](const char* what, int cause) {
     ::unlink(beside.c_str());
     throw io_error(path, what, cause);
   };
-  if (is_socket(beside)) ::unlink(beside.c_str());  // of a process that was killed before 3.
+  if (is_socket(beside)) ::unlink(beside.c_str());  // left by a process that was killed before step 3
   error_code error;
   acceptor_.open(UnixProtocol(), error);
   if (!error) close_on_exec(acceptor_);
@@ -163,7 +163,7 @@ std::uint16_t ListeningSocket::port() const {
   return endpoint.port();
 }
 
-// The path goes before the lock does: after that it may be another process's.
+// Removes the path before it releases the lock: afterwards the path may belong to another process.
 void ListeningSocket::close() {
   error_code ignored;
   acceptor_.close(ignored);

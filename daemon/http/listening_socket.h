@@ -1,5 +1,5 @@
-// A socket that listens: on an address of TCP, or on a path of the file system
-// that only those with the right to write it can connect to.
+// A listening socket: on a TCP address, or on a path of the file system, which only users with write permission can
+// connect to.
 #pragma once
 
 #include <boost/asio/basic_socket_acceptor.hpp>
@@ -19,19 +19,19 @@ class ListeningSocket {
  public:
   using Acceptor = boost::asio::basic_socket_acceptor<boost::asio::generic::stream_protocol>;
 
-  /// Listens from here on. A host is a literal address or "localhost", port 0 takes a free one. A Unix socket has the
-  /// mode 0660 whatever the umask; one that a killed process left at its path is replaced, under a lock on PATH.lock
-  /// that is held until close() and left there. Throws Error(usage) for another name, Error(io) where the address
-  /// cannot be had.
+  /// Listens from here on. The host is a literal address or "localhost"; port 0 takes a free port. A Unix socket has
+  /// mode 0660, whatever the umask. If a killed process left a socket at the path, it is replaced. The lock PATH.lock
+  /// is held until close(), and the lock file stays. Throws Error(usage) for another host name or a path that is too
+  /// long, Error(io) if it cannot listen on the address.
   ListeningSocket(boost::asio::io_context& io, const ListenAddress& address);
   ~ListeningSocket() { close(); }
   ListeningSocket(const ListeningSocket&) = delete;
   ListeningSocket& operator=(const ListeningSocket&) = delete;
 
   Acceptor& acceptor() { return acceptor_; }
-  /// The port it listens on; 0 for a Unix socket.
+  /// Returns the port that it listens on; 0 for a Unix socket.
   std::uint16_t port() const;
-  /// Listens no more. The path of a Unix socket is removed.
+  /// Stops listening. The path of a Unix socket is removed.
   void close();
 
  private:
@@ -39,11 +39,11 @@ class ListeningSocket {
   void listen_on_path(const std::string& path);
 
   Acceptor acceptor_;
-  std::string path_;  ///< that is removed at the end
+  std::string path_;  ///< path to remove at the end
   Descriptor lock_;   ///< on PATH.lock
 };
 
-/// Makes a socket ready that was accepted: child processes do not inherit it, and small answers leave at once. Returns
+/// Prepares an accepted socket: child processes do not inherit it, and small answers are sent at once. Returns
 /// whether its other end is on this machine.
 bool prepare(StreamSocket& socket);
 

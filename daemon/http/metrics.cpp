@@ -34,7 +34,7 @@ std::string escaped(std::string_view label) {
 
 using Labels = std::initializer_list<std::pair<std::string_view, std::string_view>>;
 
-// Families one after the other, each with its samples.
+// Writes metric families one after the other, each with its samples.
 class MetricsWriter {
  public:
   void family(std::string_view name, std::string_view type, std::string_view help) {
@@ -52,7 +52,7 @@ class MetricsWriter {
     if (labels.size() > 0) text_ += '}';
     text_ += cat(' ', number(value), '\n');
   }
-  /// A family of one sample.
+  /// Writes a family of one sample.
   template <typename Number>
   void single(std::string_view name, std::string_view type, std::string_view help, Number value) {
     family(name, type, help);
@@ -120,7 +120,7 @@ void write_watches(MetricsWriter& out, const StatusView& status) {
   for (const WatchView& watch : status.watches) out.sample({{"watch", watch.label}}, watch.overflows);
 }
 
-// `sample(watch, job, output)` for each watch's newest result: the last output of the last job.
+// Calls `sample(watch, job, output)` for each watch's newest result: the last output of its last job.
 template <typename Sample>
 void for_last_results(const StatusView& status, const Sample& sample) {
   for (const WatchView& watch : status.watches) {

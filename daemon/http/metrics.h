@@ -9,8 +9,8 @@
 
 namespace weir {
 
-/// Every metric with its HELP and TYPE line; names begin with weir_, units are seconds and bytes, counters end in
-/// _total and count since the start of the process.
+/// Returns all metrics, each with its HELP and TYPE line. Names begin with weir_; units are seconds and bytes;
+/// counters end in _total and count since the start of the process.
 std::string metrics_text(const StatusView& status, const MetricsView& metrics, const ProcessUsage& usage);
 
 }  // namespace weir

@@ -17,7 +17,7 @@ std::string_view page_type(std::string_view name) {
   return "application/octet-stream";
 }
 
-// No script, style or picture from anywhere else, none inside the page's text, in no other page's frame.
+// The page uses no script, style or picture of another server and no inline script, and no other page may frame it.
 std::string content_policy(std::string_view connect) {
   return cat("default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; connect-src 'self'",
              connect.empty() ? "" : " ", connect, "; base-uri 'none'; form-action 'none'; frame-ancestors 'none'");

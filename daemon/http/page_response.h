@@ -1,4 +1,4 @@
-// Answers with the files of a page, and the headers that keep a page to itself.
+// Answers with the files of a page and with headers that isolate the page.
 #pragma once
 
 #include <span>
@@ -9,12 +9,12 @@
 
 namespace weir {
 
-/// The file `name` of the first of `pages` that has one; 404 where none does.
+/// Returns the file `name` of the first of `pages` that has it; 404 if none has.
 HttpResponse page_response(std::initializer_list<std::span<const PageFile>> pages, std::string_view name);
 
-/// Adds what every answer has: no script, style or picture from anywhere else, no other page's frame, no guessed types,
-/// no caching where the answer says nothing of it. `connect`: where the page may connect to besides this server, in the
-/// words of a content policy.
+/// Adds the headers of every answer: no script, style or picture from another server, no display in another page's
+/// frame, no guessed content types, and no caching unless the answer allows it. `connect`: other places that the page
+/// may connect to, in the syntax of a content security policy.
 void add_page_headers(HttpResponse& response, std::string_view connect = {});
 
 }  // namespace weir

@@ -38,9 +38,10 @@ Relay::Relay(Client client, std::string request, Ended ended, std::chrono::milli
 
 void Relay::start(const asio::ip::tcp::endpoint& server, std::optional<std::chrono::milliseconds> limit) {
   if (limit) end_within(limit_, *limit);
-  error_code unopened;  // which async_connect tells
+  error_code unopened;  // async_connect reports the error
   server_.open(server.protocol(), unopened);
-  if (!unopened) ::fcntl(server_.native_handle(), F_SETFD, FD_CLOEXEC);  // conversions are child processes
+  if (!unopened)
+    ::fcntl(server_.native_handle(), F_SETFD, FD_CLOEXEC);  // child processes (conversions) must not inherit it
   server_.async_connect(server, [self = shared_from_this()](const error_code& error) {
     if (self->closed_) return;
     if (error) return self->refuse();
@@ -55,8 +56,8 @@ void Relay::start(const asio::ip::tcp::endpoint& server, std::optional<std::chro
   });
 }
 
-// The next piece is read when the one before is written: who does not read slows the other side, and fills no memory.
-// While a client that takes nothing is written to, the end of the server is not seen: its time is limited.
+// Reads the next piece when the last one is written, so that a slow reader slows the other side and fills no memory.
+// While a client does not read, the end of the server goes unnoticed, so the write to the client has a time limit.
 template <typename From, typename To>
 void Relay::pump(From& from, To& to, Piece& piece) {
   constexpr bool kToClient = std::is_same_v<To, Client>;
@@ -77,7 +78,8 @@ void Relay::pump(From& from, To& to, Piece& piece) {
                        });
 }
 
-// One side has said all, and may still listen, but not for long: a client that is gone says nothing.
+// One side has finished sending. It may still receive, but only for a limited time, because a client that is gone
+// sends no notice.
 template <typename To>
 void Relay::finish(To& to) {
   if (++finished_ == 2) return end();

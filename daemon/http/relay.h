@@ -1,6 +1,6 @@
-// One client's connection that another server answers: sends it a request, and from then on what one side says goes to
-// the other, until both have said all, or the client takes nothing any more. Holds at most a piece of each direction.
-// One thread, the io_context's; keeps itself alive while it waits.
+// Relays one client's connection to another server. Sends the server a request, and then passes bytes in both
+// directions until both sides have finished or the client stops reading. Holds at most one piece per direction. One
+// thread: the io_context's. Keeps itself alive while it waits.
 #pragma once
 
 #include <array>
@@ -21,22 +21,22 @@ class Relay : public std::enable_shared_from_this<Relay> {
   using Client = boost::asio::generic::stream_protocol::socket;
   using Ended = std::function<void(Relay&)>;
 
-  /// For a client to take a piece, as long as a viewer waits for a picture to be taken.
+  /// Limit for a client to read a piece; the same as the viewer's limit for sending a picture.
   static constexpr std::chrono::seconds kTaking{30};
 
-  /// `request` is what the server is sent first; `ended` is called once, for whatever end but close(). A client that
-  /// does not take a piece within `taking` is left.
+  /// `request` is sent to the server first. `ended` is called once, for any end except close(). The connection ends
+  /// if a client does not read a piece within `taking`.
   Relay(Client client, std::string request, Ended ended, std::chrono::milliseconds taking = kTaking);
 
-  /// Connects to `server`; where that cannot be done, the client is answered 502. After `limit`, where that is given,
-  /// both connections are closed, however far they are.
+  /// Connects to `server`; if this fails, the client gets a 502. If `limit` is given, both connections are closed
+  /// after this time in any case.
   void start(const boost::asio::ip::tcp::endpoint& server, std::optional<std::chrono::milliseconds> limit);
-  /// At once.
+  /// Closes both connections at once.
   void close();
 
  private:
   static constexpr std::size_t kPieceBytes = 32 << 10;
-  static constexpr std::chrono::seconds kHalfClosed{10};  // after one side has said all
+  static constexpr std::chrono::seconds kHalfClosed{10};  // limit after one side has finished
   using Piece = std::array<char, kPieceBytes>;
 
   template <typename From, typename To>
@@ -50,13 +50,13 @@ class Relay : public std::enable_shared_from_this<Relay> {
   Client client_;
   boost::asio::ip::tcp::socket server_;
   boost::asio::steady_timer limit_;
-  boost::asio::steady_timer taken_;  // runs while the client is written to
+  boost::asio::steady_timer taken_;  // runs while bytes are written to the client
   const std::chrono::milliseconds taking_;
-  std::string request_;  // what is written whole: the request, or the refusal
+  std::string request_;  // bytes to write completely: the request, or the refusal
   Ended ended_;
   Piece to_server_{};
   Piece to_client_{};
-  int finished_ = 0;  // directions
+  int finished_ = 0;  // number of directions that have ended
   bool closed_ = false;
 };
 

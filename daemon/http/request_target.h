@@ -1,4 +1,4 @@
-// The target of a request, "/api/jobs?state=failed&limit=20", taken apart.
+// The parsed target of a request, for example "/api/jobs?state=failed&limit=20".
 #pragma once
 
 #include <map>
@@ -11,14 +11,14 @@ namespace weir {
 
 struct RequestTarget {
   std::vector<std::string> path;             ///< segments, percent-decoded; none for "/"
-  std::map<std::string, std::string> query;  ///< percent-decoded, "+" is a space
+  std::map<std::string, std::string> query;  ///< percent-decoded; "+" means a space
 };
 
-/// None where `target` does not begin with a slash, holds a percent sign without two hex digits, or names a parameter
-/// twice.
+/// Returns none if `target` does not begin with a slash, has a percent sign without two hex digits, or names a
+/// parameter twice.
 std::optional<RequestTarget> parse_target(std::string_view target);
 
-/// `text` with every byte but letters, digits and "-._~" as %XX: fit for a segment or a query value.
+/// Returns `text` with every byte except letters, digits and "-._~" as %XX, for use in a segment or a query value.
 std::string percent_encode(std::string_view text);
 
 }  // namespace weir

@@ -1,5 +1,5 @@
-// Who takes a connection over, that of a client which asks for a WebSocket, say: from then on it is no HttpSession's
-// any more.
+// Takes over a connection, for example that of a client that asks for a WebSocket. Afterwards the connection no
+// longer belongs to an HttpSession.
 #pragma once
 
 #include <boost/asio/generic/stream_protocol.hpp>
@@ -14,13 +14,14 @@ namespace weir {
 
 using UpgradeRequest = boost::beast::http::request<boost::beast::http::string_body>;
 
-/// All are called on the io_context's thread and must not block; without `take` no connection is handed over.
+/// All functions are called on the io_context's thread and must not block. Without `take`, no connection is handed
+/// over.
 struct SocketHandler {
-  /// The refusal of a request whose connection would be handed over, or none.
+  /// Returns the refusal of a request whose connection would be handed over, or none.
   std::function<std::optional<HttpResponse>(const HttpRequest&)> refuse;
-  /// Has the connection of a request that was not refused, and answers it.
+  /// Receives the connection of a request that was not refused, and answers the request.
   std::function<void(boost::asio::generic::stream_protocol::socket, UpgradeRequest)> take;
-  /// Whether the connection of a request is handed over; where this is empty, that of one for a WebSocket.
+  /// Returns whether the connection of a request is handed over. If empty, WebSocket requests are handed over.
   std::function<bool(const HttpRequest&)> wants{};
 };
 

@@ -1,5 +1,5 @@
-// The token of a WebSocket: a page cannot send a header with it, so the token comes as one of the protocols that it
-// offers, "weir.token." and the token's bytes in hex.
+// The token of a WebSocket. A page cannot send an Authorization header with it, so the page offers the token as a
+// protocol: "weir.token." and the token's bytes in hex.
 #pragma once
 
 #include <string>
@@ -9,9 +9,9 @@
 
 namespace weir {
 
-/// The same request with the token among its protocols as that of a header Authorization, where there is one.
+/// Returns the request with the token among its protocols, if there is one, as its Authorization header.
 HttpRequest with_offered_token(HttpRequest request);
-/// A header Sec-WebSocket-Protocol without those that are tokens.
+/// Returns the value of a Sec-WebSocket-Protocol header without the protocols that are tokens.
 std::string without_offered_token(std::string_view protocols);
 
 }  // namespace weir

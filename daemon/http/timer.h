@@ -1,4 +1,4 @@
-// Timers of Asio that are set anew while they may have fired.
+// Helper for Asio timers that may be restarted after they have fired.
 #pragma once
 
 #include <boost/asio/steady_timer.hpp>
@@ -6,8 +6,8 @@
 
 namespace weir {
 
-/// Whether a timer that has fired was not set anew since: its handler, which comes without an error then, too, may have
-/// been waiting.
+/// Returns false if the timer was restarted after it had fired. Its handler may already have been queued at that
+/// time, and is then called without an error.
 inline bool is_over(const boost::asio::steady_timer& timer) {
   return timer.expiry() <= std::chrono::steady_clock::now();
 }

@@ -22,7 +22,7 @@ constexpr std::string_view kPlace = "/view/";
 bool is_page_file(const HttpRequest& request) {
   const auto target = parse_target(request.target);
   if (!target || request.upgrade) return false;
-  const auto& path = target->path;  // "view", and an empty segment for the page
+  const auto& path = target->path;  // "view", then an empty segment for the page itself
   return (path.size() == 2 && path[1].empty()) || (path.size() == 3 && path[1] == "page");
 }
 
@@ -46,15 +46,16 @@ std::string why_none(const ViewerView& viewer) {
   return viewer.state == ViewerState::off ? why : cat(why, "; open it again with View on the service's page");
 }
 
-// For the page of a viewer, which waits for one that is being started.
+// The answer for a viewer's page, which waits while the viewer is being started.
 HttpResponse answer_without_viewer(const ViewerView& viewer) {
   const nlohmann::json body{{"error", why_none(viewer)},
                             {"state", kViewerStateNames.at(static_cast<std::size_t>(viewer.state))}};
   return {503, "application/json", json_text(body) + "\n", {}};
 }
 
-// For a person who opens the address by hand, or reads it after the viewer has ended. While one is being started, the
-// browser asks again by itself: with the part behind #, which a refresh in the page's head would make a jump within it.
+// The answer for a person who opens the address by hand or after the viewer has ended. While a viewer is being
+// started, a script reloads the page. It keeps the part behind #; a refresh in the page's head would only jump within
+// the page.
 HttpResponse page_without_viewer(const ViewerView& viewer) {
   std::string text;
   for (const char c : why_none(viewer)) text += c == '<' ? "&lt;" : c == '&' ? "&amp;" : std::string(1, c);
@@ -72,7 +73,8 @@ std::optional<HttpResponse> refuse_now(const AccessRules& rules, const HttpReque
   if (viewer.state != ViewerState::ready) {
     if (!file) return answer_without_viewer(viewer);
     ViewerView told = viewer;
-    if (refuse(rules, request, false)) told.reason.clear();  // names files, which are for who has the token
+    if (refuse(rules, request, false))
+      told.reason.clear();  // the reason names files, which only holders of the token may see
     return page_without_viewer(told);
   }
   if (request.upgrade && viewer.sockets >= kMostViewerSockets) {

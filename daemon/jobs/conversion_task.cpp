@@ -46,7 +46,7 @@ ConversionTask make_task(const std::string& program, const ServiceConfig& servic
   task.convert_options = watch.convert_options;
   if (watch.follow == Follow::inside) task.within = watch.directory;
   task.memory = job_memory(service);
-  // Limited it stays, also where a share is less than a byte.
+  // A limit stays a limit, even if a job's share is less than a byte: 0 would mean no limit.
   if (service.bandwidth != 0) task.bandwidth = std::max<std::uint64_t>(1, service.bandwidth / jobs);
   task.threads = service.threads;
   task.nice = service.nice;

@@ -1,4 +1,4 @@
-// What one job asks of the commands that do it.
+// Everything that the commands of one job need to know.
 #pragma once
 
 #include <cstdint>
@@ -14,43 +14,45 @@ namespace weir {
 struct ConversionTask {
   std::string program;                       ///< path of `weir`
   std::string source;                        ///< absolute path
-  FileIdentity identity;                     ///< of the source as it was found complete
+  FileIdentity identity;                     ///< of the source when it was found complete
   std::string output;                        ///< as `weir convert -o` takes it: "DIRECTORY/" or "DIRECTORY/{stem}.nvdb"
   std::vector<std::string> convert_options;  ///< WatchConfig::convert_options
   std::string within;                        ///< the directory that the source's files must lie in; empty: anywhere
-  std::uint64_t memory = 0;                  ///< bytes, of each process
+  std::uint64_t memory = 0;                  ///< bytes that each process may take
   std::uint64_t bandwidth = 0;               ///< bytes per second that the conversion may read and write; 0: no limit
   int threads = 0;
   int nice = 0;
   IoClass io_class = IoClass::none;
-  std::string work_dir;  ///< spill files; empty: beside the output
+  std::string work_dir;  ///< directory of spill files; empty: beside the output
   bool thumbnails = true;
-  bool again = false;         ///< also what is done
-  bool count_values = false;  ///< of the source, which is deleted where the outputs have all of them
-  /// Not empty: these were made and verified before, and their thumbnails are all there is to do.
+  bool again = false;         ///< also convert outputs that are done already
+  bool count_values = false;  ///< count the source's values: the source is deleted if the outputs hold all of them
+  /// Outputs of an earlier run that are already verified. If there are any, only their thumbnails are rendered.
   std::vector<JobOutput> outputs;
 };
 
-/// The task of `job`, which is of `watch`.
+/// Returns the task of `job`, a job of `watch`.
 ConversionTask make_task(const std::string& program, const ServiceConfig& service, const WatchConfig& watch,
                          const Job& job);
 
-/// The task of the thumbnails that are missing of `job`, which is done: of outputs that are still there. None where
-/// there is nothing to render, or the watch wants none.
+/// Returns the task that renders the missing thumbnails of `job`, a done job, for the outputs that still exist.
+/// Returns none if there is nothing to render or the watch wants no thumbnails.
 std::optional<ConversionTask> make_rendering_task(const std::string& program, const ServiceConfig& service,
                                                   const WatchConfig& watch, const Job& job);
 
-/// Whether `source`, an absolute path, is named as one in the watch's directory or below it.
+/// Returns whether the absolute path `source` lies, by its name, in the watch's directory or below it.
 bool is_source_of(const WatchConfig& watch, const std::string& source);
 
-/// Whether that holds, and the watch's include and exclude take it. Looks at the file system.
+/// Returns whether is_source_of() holds and the watch's include and exclude patterns accept `source`. Reads the file
+/// system.
 bool takes_source(const WatchConfig& watch, const std::string& source);
 
-/// Where the outputs of `source`, which lies in the watch, go: the watch's output directory and below it the source's
-/// own place in the tree. Ends without a slash.
+/// Returns the directory of the outputs of `source`, a source of `watch`: the watch's output directory, extended by
+/// the source's own place in the tree. The path ends without a slash.
 std::string output_directory(const WatchConfig& watch, const std::string& source);
 
-/// All of `watch` that decides what an output holds and where it lies, as text: JobStore::observe's `options`.
+/// Returns as text all settings of `watch` that decide what an output holds and where it lies: the `options` of
+/// JobStore::observe.
 std::string options_text(const WatchConfig& watch);
 
 }  // namespace weir

@@ -13,7 +13,7 @@ namespace {
 constexpr std::string_view kHiddenBegin = ".weir-delete-";
 constexpr int kHiddenEntriesPerStep = 256;
 
-// The number of the job; none where the name is another one.
+// Returns the job's number from a hidden name; none for any other name.
 std::optional<std::int64_t> hidden_job(const std::string& name) {
   if (!name.starts_with(kHiddenBegin)) return std::nullopt;
   const std::string number = name.substr(kHiddenBegin.size());
@@ -40,7 +40,7 @@ void HiddenSources::open_next() {
   const Waiting next = waiting_.front();
   waiting_.pop_front();
   watch_ = next.watch;
-  std::error_code unreadable;  // the watch says so
+  std::error_code unreadable;  // the watch reports it
   at_ = std::filesystem::directory_iterator(next.directory, unreadable);
   if (unreadable) at_ = {};
 }

@@ -1,4 +1,5 @@
-// The sources that an interrupted deletion (source_deletion.h) has left under a hidden name, which no watch takes.
+// Finds the sources that an interrupted deletion (source_deletion.h) left under a hidden name, which no watch
+// accepts.
 #pragma once
 
 #include <cstdint>
@@ -15,23 +16,24 @@
 
 namespace weir {
 
-/// What the source of `job` is called while it is deleted: .weir-delete-ID, beside it.
+/// Returns the hidden name of the source of `job` while it is deleted: .weir-delete-ID, in the source's directory.
 std::string hidden_name(const Job& job);
 
 struct HiddenSource {
   std::string path;
-  std::int64_t job = 0;  ///< as the name says
+  std::int64_t job = 0;  ///< the job's id, parsed from the name
 };
 
-/// Looks through watched directories for them, those below where the watch is recursive, a piece at a time. One thread.
+/// Looks through watched directories for hidden sources, a piece at a time. Looks into subdirectories if the watch is
+/// recursive. One thread.
 class HiddenSources {
  public:
-  /// Has the directories of `watches` looked through, but for those that were before; one that is not there has not
-  /// been.
+  /// Queues the directories of `watches` for a look. Directories that were queued before are left out; a directory
+  /// that is missing now may be queued by a later call.
   void look_through(const std::vector<WatchConfig>& watches);
-  /// Whether nothing more is to be looked through.
+  /// Returns whether nothing is left to look through.
   bool idle() const { return waiting_.empty() && at_ == std::filesystem::directory_iterator(); }
-  /// Looks at some entries, for about a millisecond on a local disk; those of them that are hidden sources.
+  /// Looks at some entries, for about a millisecond on a local disk. Returns the hidden sources among them.
   std::vector<HiddenSource> step();
 
  private:
@@ -42,7 +44,7 @@ class HiddenSources {
   };
   struct Waiting {
     std::string directory;
-    std::size_t watch;  // its place in watches_
+    std::size_t watch;  // index in watches_
   };
 
   void open_next();
@@ -53,7 +55,7 @@ class HiddenSources {
   std::vector<Watched> watches_;
   std::deque<Waiting> waiting_;
   std::filesystem::directory_iterator at_;
-  std::size_t watch_ = 0;  ///< of at_
+  std::size_t watch_ = 0;  ///< the watch (index in watches_) that at_ belongs to
 };
 
 }  // namespace weir

@@ -9,7 +9,8 @@ namespace weir {
 namespace {
 
 constexpr std::chrono::hours kLookInterval{24};
-/// A piece is short, also where each look at a file takes a file server's time, and others have their turn after it.
+/// Jobs per piece. A piece is short even if each look waits for a file server, because others have their turn after
+/// it.
 constexpr std::size_t kPiece = 100;
 constexpr std::chrono::milliseconds kBetweenPieces{10};
 constexpr double kDay_ms = 86'400'000;
@@ -53,7 +54,7 @@ void JobHistory::step() {
     });
   } catch (const CorruptDatabase&) {
     throw;
-  } catch (const Error&) {  // said by those who cannot go on without; here tomorrow is early enough
+  } catch (const Error&) {  // other parts report the fault; the next look, a day later, is early enough
     jobs.clear();
   }
   if (!jobs.empty()) {

@@ -1,7 +1,6 @@
-// Forgets jobs that are long over and whose sources are gone, so that the state
-// file does not grow for as long as the simulation runs. A source that is there
-// keeps its job, however old: it is what says that the source is converted. One
-// thread, that of the io_context.
+// Forgets jobs that ended long ago and whose sources are gone, so that the state file does not grow for as long as
+// the simulation runs. A source that still exists keeps its job, however old, because the job records that the source
+// is converted. One thread: the io_context's.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -24,8 +23,8 @@ class JobHistory {
   /// `store` and `log` must outlive the object.
   JobHistory(boost::asio::io_context& io, DiskTurns& turns, JobStore& store, const EventLog& log);
 
-  /// From now on jobs are kept for `days` after their end, and longer while the directory of their watch is not there.
-  /// Looks through all of them now and once a day.
+  /// From now on keeps each job for `days` after its end. Jobs of a watch are also kept while its directory is
+  /// missing. Looks through all jobs now and then once a day.
   void keep(double days, std::span<const WatchConfig> watches);
 
  private:

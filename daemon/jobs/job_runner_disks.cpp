@@ -1,4 +1,4 @@
-// What a JobRunner does where a file system has no room or an output another writer, and what it says of that.
+// The part of JobRunner that handles full file systems and outputs that another process writes, and reports both.
 #include <algorithm>
 #include <filesystem>
 #include <optional>
@@ -10,7 +10,7 @@
 namespace weir {
 namespace {
 
-/// Until a job is tried again where nothing tells that what it waits for is over.
+/// Delay before a job is tried again if no event says when its obstacle is gone.
 constexpr std::int64_t kAgain_ms = 30'000;
 
 }  // namespace
@@ -18,9 +18,10 @@ constexpr std::int64_t kAgain_ms = 30'000;
 void JobRunner::disk_full(const RunningJob& run, const TaskReport& report) {
   const std::string& directory = report.full_directory;
   const ConversionTask& task = run.work->task();
-  const DiskRoom room = room_in(directory);  // as it is now: it has just answered the job
+  const DiskRoom room = room_in(directory);  // as it is now: the file system has just answered the job
   const bool of_output = room.device == room_in(std::filesystem::path(task.output).parent_path().string()).device;
-  // Waiting makes no disk larger. Of some, as of a file server behind FUSE, the size is not told.
+  // Waiting makes no disk larger, so the job fails. Some file systems do not report a size, for example a server
+  // behind FUSE.
   if (of_output && room.total > 0 && report.planned_bytes > room.total) {
     TaskReport never = report;
     never.result.reason =
@@ -31,15 +32,15 @@ void JobRunner::disk_full(const RunningJob& run, const TaskReport& report) {
   }
   figures_.attempt_failed("disk-full");
   hold_disk(run, report, room, of_output ? report.planned_bytes : 0);
-  // next_job() asks for room on the file systems of output and work_dir alone: it may be another one, as where an
-  // output in memory spills to /var/tmp.
+  // next_job() checks only the file systems of the output and of work_dir. The full one may be another one: for
+  // example, an output in memory spills to /var/tmp.
   const bool asked_for = of_output || (!task.work_dir.empty() && room.device == room_in(task.work_dir).device);
   const std::int64_t delay_ms = asked_for ? 0 : kAgain_ms;
   writes_.add(
       [this, id = run.job.id, reason = report.result.reason, delay_ms] { store_.postpone(id, reason, delay_ms); });
 }
 
-// `needed`: bytes of an output on the file system that is full; 0: not known, or it was no output.
+// `needed` is the size of the output on the full file system in bytes; 0: not known, or no output was written to it.
 void JobRunner::hold_disk(const RunningJob& run, const TaskReport& report, const DiskRoom& room, std::uint64_t needed) {
   const std::string& directory = report.full_directory;
   full_disks_.add(room.device, directory, room.free, run.job.id, run.job.identity.bytes, needed,
@@ -48,7 +49,7 @@ void JobRunner::hold_disk(const RunningJob& run, const TaskReport& report, const
   log_.error("disk-full", {{"job", run.job.id}, {"directory", directory}, {"reason", report.result.reason}});
 }
 
-// However long that takes, it is no fault of the job.
+// Postpones the job. The wait counts as no failure of the job, however long it takes.
 void JobRunner::output_busy(const RunningJob& run, const TaskReport& report) {
   const std::string& reason = report.result.reason;
   if (run.job.result.reason != reason) log_.warn("output-busy", {{"job", run.job.id}, {"reason", reason}});
@@ -71,7 +72,8 @@ std::string JobRunner::hold() const {
   return scheduler_.paused() ? "paused by request" : "";
 }
 
-// What was never looked at counts for nothing: no job is started there either while a disk is full.
+// Returns whether no job can start for want of disk space. A disk that was never looked at is not counted: while any
+// disk is full, no job starts on it either.
 bool JobRunner::no_disk_has_room() const {
   if (full_disks_.empty()) return false;
   const std::string& work_dir = config_.service.work_dir;
@@ -86,7 +88,7 @@ std::string JobRunner::waits_for_disks() const {
   return cat(room, room.empty() || mounts_.all_mounted() ? "" : "; ", mounts_.text());
 }
 
-// First the file systems that have no outputs, as that of work_dir, which all jobs may wait for.
+// Names the file systems without outputs first, for example that of work_dir, because all jobs may wait for them.
 std::string JobRunner::waits_for_room() const {
   std::vector<std::string> others = full_disks_.directories();
   std::vector<std::string> held;

@@ -1,5 +1,5 @@
-// What a JobRunner does with thumbnails that are to come for jobs that are done: of those that the service ended
-// before, and of those that found no room.
+// The part of JobRunner that renders missing thumbnails of done jobs: those left when the service ended, and those
+// that found no disk space.
 #include <algorithm>
 #include <cstdint>
 #include <iterator>
@@ -20,12 +20,12 @@ void JobRunner::resume_thumbnails() {
 }
 
 bool JobRunner::start_next_rendering() {
-  constexpr std::size_t kMostLooked = 100;  // for one whose disk has room
+  constexpr std::size_t kMostLooked = 100;  // jobs on full disks that are passed over to find one with room
   std::size_t waiting = 0;
   for (std::size_t i = unrendered_.size(); i-- > 0 && waiting < kMostLooked;) {
     const std::int64_t id = unrendered_[i];
     std::optional<Job> job = store_.job(id);
-    // It may be done again meanwhile.
+    // The job may be converted again meanwhile.
     if (job && (job->state != JobState::done || running_.contains(id))) job.reset();
     const WatchConfig* watch = job ? watch_of(job->watch) : nullptr;
     if (watch != nullptr && rendering_waits(*watch, *job)) {
@@ -46,7 +46,7 @@ bool JobRunner::start_next_rendering() {
   return false;
 }
 
-// Where that is not known yet, in this round.
+// Also true if the room is not known yet: then the job waits for a later round.
 bool JobRunner::rendering_waits(const WatchConfig& watch, const Job& job) {
   if (!mounts_.mounted(watch.output_mount)) return true;
   if (full_disks_.empty()) return false;
@@ -54,7 +54,7 @@ bool JobRunner::rendering_waits(const WatchConfig& watch, const Job& job) {
   return !room || !full_disks_.directory_on(room->device).empty();
 }
 
-// One that found no room is still to come, in the state file, too.
+// A rendering that found no room stays due, also in the state file.
 void JobRunner::rendering_ended(const RunningJob& run, const TaskReport& report) {
   const std::int64_t id = run.job.id;
   if (report.end == TaskEnd::disk_full) {

@@ -35,13 +35,13 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-/// An interrupted conversion that nobody continues; it may hold as much disk as its result.
+/// How long an interrupted conversion is kept that nobody continues. It may take as much disk space as its result.
 constexpr std::chrono::hours kKeptFor{7 * 24};
 
 constexpr std::string_view kPicturePartialEnding = ".png.partial";
 static_assert(kPicturePartialEnding.ends_with(kPartialEnding));
 
-// The output that `path` was left by, if it is of a conversion: something.nvdb.
+// Returns the output (something.nvdb) of the conversion that left `path`; none if no conversion left it.
 std::optional<fs::path> output_of(const fs::path& path) {
   const std::string name = path.filename().string();
   const auto without = [&](std::string_view ending, std::size_t from) -> std::optional<fs::path> {
@@ -64,14 +64,15 @@ bool is_work(const fs::path& path) { return path.filename().string().ends_with(k
 
 bool is_picture(const fs::path& path) { return path.filename().string().ends_with(kPicturePartialEnding); }
 
-// The file's lock is its writer's. Opened for writing, without which NFS gives no exclusive lock.
+// Returns whether a writer holds the file's lock. Opens the file for writing, because NFS gives an exclusive lock
+// only then.
 bool is_locked_by_writer(const std::string& path) {
   const Descriptor file(::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
   return file && ::flock(file.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
 }
 
-// Spill files have no names where the file system can do that; elsewhere a kill may come between their making and
-// the removal of the name.
+// Removes spill files. They have no names if the file system supports that; otherwise a kill may come between the
+// creation of a spill file and the removal of its name.
 void remove_spills(const fs::path& work) {
   std::error_code error;
   for (fs::directory_iterator at(work, error), end; !error && at != end; at.increment(error)) {
@@ -81,7 +82,7 @@ void remove_spills(const fs::path& work) {
   }
 }
 
-// Throws Error(io) where that cannot be known.
+// Throws Error(io) if the path cannot be looked at.
 bool is_missing(const fs::path& path) {
   std::error_code error;
   const bool exists = fs::exists(path, error);
@@ -94,19 +95,19 @@ std::string entry_of(const Checkpoint& checkpoint, const char* name) {
   return at == checkpoint.identity.end() ? std::string() : at->second;
 }
 
-// Whether the source is, as far as its first file says, still what it was; or cannot be looked at, as where a file
-// server does not answer.
+// Returns whether the source, judged by its first file, is still the one of the checkpoint. Also true if it cannot be
+// looked at, for example because a file server does not answer.
 bool is_of_this_source(const Checkpoint& checkpoint) {
   const std::string path = entry_of(checkpoint, "source");
   const auto source = identify(path);
   if (!source) return !is_gone(path);
-  // Size and time are those of all its files together.
+  // The recorded size and time are of all files together, so they cannot be compared with one file.
   if (!entry_of(checkpoint, "source files").empty()) return true;
   return cat(source->bytes) == entry_of(checkpoint, "source bytes") &&
          cat(source->mtime_ns) == entry_of(checkpoint, "source modified (ns)");
 }
 
-// Without the locks that read_journal takes: of a conversion that may be running.
+// Reads the journal without the locks that read_journal takes, because the conversion may be running.
 std::optional<Checkpoint> glance_at_journal(const fs::path& work) {
   std::ifstream file(work / "journal", std::ios::binary);
   std::stringstream text;
@@ -120,12 +121,12 @@ class Cleaner {
 
   using Worthless = std::function<bool(const fs::path& work, const fs::path& output)>;
 
-  /// Removes `paths`, which are of `output`, work directories only where nobody needs them.
+  /// Removes `paths`, leftovers of `output`. Removes a work directory only if `worthless` returns true for it.
   void clean(const fs::path& output, const std::vector<fs::path>& paths, const Worthless& worthless) {
     const std::string lock_path = partial_path(output.string());
     try {
       const bool was_there = files->exists(lock_path);
-      // Held, so that no conversion begins on what is looked at and removed here.
+      // The lock keeps a conversion from starting on the files that are checked and removed here.
       const std::unique_ptr<File> lock = hold(lock_path);
       if (lock == nullptr) {
         leave(lock_path, "another process is writing it");
@@ -157,14 +158,14 @@ class Cleaner {
   const std::unique_ptr<FileSystem> files = make_posix_file_system();
 
  private:
-  // Null where another process has it.
+  // Takes the lock. Returns null if another process holds it at the deadline.
   std::unique_ptr<File> hold(const std::string& lock_path) const {
     bool was_free = false;
     for (;;) {
       try {
         return files->open(lock_path);
       } catch (const Error&) {
-        // Its writer may have ended since: a free file that cannot be opened twice is another matter.
+        // The writer may have ended since. If a free file cannot be opened twice in a row, the error is another one.
         const bool is_free = !is_locked_by_writer(lock_path);
         if (is_free && was_free) throw;
         was_free = is_free;
@@ -193,14 +194,14 @@ class Cleaner {
     if (error) leave(path, error.message());
   }
 
-  // Who renders it has not the lock of its volume but one on the picture itself.
+  // The process that renders a picture holds a lock on the picture itself, not on its volume.
   void remove_picture(const fs::path& path) {
     if (!is_locked_by_writer(path.string())) remove(path);
   }
 
-  // The sidecar of the volume that was to be replaced: see the numbered steps in format/output/output_files.cpp. It
-  // comes back where its volume is still there, also in place of the one that the killed commit put beside it.
-  // Where one of them cannot be read, all stay as they are.
+  // Restores the sidecar of a volume that was to be replaced (see the numbered steps in
+  // format/output/output_files.cpp) if its volume is still there. It also replaces the sidecar that the killed commit
+  // put beside that volume. If one of them cannot be read, all stay as they are.
   void restore(const fs::path& path) {
     const fs::path record = fs::path(path).replace_extension();  // without .previous
     const std::string volume = fs::path(record).replace_extension().string();
@@ -221,7 +222,8 @@ class Cleaner {
     }
   }
 
-  // Beside a volume that had none: once OUT.nvdb.partial is gone, it may be taken for that volume's.
+  // Removes a sidecar that a killed commit put beside a volume without one. Once OUT.nvdb.partial is gone, that
+  // sidecar could be taken for the volume's own.
   void remove_early_sidecar(const std::string& output, File& partial) {
     const std::string sidecar = cat(output, kSidecarEnding);
     if (!files->exists(output) || !files->exists(sidecar) || files->exists(cat(output, kSidecarPreviousEnding))) return;
@@ -257,14 +259,14 @@ CleaningReport clean_outputs(const std::string& directory, const std::string& so
   const auto worthless = [&](const fs::path& work, const fs::path& output) {
     const std::optional<Checkpoint> interrupted = read_journal(*cleaner.files, output);
     if (!interrupted) return true;
-    // A stack's source is a pattern: no service converts one.
+    // The source of a stack is a pattern, and the service converts none.
     if (entry_of(*interrupted, "format") == "stack" || !lies_below(entry_of(*interrupted, "source"), own)) return false;
     std::error_code ignored;
     const bool old = fs::file_time_type::clock::now() - fs::last_write_time(work, ignored) > kKeptFor;
-    // In a directory that is not there all seems to be gone.
+    // If the directory is missing, all files in it seem to be gone.
     return old || (is_directory(own.string()) && !is_of_this_source(*interrupted));
   };
-  // Listed first: what is removed while a directory is read may be listed or not.
+  // Collects the paths first: a file that is removed while its directory is read may be listed or not.
   std::map<fs::path, std::vector<fs::path>> by_output;
   if (recursive) {
     list<fs::recursive_directory_iterator>(directory, by_output);

@@ -17,7 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What of the values no error counts, where the output is called lossless or they are not even finite; empty: nothing.
+// Returns which loss the recorded error does not cover: values that became infinite in float32, or values that were
+// rounded although the output is called lossless. Empty if there is none.
 std::string loss_fault(const nlohmann::json& sidecar, const std::string& path) {
   const auto member = [](const nlohmann::json& of, const char* key) {
     return of.is_object() ? of.value(key, nlohmann::json()) : nlohmann::json();
@@ -36,7 +37,7 @@ std::string loss_fault(const nlohmann::json& sidecar, const std::string& path) {
              " rounded to float32, so the output is not lossless");
 }
 
-// What the certificate `path` says; null where it cannot be read.
+// Returns the content of the certificate at `path`; null if it cannot be read.
 nlohmann::json read_certificate(const std::string& path) {
   std::ifstream file(path);
   nlohmann::json sidecar = nlohmann::json::parse(file, nullptr, false);
@@ -44,7 +45,8 @@ nlohmann::json read_certificate(const std::string& path) {
   return whole ? std::move(sidecar) : nlohmann::json();
 }
 
-// Whether the certificate tells what the job found of that output: another volume of the same size has another one.
+// Returns whether the certificate has the figures that the job recorded for the output. Another volume of the same
+// size has other figures.
 bool is_of_output(const nlohmann::json& sidecar, const JobOutput& output) {
   const auto is = [&](const char* place, const std::optional<double>& expected) {
     const nlohmann::json::json_pointer pointer(place);
@@ -55,7 +57,8 @@ bool is_of_output(const nlohmann::json& sidecar, const JobOutput& output) {
          is("/error/max_abs", output.max_error) && is("/error/psnr_db", output.psnr_db);
 }
 
-// Why `sidecar`, at `path`, is not the certificate of the job's source, of which `state` is now; empty: it is.
+// Returns why `sidecar`, read from `path`, is not the certificate of the job's source in its present `state`; empty
+// if it is.
 std::string certificate_fault(const Job& job, const nlohmann::json& sidecar, const std::string& path,
                               const std::optional<FileState>& state) {
   const nlohmann::json& source = sidecar["source"];
@@ -73,13 +76,13 @@ std::string certificate_fault(const Job& job, const nlohmann::json& sidecar, con
   return loss_fault(sidecar, path);
 }
 
-// The volume is complete before its certificate is written.
+// Returns whether the volume was written after its certificate. A conversion completes the volume first.
 bool written_since_certified(const std::string& path) {
   const std::int64_t certified = look_at_file(sidecar_path(path)).mtime_ns;
   return look_at_file(path).mtime_ns > certified + tick_of(certified);
 }
 
-// Voxels of the volume that was read.
+// Returns the number of voxels of the converted volume.
 std::uint64_t voxels_of(const nlohmann::json& source) {
   const nlohmann::json extent = source.value("extent", nlohmann::json());
   std::uint64_t voxels = extent.is_array() ? 1 : 0;
@@ -87,7 +90,7 @@ std::uint64_t voxels_of(const nlohmann::json& source) {
   return voxels;
 }
 
-// In the file; 0: not known. A raw file without its count has no more than its bytes.
+// Returns the number of values in the source file; 0: not known. If the count is missing, a raw file's size gives it.
 std::uint64_t values_of(const nlohmann::json& source) {
   const auto number = [&](const char* key) {
     const nlohmann::json value = source.value(key, nlohmann::json());

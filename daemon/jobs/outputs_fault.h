@@ -1,4 +1,4 @@
-// Whether the outputs of a job, by their certificates, stand for its source.
+// Checks by their certificates whether the outputs of a job are those of its source.
 #pragma once
 
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace weir {
 
-/// Why the outputs do not stand for the source, of which `state` is now; empty: they do. Without `state`, which a
-/// rename changes, the source may be older or younger than its certificate.
+/// Returns why the outputs do not represent the source in its present `state`; empty if they do. Without `state` (a
+/// rename changes it), the function does not compare the ages of the source and its certificate.
 std::string outputs_fault(const Job& job, const std::optional<FileState>& state);
 
 }  // namespace weir

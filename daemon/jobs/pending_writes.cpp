@@ -12,7 +12,7 @@ void PendingWrites::add(std::function<void()> step) {
 }
 
 void PendingWrites::write() {
-  if (steps_.empty()) return;  // which tells nothing of the state file
+  if (steps_.empty()) return;  // without a step, nothing is known about the state file
   try {
     while (!steps_.empty()) {
       steps_.front()();

@@ -1,4 +1,4 @@
-// What is to be written to the state file, in order, while that may be on a full disk.
+// Writes to the state file, kept in order while its disk is full.
 #pragma once
 
 #include <deque>
@@ -14,18 +14,18 @@ class PendingWrites {
  public:
   explicit PendingWrites(const EventLog& log) : log_(log) {}
 
-  /// Runs `step`, after all before it; where it throws Error, keeps it for write(). CorruptDatabase goes through, here
-  /// and in write().
+  /// Runs `step` after all steps before it. If a step throws Error, keeps it and the following ones for write().
+  /// CorruptDatabase passes through add() and write().
   void add(std::function<void()> step);
-  /// Runs what was kept.
+  /// Runs the steps that were kept.
   void write();
   bool empty() const { return steps_.empty(); }
 
-  /// Why the state file cannot be written, one line; empty: it can.
+  /// Returns one line that says why the state file cannot be written; empty if it can.
   const std::string& fault() const { return fault_; }
-  /// A step that can be done later failed: logged once.
+  /// Records a fault when a step fails that the caller can repeat later. A fault is logged once.
   void log_fault(const Error& error);
-  /// The state file was written: there is no fault, where nothing is kept.
+  /// Clears the fault after the state file was written, if no steps are kept.
   void clear_fault() {
     if (empty()) fault_.clear();
   }

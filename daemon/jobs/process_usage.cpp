@@ -21,7 +21,7 @@ ProcessUsage process_usage() {
   ProcessUsage usage;
   usage.resident_bytes = resident_bytes();
   const std::uint64_t descriptors = entries("/proc/self/fd");
-  usage.open_descriptors = descriptors > 0 ? descriptors - 1 : 0;  // one was open to count them
+  usage.open_descriptors = descriptors > 0 ? descriptors - 1 : 0;  // one descriptor was open only for this count
   usage.threads = entries("/proc/self/task");
   return usage;
 }

@@ -1,4 +1,4 @@
-// What the daemon itself takes of the machine, as the kernel counts it.
+// The resources that the daemon itself uses, as the kernel counts them.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@ struct ProcessUsage {
   std::uint64_t threads = 0;
 };
 
-/// Of this process, now (/proc/self).
+/// Returns the present usage of this process (/proc/self).
 ProcessUsage process_usage();
 
 }  // namespace weir

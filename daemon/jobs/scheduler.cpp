@@ -29,7 +29,7 @@ void Scheduler::started(const std::string& label) { last_start_[label] = ++start
 void Scheduler::finished(std::uint64_t bytes, Time begin) {
   if (limits_.bandwidth == 0) return;
   const std::chrono::duration<double> due(static_cast<double>(bytes) / static_cast<double>(limits_.bandwidth));
-  // Jobs beside each other share the cap: each one's time comes after that of those before it.
+  // Jobs that run at the same time share the cap, so the time of each job is added to the time of those before it.
   paid_until_ = std::max(paid_until_, begin) + std::chrono::duration_cast<Time::duration>(due);
 }
 

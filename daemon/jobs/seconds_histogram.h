@@ -1,5 +1,4 @@
-// How long things took: a cumulative histogram as Prometheus wants it, with
-// bounds in seconds that suit conversions (0.1 s to some hours).
+// Durations as a cumulative histogram for Prometheus. Its bounds, in seconds, suit conversions (0.1 s to some hours).
 #pragma once
 
 #include <algorithm>
@@ -11,7 +10,7 @@ namespace weir {
 
 class SecondsHistogram {
  public:
-  /// Upper bounds, inclusive; what is longer counts in `count()` alone.
+  /// Upper bounds, inclusive. Longer durations count in `count()` alone.
   static constexpr std::array<double, 14> kBounds = {0.1, 0.25, 0.5, 1, 2.5, 5, 10, 30, 60, 120, 300, 900, 3600, 14400};
 
   void observe(double seconds) {
@@ -21,7 +20,7 @@ class SecondsHistogram {
     sum_ += seconds;
   }
 
-  /// How many took at most kBounds[bound] seconds.
+  /// Returns how many durations were at most kBounds[bound] seconds.
   std::uint64_t at_most(std::size_t bound) const {
     std::uint64_t total = 0;
     for (std::size_t i = 0; i <= bound; ++i) total += bins_[i];

@@ -28,12 +28,12 @@ namespace {
 namespace fs = std::filesystem;
 using std::chrono::milliseconds;
 
-// In one turn of the event loop, which has others to serve: file systems may be slow.
+// Sources per turn of the event loop, which serves others, too: file systems may be slow.
 constexpr int kLooks = 4;
 constexpr std::size_t kTakenUp = 100;
-// Between two looks at a source that is in use.
+// Delay before a source in use is looked at again.
 constexpr milliseconds kAgain{10'000};
-constexpr milliseconds kSoon{200};  // where delete_after is shorter than that
+constexpr milliseconds kSoon{200};  // if delete_after is shorter than kAgain
 
 constexpr const char* kInUse = "a program has it open for writing";
 constexpr const char* kNotKnown =
@@ -50,13 +50,13 @@ void flush_file(const std::string& path) {
   if (!file || ::fsync(file.get()) != 0) throw io_error(path, "flush it", errno);
 }
 
-// What is identified by such a name is another file, and what is renamed or removed the link.
+// Returns whether `path` is a symbolic link: identify() looks at its target, a rename or removal acts on the link.
 bool is_symbolic_link(const std::string& path) {
   std::error_code ignored;
   return fs::is_symlink(path, ignored);
 }
 
-// Whether the file of that name, itself, is the source of `job`.
+// Returns whether `path` itself, not the target of a link, is the source of `job`.
 bool is_source_file(const std::string& path, const Job& job) {
   return !is_symbolic_link(path) && identify(path) == job.identity;
 }
@@ -144,7 +144,7 @@ void SourceDeletion::work() {
     arm();
   } catch (const CorruptDatabase&) {
     throw;
-  } catch (const Error& error) {  // of the state file: others say so, too
+  } catch (const Error& error) {  // a fault of the state file, which other parts log, too
     log_.warn("not-deleted", {{"reason", error.what()}});
     wait_until(Clock::now() + kAgain);
   }
@@ -162,7 +162,7 @@ void SourceDeletion::take_up() {
 
 void SourceDeletion::look() {
   const Clock::time_point now = Clock::now();
-  std::map<std::string, bool> waits;  // by label, of those that are due
+  std::map<std::string, bool> waits;  // by label, of watches with sources that are due
   int looks = 0;
   for (auto at = due_.begin(); at != due_.end() && looks < kLooks;) {
     if (at->second.time > now) {
@@ -175,7 +175,7 @@ void SourceDeletion::look() {
     if (!later) {
       ++looks;
       const auto job = store_.job(at->first);
-      const bool here = watch != nullptr && job && job->state == JobState::done;  // else it is converted anew
+      const bool here = watch != nullptr && job && job->state == JobState::done;  // otherwise it is converted anew
       later = here && try_to_delete(*job, *watch) == Outcome::later;
     }
     if (later) {
@@ -189,7 +189,7 @@ void SourceDeletion::look() {
   }
 }
 
-// Whether the directory is not there, as during a remount: its sources cannot be judged. The watch is named once.
+// Returns whether the watch's directory is missing, as during a remount: its sources cannot be judged. Logged once.
 bool SourceDeletion::waits_for_directory(const WatchConfig& watch) {
   const bool is_there = is_directory(watch.directory);
   if (is_there) away_.erase(watch.label);
@@ -200,7 +200,7 @@ bool SourceDeletion::waits_for_directory(const WatchConfig& watch) {
   return !is_there;
 }
 
-// One that cannot be looked at keeps no other waiting. What a file system refuses it may do later.
+// A source that cannot be looked at holds up no others. What a file system refuses is tried again later.
 SourceDeletion::Outcome SourceDeletion::try_to_delete(const Job& job, const WatchConfig& watch) {
   try {
     return look_at(job, watch);
@@ -227,8 +227,8 @@ SourceDeletion::Outcome SourceDeletion::look_at(const Job& job, const WatchConfi
     return Outcome::over;
   }
   const auto identity = identify(job.source);
-  if (!identity) return Outcome::later;                 // a server that does not answer
-  if (*identity != job.identity) return Outcome::over;  // the watch sees that, too
+  if (!identity) return Outcome::later;                 // for example, a server that does not answer
+  if (*identity != job.identity) return Outcome::over;  // the watch sees this change, too
   if (const std::string fault = outputs_fault(job, state_since_certified(job)); !fault.empty()) {
     keep(job, fault);
     return Outcome::over;
@@ -243,8 +243,7 @@ SourceDeletion::Outcome SourceDeletion::look_at(const Job& job, const WatchConfi
   return remove(job, writers);
 }
 
-// A conversion flushes its own directory: neither those that were made for it, nor anything where it found the output
-// done.
+// Flushes outputs and directories: a conversion flushes only its own directory, and nothing if the output was done.
 void SourceDeletion::flush_outputs(const Job& job, const WatchConfig& watch) const {
   for (const JobOutput& output : job.result.outputs) {
     for (const std::string& path : {output.path, sidecar_path(output.path)}) flush_file(path);
@@ -256,7 +255,7 @@ void SourceDeletion::flush_outputs(const Job& job, const WatchConfig& watch) con
   }
 }
 
-// None where nothing but a rename by remove() has changed its status, which was looked at before that.
+// Returns the source's state; none if only remove()'s own rename, after a check of the status, has changed it.
 std::optional<FileState> SourceDeletion::state_since_certified(const Job& job) const {
   const FileState state = look_at_file(job.source);
   const auto back = named_back_.find(job.id);
@@ -273,8 +272,8 @@ void SourceDeletion::give_name_back(const Job& job) {
   named_back_[job.id] = look_at_file(job.source).ctime_ns;
 }
 
-// Under a hidden name first, which is never a source: what took its place meanwhile gets its name back, and so does
-// the source where a writer has found it by its name before. From then on none can; `writers` tells of those before.
+// Renames the source to a hidden name first, which no watch accepts. A file that took the source's place gets its
+// name back, and so does a source that a writer asked for (`writers`). After the rename no program can find it.
 SourceDeletion::Outcome SourceDeletion::remove(const Job& job, const FileWriters& writers) {
   const std::string doomed = hidden_name(job);
   files_->rename_new(job.source, doomed);
@@ -292,12 +291,12 @@ SourceDeletion::Outcome SourceDeletion::remove(const Job& job, const FileWriters
   return one_waits ? wait_for(job, kInUse) : Outcome::over;
 }
 
-// Its marker goes before it: left alone, as by a kill in between, it would call the next file of that name complete
-// before it is. What a kill leaves is the hidden name, with which finish_interrupted() begins here again.
+// Removes the marker first: left alone, it would call the next file of that name complete too early. A kill in
+// between leaves the hidden name, and finish_interrupted() calls this function again.
 SourceDeletion::Outcome SourceDeletion::remove_hidden(const Job& job, bool writers_known) {
   const std::string doomed = hidden_name(job);
   const std::string marker = marker_of(job);
-  // Of one tick, too: the marker of the source was there before its conversion.
+  // Equal times count, too: the marker of the source existed before its conversion.
   const auto is_of_next_file = [&] {
     return files_->exists(job.source) && look_at_file(marker).ctime_ns >= look_at_file(doomed).ctime_ns;
   };
@@ -330,7 +329,7 @@ std::string SourceDeletion::marker_of(const Job& job) const {
   return at == markers_.end() ? std::string() : job.source + at->second;
 }
 
-// Without it the watch would not take the source any more, whose name it has again.
+// Without its marker, the watch would not accept the source that has its name back.
 void SourceDeletion::mark_again(const Job& job) const {
   const std::string marker = marker_of(job);
   if (marker.empty() || files_->exists(marker)) return;
@@ -341,12 +340,13 @@ void SourceDeletion::mark_again(const Job& job) const {
   }
 }
 
-// The source under its hidden name was to be deleted: all that must hold held then. Its status has changed since.
+// Finishes an interrupted deletion. All conditions held when the source was renamed, which changed its status.
 SourceDeletion::Outcome SourceDeletion::finish_interrupted(const Job& job, const WatchConfig& watch) {
   const std::string doomed = hidden_name(job);
   const bool is_source = is_source_file(doomed, job);
   const FileWriters writers(doomed);
-  if (is_source && writers.some()) return wait_for(job, kInUse);  // who opened it before it was hidden
+  if (is_source && writers.some())
+    return wait_for(job, kInUse);  // a program that opened the source before it was hidden
   std::string fault = is_source ? outputs_fault(job, std::nullopt) : "";
   if (is_source && fault.empty() && !writers.known() && !says_when_done(watch.complete)) fault = kNotKnown;
   if (is_source && fault.empty()) {
@@ -365,8 +365,8 @@ SourceDeletion::Outcome SourceDeletion::finish_interrupted(const Job& job, const
   return Outcome::over;
 }
 
-// What is to be deleted still, finish_interrupted() sees to. Of the others, one that is the source of its job gets its
-// name back; without its job nobody knows that name.
+// Handles a hidden source that is not to be deleted any more (finish_interrupted() handles the others): the source of
+// its job gets its name back. Without a job, its former name is unknown.
 void SourceDeletion::uncover(const HiddenSource& hidden) const {
   const auto job = store_.job(hidden.job);
   if (!job || hidden_name(*job) != hidden.path) {

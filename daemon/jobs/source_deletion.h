@@ -1,21 +1,24 @@
-// Deletes the sources of watches that say source = "delete-after-verify": the only copy of a result goes last. What
-// must hold before:
-//   1. the job is done, converted and every output verified, by the options that the watch has now, and the watch
-//      still takes its source;
-//   2. `delete_after` seconds have passed since, in this process and under this delay, and the source is the file that
-//      was converted: by size, time and inode (FileIdentity), and no status of it is younger than its certificate;
-//   3. every output is there with the size it had, and its certificate is of this source, and of this file alone:
-//      data that a header names may be another header's, too, so that such sources stay, and a source that stands for
-//      a directory (the Header of a plotfile, the metadata of a Zarr hierarchy) stays whatever its certificate says.
-//      Together they have as many voxels as the source has values: its other volumes would go with it;
-//   4. no program has the source open for writing, or maps it so (file_writers.h): else it is tried again later.
-//      Where that cannot be known, the writer must say itself that it is done (says_when_done). One that opens it while
-//      it is looked at gets it whole: the source has lost its name when this is looked at last;
-//   5. the outputs are on their disk, with the directories that were made for them.
-// Its marker is deleted with it, and before it; where the source gets its name back, the marker is made again.
-// Jobs of an earlier process are taken up a few at a time; a deletion that it was killed in is finished. Where the
-// watch deletes no more, or the job is to be done again, the source gets its name back; what no job knows is told of
-// and stays. One thread, that of the io_context.
+// Deletes the sources of watches that say source = "delete-after-verify". The source may be the only copy of a
+// result, so it is deleted last. All this must hold before:
+//   1. The job is done: converted and every output verified, by the options that the watch has now. The watch still
+//      accepts its source.
+//   2. `delete_after` seconds have passed since, in this process and under this delay. The source is the file that
+//      was converted: it has the same size, time and inode (FileIdentity), and its status change time is not later
+//      than its certificate.
+//   3. Every output exists with its recorded size, and its certificate names this source, and this file alone. Data
+//      that a header names may belong to another header, too, so a source in several files stays. A source that
+//      stands for a directory (the Header of a plotfile, the metadata of a Zarr hierarchy) stays whatever its
+//      certificate says. The outputs together have as many voxels as the source has values: otherwise the source
+//      holds volumes that nothing else holds.
+//   4. No program has the source open for writing or maps it writable (file_writers.h); otherwise the deletion is
+//      tried again later. If this cannot be known, the source is deleted only if its writer says when it is done
+//      (says_when_done). A program that opens the source during this check gets the whole file: the source already
+//      has a hidden name when the last check is made.
+//   5. The outputs, and the directories that were made for them, are flushed to disk.
+// The source's marker is deleted before the source; if the source gets its name back, the marker is made again. Jobs
+// of an earlier process are taken up a few at a time. A deletion that a kill interrupted is finished. If the watch no
+// longer deletes, or the job is to be done again, the source gets its name back. A hidden source without a job is
+// logged and stays. One thread: the io_context's.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -43,16 +46,17 @@ namespace weir {
 class SourceDeletion {
  public:
   using Held = std::function<bool()>;
-  /// `store` and `log` must outlive the object. Nothing is deleted while `held`, where there is one. `files`: for
-  /// tests.
+  /// `store` and `log` must outlive the object. Nothing is deleted while `held`, if given, returns true. `files` is
+  /// for tests.
   SourceDeletion(boost::asio::io_context& io, const JobStore& store, const EventLog& log, Held held = {},
                  std::unique_ptr<FileSystem> files = make_posix_file_system());
 
-  /// From now on as `config` says; what is done already waits for the whole of its time again where that has changed.
+  /// Uses the watches of `config` from now on. If a watch's delay has changed, its done jobs wait for the whole new
+  /// delay.
   void configure(const DaemonConfig& config);
-  /// That job is done now.
+  /// Must be called when the job `id` is done.
   void done(std::int64_t id);
-  /// Whether no source waits to be deleted, and all jobs have been looked through.
+  /// Returns whether no source waits to be deleted and all jobs have been looked through.
   bool idle() const { return due_.empty() && !taking_up_; }
 
  private:
@@ -87,11 +91,11 @@ class SourceDeletion {
   const JobStore& store_;
   const EventLog& log_;
   Held held_;
-  std::vector<WatchConfig> watches_;               ///< those that delete
-  std::map<std::string, std::string> markers_;     ///< WatchConfig::marker by label, of those that wait for one
+  std::vector<WatchConfig> watches_;               ///< watches that delete their sources
+  std::map<std::string, std::string> markers_;     ///< WatchConfig::marker by label, of watches that wait for a marker
   std::map<std::int64_t, Due> due_;                ///< by job
-  std::set<std::string> away_;                     ///< labels of watches whose directory was said to be missing
-  std::map<std::int64_t, std::string> waits_for_;  ///< by job: what was said of it
+  std::set<std::string> away_;                     ///< labels of watches that the log called missing
+  std::map<std::int64_t, std::string> waits_for_;  ///< by job: the reason for waiting that was logged last
   std::map<std::int64_t, std::int64_t>
       named_back_;  ///< by job: FileState::ctime_ns of sources that got their name back
   bool taking_up_ = false;

@@ -1,4 +1,4 @@
-// Thumbnails as the API serves them.
+// Reads thumbnails for the API.
 #pragma once
 
 #include <optional>
@@ -6,8 +6,8 @@
 
 namespace weir {
 
-/// The bytes of the PNG file at `path`; none where it is not there, is no regular file, has not a PNG file's first
-/// bytes, or is larger than 8 MiB: then it is not what the service rendered.
+/// Returns the bytes of the PNG file at `path`. Returns none if the file is missing, is no regular file, does not
+/// begin like a PNG file, or is larger than 8 MiB: the service did not render such a file.
 std::optional<std::string> read_thumbnail(const std::string& path);
 
 }  // namespace weir

@@ -31,7 +31,8 @@ namespace {
 namespace asio = boost::asio;
 using boost::system::error_code;
 
-// Of a line that has not ended: the beginning of a longer one, which no program of ours announces, is thrown away.
+// The longest unfinished line that is kept. weir's own programs announce no longer lines, so a longer one is
+// discarded.
 constexpr std::size_t kMostLineBytes = 64 << 10;
 
 struct Pipe {
@@ -45,7 +46,7 @@ Pipe make_pipe(const std::string& program) {
   return {Descriptor(ends[0]), Descriptor(ends[1])};
 }
 
-// Everything the child needs, made before the fork: after it only system calls are safe.
+// Everything the child needs. It is prepared before the fork, because only system calls are safe after it.
 struct Launch {
   const char* program;
   std::vector<char*> arguments;
@@ -55,7 +56,7 @@ struct Launch {
   int null;
   int log;
   int announce;
-  int failure;  ///< takes errno where the program does not start
+  int failure;  ///< receives errno if the program does not start
 };
 
 [[noreturn]] void run_child(const Launch& launch) {
@@ -66,13 +67,13 @@ struct Launch {
   };
   ::setpgid(0, 0);
   if (::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0) give_up();
-  if (::getppid() != launch.daemon) ::_exit(127);  // it died before the line above
-  // What is ignored would stay so in the program, and all that it starts.
+  if (::getppid() != launch.daemon) ::_exit(127);  // the daemon died before the prctl() call
+  // Ignored signals would stay ignored in the program and in all processes that it starts.
   for (const int signal : {SIGPIPE, SIGXFSZ, SIGIO, SIGINT, SIGTERM, SIGCHLD}) ::signal(signal, SIG_DFL);
   sigset_t none;
   sigemptyset(&none);
   ::sigprocmask(SIG_SETMASK, &none, nullptr);
-  // A priority that is not granted costs speed of others, not the work.
+  // If a priority is refused, the work goes on; it only slows down others.
   if (launch.nice != 0) ::setpriority(PRIO_PROCESS, 0, launch.nice);
   if (launch.io_class != IoClass::none) {
     constexpr int kWhoProcess = 1;
@@ -81,7 +82,8 @@ struct Launch {
     constexpr int kIdle = 3 << kClassShift;
     ::syscall(SYS_ioprio_set, kWhoProcess, 0, launch.io_class == IoClass::idle ? kIdle : kLowestBestEffort);
   }
-  // dup2 onto itself would leave close-on-exec set, so everything is first moved out of the way.
+  // dup2 of a descriptor onto itself would leave close-on-exec set, so all descriptors are first moved to high
+  // numbers.
   constexpr int kAside = 10;
   const int failure = ::fcntl(launch.failure, F_DUPFD_CLOEXEC, kAside);
   const int null = ::fcntl(launch.null, F_DUPFD_CLOEXEC, kAside);
@@ -92,8 +94,8 @@ struct Launch {
       ::dup2(announce, kAnnounceDescriptor) < 0) {
     give_up();
   }
-  // Most of the daemon's are close-on-exec; this is for the log's file and what else a library opened without, from
-  // Linux 5.11 on.
+  // Most of the daemon's descriptors are close-on-exec. This call covers the log file and descriptors that a library
+  // opened without the flag; it needs Linux 5.11.
   ::syscall(SYS_close_range, kAnnounceDescriptor + 1, ~0U, 1U << 2U);  // CLOSE_RANGE_CLOEXEC
   ::execv(launch.program, launch.arguments.data());
   const int reason = errno;
@@ -103,7 +105,7 @@ struct Launch {
 
 }  // namespace
 
-/// Lives until the child has ended and its pipes are read, or the worker was destroyed.
+/// Lives until the child has ended and its pipes are read, or until the worker is destroyed and the child is reaped.
 class WorkerProcess::Running : public std::enable_shared_from_this<Running> {
  public:
   Running(asio::io_context& io, Line line, Ended ended)
@@ -152,7 +154,7 @@ class WorkerProcess::Running : public std::enable_shared_from_this<Running> {
     }
     if (error) {
       abandon();
-      if (pid_ > 0 && exit_.is_open()) await_end();  // reaped when it ends
+      if (pid_ > 0 && exit_.is_open()) await_end();  // finish() reaps the child when it ends
       throw Error(ErrorKind::io, cat(program, ": cannot watch its process: ", error.message(),
                                      "; raise fs.epoll.max_user_watches, or free memory"));
     }
@@ -174,7 +176,7 @@ class WorkerProcess::Running : public std::enable_shared_from_this<Running> {
     ended_ = nullptr;
     line_ = nullptr;
     if (kill_and_reap()) return close();
-    close_pipes();  // finish() comes when it has ended
+    close_pipes();  // finish() is called when the child has ended
   }
 
   pid_t pid() const { return pid_; }
@@ -182,7 +184,7 @@ class WorkerProcess::Running : public std::enable_shared_from_this<Running> {
  private:
   using Take = void (Running::*)(std::string_view);
 
-  // `from` stays its owner where the system cannot watch it.
+  // If the system cannot watch the descriptor, `from` keeps it.
   static error_code hand_over(Descriptor& from, asio::posix::stream_descriptor& to) {
     error_code error;
     to.assign(from.get(), error);
@@ -198,7 +200,7 @@ class WorkerProcess::Running : public std::enable_shared_from_this<Running> {
                     });
   }
 
-  // All there is now; false at the pipe's end.
+  // Reads all bytes that are available now. Returns false at the pipe's end.
   bool read(asio::posix::stream_descriptor& pipe, Take take) {
     std::array<char, 4096> piece{};
     error_code error;
@@ -227,11 +229,11 @@ class WorkerProcess::Running : public std::enable_shared_from_this<Running> {
     });
   }
 
-  // A wait may end although nothing happened: Asio's reactor uses the state of a descriptor that was closed for the
-  // next one, with an event of the old one that may still be in its queue. To wait for the child here would stop the
-  // daemon.
+  // Reaps the child. A wait may end although nothing happened: Asio's reactor reuses the state of a closed
+  // descriptor, and an event of the old descriptor may still be in its queue. Therefore waitpid() must not block
+  // here: that would stop the daemon.
   void finish() {
-    if (pid_ <= 0) return;  // destroyed meanwhile
+    if (pid_ <= 0) return;  // the worker was destroyed meanwhile
     int status = 0;
     pid_t reaped = 0;
     do {
@@ -244,7 +246,7 @@ class WorkerProcess::Running : public std::enable_shared_from_this<Running> {
     read(announce_pipe_, &Running::take_announcement);
     close();
     WorkerEnd end;
-    if (reaped < 0) {  // someone else has waited for it, or the system does
+    if (reaped < 0) {  // another thread has reaped the child, or SIGCHLD is ignored
       end.exit_code = static_cast<int>(ErrorKind::internal);
       log_ += cat("weir: how its process ended is not known (", std::generic_category().message(reason), ")\n");
     } else {
@@ -260,8 +262,8 @@ class WorkerProcess::Running : public std::enable_shared_from_this<Running> {
     if (!killed_) killed_ = std::chrono::steady_clock::now();
   }
 
-  // Whether there is no child from here on. One that was killed before has had its time: of many that hang, each would
-  // have the daemon wait.
+  // Kills the child and waits up to reap_wait_ for its end. Returns whether no child is left. The wait counts from
+  // the first kill: otherwise the daemon would wait again for each of many children that hang.
   bool kill_and_reap() {
     if (pid_ <= 0) return true;
     kill_child();
@@ -297,10 +299,10 @@ class WorkerProcess::Running : public std::enable_shared_from_this<Running> {
   Line line_;
   Ended ended_;
   std::string log_;
-  std::string announced_;  ///< begin of a line
+  std::string announced_;  ///< the beginning of an unfinished line
   pid_t pid_ = -1;
   std::chrono::milliseconds reap_wait_{0};
-  std::optional<std::chrono::steady_clock::time_point> killed_;  ///< first
+  std::optional<std::chrono::steady_clock::time_point> killed_;  ///< when the child was first killed
 };
 
 WorkerProcess::WorkerProcess(asio::io_context& io, const WorkerCommand& command, Line line, Ended ended)
@@ -331,7 +333,7 @@ std::uint64_t WorkerProcess::anonymous_bytes() const {
   return 0;
 }
 
-// What stands in /proc/PID/stat behind the name, which may hold any character.
+// Returns the part of /proc/PID/stat behind the name, which may hold any character.
 std::string WorkerProcess::status_fields() const {
   std::ifstream file(cat("/proc/", running_->pid(), "/stat"));
   std::string line;
@@ -346,7 +348,7 @@ char WorkerProcess::process_state() const {
 }
 
 std::uint64_t WorkerProcess::activity() const {
-  constexpr int kTimesFrom = 11;  // user's and system's, proc(5)
+  constexpr int kTimesFrom = 11;  // user and system time, proc(5)
   std::istringstream fields(status_fields());
   std::string skipped;
   for (int i = 0; i < kTimesFrom; ++i) fields >> skipped;

@@ -1,9 +1,9 @@
-// A child process of the daemon that does one piece of work: in a process group
-// of its own (a key pressed at a terminal is for the daemon), with the priority it
-// was given, with no descriptor of the daemon's open, and killed as soon as the daemon ends, for whatever reason.
+// A child process of the daemon that does one piece of work. It has its own process group (a key pressed at a
+// terminal reaches only the daemon), its own priority and none of the daemon's open descriptors. The kernel kills it
+// when the daemon ends for any reason.
 //
-// One thread, that of the io_context, which must also be the thread that the
-// daemon lives on: the kernel kills the child when the thread that started it ends.
+// One thread: the io_context's. It must live as long as the daemon, because the kernel kills the child when the
+// thread that started it ends.
 #pragma once
 
 #include <sys/types.h>
@@ -23,19 +23,19 @@ namespace weir {
 
 struct WorkerCommand {
   std::string program;                 ///< path
-  std::vector<std::string> arguments;  ///< the first is the name it goes by
+  std::vector<std::string> arguments;  ///< the first is the name of the program (argv[0])
   int nice = 0;
   IoClass io_class = IoClass::none;
-  /// How long the end of a worker waits for a child that was killed; one that a hanging file system holds for longer is
-  /// reaped when it ends, as long as the io_context runs.
+  /// How long the destructor waits for a killed child to end. If a hanging file system holds the child for longer,
+  /// the child is reaped when it ends, as long as the io_context runs.
   std::chrono::milliseconds reap_wait{2000};
 };
 
 struct WorkerEnd {
-  /// The program's own, or 128 + the signal that ended it; that of ErrorKind::internal where the system does not tell,
-  /// as the last line of `log` says then.
+  /// The program's own exit code, or 128 + the signal that ended it. If the system does not report how the child
+  /// ended, this is the exit code of ErrorKind::internal, and the last line of `log` says so.
   int exit_code = 0;
-  std::string log;  ///< end of what it wrote to stdout and stderr, WorkerProcess::kLogBytes at most
+  std::string log;  ///< the end of the child's stdout and stderr, at most WorkerProcess::kLogBytes
 };
 
 /// Descriptor at which the child finds the pipe for its announcements.
@@ -45,26 +45,30 @@ class WorkerProcess {
  public:
   static constexpr std::size_t kLogBytes = 8192;
 
-  using Line = std::function<void(std::string_view line)>;  ///< what came on kAnnounceDescriptor
-  using Ended = std::function<void(const WorkerEnd& end)>;  ///< once, after the last line; may destroy the worker
+  using Line =
+      std::function<void(std::string_view line)>;  ///< called with each line that arrives on kAnnounceDescriptor
+  using Ended =
+      std::function<void(const WorkerEnd& end)>;  ///< called once, after the last line; may destroy the worker
 
-  /// Starts the program. Throws Error(io) where that cannot be done.
+  /// Starts the program. Throws Error(io) if the program cannot be started.
   WorkerProcess(boost::asio::io_context& io, const WorkerCommand& command, Line line, Ended ended);
-  /// Kills what still runs; no callback comes afterwards.
+  /// Kills the process if it still runs; no callback is called afterwards.
   ~WorkerProcess();
   WorkerProcess(const WorkerProcess&) = delete;
   WorkerProcess& operator=(const WorkerProcess&) = delete;
 
-  /// Asks it to end (SIGTERM), and ends it (SIGKILL) where it has not after `grace`. Ended comes either way.
+  /// Asks the process to end (SIGTERM), and kills it (SIGKILL) if it still runs after `grace`. `ended` is called in
+  /// both cases.
   void stop(std::chrono::milliseconds grace);
-  /// Bytes resident now; 0 where it has just ended.
+  /// Returns the resident bytes; 0 if the process has just ended.
   std::uint64_t resident_bytes() const;
-  /// Of those what is no page of a file, which the system can take back; 0 likewise.
+  /// Returns the resident bytes that are not pages of a file (the system can take back those); 0 if the process has
+  /// just ended.
   std::uint64_t anonymous_bytes() const;
-  /// Grows while the process, all its threads counted, computes, reads or writes.
+  /// Returns a number that grows while any thread of the process computes, reads or writes.
   std::uint64_t activity() const;
-  /// As ps says it: 'R' runs, 'S' sleeps, 'D' waits for a device, 'T' was stopped by a signal; 0 where it has just
-  /// ended.
+  /// Returns the state letter of ps: 'R' runs, 'S' sleeps, 'D' waits for a device, 'T' was stopped by a signal; 0 if
+  /// the process has just ended.
   char process_state() const;
 
  private:

@@ -1,4 +1,4 @@
-// Why a worker ended as it did, in the words of the program itself where it said any.
+// Explains why a worker ended, in the program's own words if it wrote any.
 #pragma once
 
 #include <string>
@@ -8,15 +8,15 @@
 
 namespace weir {
 
-inline constexpr int kSignalExit = 128;  ///< and the signal's number: WorkerEnd::exit_code
+inline constexpr int kSignalExit = 128;  ///< plus the signal's number: WorkerEnd::exit_code
 
-/// The line that `weir` ends with where it fails, without its name; of a signal, which leaves none, its name. `step` is
-/// the subcommand.
+/// Returns the line that `weir` ends with when it fails, without the program's name. A signal leaves no line; then
+/// the signal's name is returned. `step` is the subcommand.
 std::string worker_reason(std::string_view step, const WorkerEnd& end);
 
-/// Whether the system says by this number that a file system, or a quota of it, is full.
+/// Returns whether `errno_value` means that a file system, or a quota on it, is full.
 bool is_disk_full(int errno_value);
-/// Whether `reason` does, in the system's words: of a program that announces no numbers.
+/// Returns whether `reason` contains the system's words for a full disk: for programs that announce no error numbers.
 bool says_disk_full(std::string_view reason);
 
 }  // namespace weir

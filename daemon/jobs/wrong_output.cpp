@@ -12,7 +12,8 @@
 namespace weir {
 namespace {
 
-// Under the lock. The volume first: a sidecar alone is no result, and one that stays belongs to a volume that stays.
+// Must be called under the lock. Removes the volume first: a sidecar alone is no result, and if the volume stays, its
+// sidecar must stay, too.
 std::string remove_both(FileSystem& files, const std::string& output) {
   const std::string sidecar = sidecar_path(output);
   try {
@@ -49,7 +50,8 @@ std::string remove_wrong_output(FileSystem& files, const std::string& output,
             : cat("not removed: ", output, " was replaced or written to since; the next attempt verifies it again");
     if (!was_there) files.remove(lock_path);
   } catch (const Error& error) {
-    // Of the lock's file alone nothing is said: it is in nobody's way, the next conversion takes it over.
+    // If only the removal of the lock's file fails, nothing is said: the file does no harm, and the next conversion
+    // takes it over.
     if (outcome.empty()) outcome = cat("not removed: ", error.what());
   }
   return outcome;

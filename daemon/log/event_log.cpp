@@ -17,7 +17,7 @@ namespace {
 
 std::string logfmt(std::string_view value) {
   std::string text = "\"";
-  bool is_word = !value.empty();  // needs no quotes
+  bool is_word = !value.empty();  // the value needs no quotes
   for (std::string_view rest = value; !rest.empty();) {
     const std::size_t plain = plain_bytes(rest);
     const char c = rest.front();
@@ -36,12 +36,12 @@ std::string logfmt(std::string_view value) {
   return is_word ? std::string(value) : text + '"';
 }
 
-// What each line looks like, with `before` it.
+// Sets the layout of a line; `before` is put in front of it.
 void set_line(spdlog::logger& logger, const std::string& before) {
   logger.set_pattern(before + "%Y-%m-%dT%H:%M:%S.%eZ %l %v", spdlog::pattern_time_type::utc);
 }
 
-// What goes wrong with a line is left in `fault`.
+// Opens the log. The logger writes the reason of a failed line to `fault`.
 std::shared_ptr<spdlog::logger> open_log(const ServiceConfig& service, std::shared_ptr<std::string> fault) {
   spdlog::sink_ptr sink;
   try {
@@ -60,12 +60,13 @@ std::shared_ptr<spdlog::logger> open_log(const ServiceConfig& service, std::shar
   auto logger = std::make_shared<spdlog::logger>("weir", sink);
   set_line(*logger, "");
   logger->set_level(spdlog::level::from_str(service.log_level));
-  logger->flush_on(spdlog::level::trace);  // a line that is not there after a crash is no log
+  logger->flush_on(spdlog::level::trace);  // every line is flushed, so that a crash loses none
   logger->set_error_handler([fault = std::move(fault)](const std::string& text) { *fault = text; });
   return logger;
 }
 
-// Half of a line, say, of which the disk had no room for the rest. A file that is empty or cannot be read has none.
+// Returns whether the file ends within a line, for example because the disk had no room for its rest. False for a
+// file that is empty or cannot be read.
 bool ends_within_line(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   char last = '\n';

@@ -1,5 +1,5 @@
-// The daemon's log: one line per event, "NAME key=value ...", so that a person
-// can read it and a program can take it apart. One thread.
+// The daemon's log. Each event is one line, "NAME key=value ...", that people can read and programs can parse. One
+// thread.
 #pragma once
 
 #include <cstdint>
@@ -25,28 +25,28 @@ struct Field {
   std::string value;
 };
 
-/// "done job=7 source=\"/in/a b.raw\"": a value with a space, a quote, an equals sign or anything that is not plain
-/// (plain_bytes) is quoted. Quotes and backslashes inside are escaped with a backslash, and each byte that is not plain
-/// is \n or \x1b, so that an event stays one line of UTF-8.
+/// Returns the line of an event, for example "done job=7 source=\"/in/a b.raw\"". A value with a space, a quote, an
+/// equals sign or a character that is not plain (plain_bytes) is quoted. Quotes and backslashes inside get a
+/// backslash, and each byte that is not plain becomes \n or \x1b, so that an event stays one line of UTF-8.
 std::string event_text(std::string_view name, std::initializer_list<Field> fields);
 
 class EventLog {
  public:
-  /// To service.log_file, rotated at log_size, or to stderr. Throws Error(io) where the file cannot be opened.
+  /// Logs to service.log_file, rotated at log_size, or to stderr. Throws Error(io) if the file cannot be opened.
   explicit EventLog(const ServiceConfig& service);
 
-  /// Opens the file of `service` anew (another program may have renamed the old one) and takes its level.
-  /// Throws like the constructor; then the old log goes on.
+  /// Opens the file of `service` anew (another program may have renamed the old one) and takes its level. Throws like
+  /// the constructor; in this case the old log stays in use.
   void reopen(const ServiceConfig& service);
 
-  /// An event that cannot be written, on a full disk for instance, is counted and lost: the first one is said on
-  /// stderr, and the next that can be written comes behind a line `log-lost lines=N`.
+  /// Each writes one event. An event that cannot be written, for example on a full disk, is counted and lost. The
+  /// first loss is reported on stderr. The next event that can be written follows a line `log-lost lines=N`.
   void debug(std::string_view name, std::initializer_list<Field> fields) const;
   void info(std::string_view name, std::initializer_list<Field> fields) const;
   void warn(std::string_view name, std::initializer_list<Field> fields) const;
   void error(std::string_view name, std::initializer_list<Field> fields) const;
 
-  /// Since the beginning.
+  /// Returns the number of lines lost since the beginning.
   std::uint64_t lines_lost() const { return lost_; }
 
  private:
@@ -55,9 +55,10 @@ class EventLog {
   bool try_write(int level, const std::string& line) const;
   bool say_lost(int level) const;
 
-  std::shared_ptr<std::string> fault_ = std::make_shared<std::string>();  ///< of the last line; the logger writes it
+  std::shared_ptr<std::string> fault_ =
+      std::make_shared<std::string>();  ///< fault of the last line; the logger writes it
   mutable std::uint64_t lost_ = 0;
-  mutable std::uint64_t unsaid_ = 0;  ///< of them, those that no line of the log tells of yet
+  mutable std::uint64_t unsaid_ = 0;  ///< lost lines that no log-lost line has reported yet
   std::string file_;                  ///< empty: stderr
   std::shared_ptr<spdlog::logger> logger_;
 };

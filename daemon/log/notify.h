@@ -1,6 +1,5 @@
-// Tells the service manager that the daemon is ready, what it does and that it is
-// alive: the datagrams of sd_notify(3), without its library. Where nobody asked
-// ($NOTIFY_SOCKET is not set) every call does nothing. One thread.
+// Tells the service manager that the daemon is ready, what it does and that it is alive. Sends the datagrams of
+// sd_notify(3) without its library. If $NOTIFY_SOCKET is not set, no call does anything. One thread.
 #pragma once
 
 #include <chrono>
@@ -15,13 +14,14 @@ class ServiceNotifier {
   /// Reads and removes $NOTIFY_SOCKET, $WATCHDOG_USEC and $WATCHDOG_PID, so that child processes do not notify in the
   /// daemon's name.
   static ServiceNotifier from_environment();
-  /// `socket`: a path, or a name in the abstract space with '@' in front; empty: nobody asked.
+  /// `socket` is a path, or a name in the abstract namespace with '@' in front. Empty: no manager listens.
   ServiceNotifier(std::string socket, std::optional<std::chrono::microseconds> watchdog)
       : socket_(std::move(socket)), watchdog_(watchdog) {}
 
-  /// Lines like "READY=1" and "STATUS=...", separated by newlines. A manager that does not listen is no error.
+  /// Sends lines like "READY=1" and "STATUS=...", separated by newlines. It is no error if the manager does not
+  /// listen.
   void send(std::string_view state) const;
-  /// How often "WATCHDOG=1" must be sent at least; none where no watchdog waits.
+  /// Returns the longest time between two messages "WATCHDOG=1"; none if no watchdog waits.
   std::optional<std::chrono::microseconds> watchdog() const { return watchdog_; }
 
  private:

@@ -1,3 +1,3 @@
-// In the place of a page that is not there yet: asks for it again.
+// Shown in place of a page that is not ready yet: reloads the page after a second.
 
 setTimeout(() => location.reload(), 1000);

@@ -9,7 +9,7 @@ const kPageLength = 50;
 const kTypingPause_ms = 250;
 const kColumns = [["source", "Name"], ["state", "State"], ["watch", "Watch"], ["bytes", "Size"], ["seconds", "Time taken"],
                   ["discovered", "Found"], ["changed", "Changed"]];
-const kRising = ["source", "state", "watch"];  // what is sorted from A to Z at first; all else the largest first
+const kRising = ["source", "state", "watch"];  // sorted from A to Z at first; all other columns begin with the largest
 
 const text_field = by_id("all-text");
 const state_choice = by_id("all-state");
@@ -19,9 +19,9 @@ let sort = "changed";
 let order = "desc";
 let offset = 0;
 let total = 0;
-let asked = 0;  // requests so far: an answer that comes after a later one is not shown
+let asked = 0;  // requests so far: an answer that arrives after a later one is not shown
 let timer = 0;
-let searched = "";  // what the service said of itself when it was searched last
+let searched = "";  // the service's `state` text at the last search
 let open = () => {};
 
 function cell(name, title, ...content) {
@@ -82,7 +82,7 @@ function show_place(length) {
   by_id("all-table").hidden = total === 0;
 }
 
-/** Asks for the page of jobs that is chosen and shows it; a search only where `state`, a text, is another than before. */
+/** Asks for the chosen page of jobs and shows it. A search is repeated only if `state`, a text, has changed. */
 export async function refresh_all_jobs(state = "") {
   if (state && state === searched && text_field.value.trim()) return;
   searched = state;
@@ -91,7 +91,7 @@ export async function refresh_all_jobs(state = "") {
                   watch: watch_choice.value || null, sort, order, limit: kPageLength, offset};
   const page = await get(`/api/jobs?${query(wanted)}`);
   if (mine !== asked) return;
-  if (page.jobs.length === 0 && page.total > 0) {  // the page is gone: the last one there is
+  if (page.jobs.length === 0 && page.total > 0) {  // the page does not exist any more: show the last one
     offset = Math.floor((page.total - 1) / kPageLength) * kPageLength;
     await refresh_all_jobs();
     return;
@@ -105,7 +105,7 @@ export async function refresh_all_jobs(state = "") {
 function show_anew(from = 0) {
   clearTimeout(timer);
   offset = from;
-  refresh_all_jobs().catch(() => {});  // the page's own round says what is wrong
+  refresh_all_jobs().catch(() => {});  // the page's next round reports the error
 }
 
 function turn(by) {
@@ -140,7 +140,7 @@ export function offer_watch_filter(watches) {
   if (changed) show_anew();
 }
 
-/** `open_job(id)` is called for a name that is clicked. */
+/** Sets up the table. `open_job(id)` is called when a name is clicked. */
 export function prepare_all_jobs(open_job) {
   open = open_job;
   by_id("all-headers").replaceChildren(...kColumns.map(make_header));

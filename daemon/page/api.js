@@ -2,13 +2,13 @@
 
 let token = sessionStorage.getItem("weir-token") ?? "";
 
-/** Without the blanks that a paste may bring. */
+/** Sets the token, without blanks that were pasted with it. */
 export function set_token(text) {
   token = text.trim();
   sessionStorage.setItem("weir-token", token);
 }
 
-/** What went wrong; status 0: no answer came. `answer`: what else the service said. */
+/** A failed request. Status 0: no answer came. `answer` is the body of the service's answer. */
 export class ApiError extends Error {
   constructor(status, message, answer = {}) {
     super(message);
@@ -41,13 +41,13 @@ async function json_of(method, path) {
 export const get = (path) => json_of("GET", path);
 export const post = (path) => json_of("POST", path);
 
-/** Query text of the parameters that are not null. */
+/** Returns the query text of the parameters that are not null. */
 export function query(parameters) {
   return new URLSearchParams(Object.entries(parameters).filter(([, value]) => value !== null)).toString();
 }
 
 const kPicturesKept = 200;
-const pictures = new Map();  // URL -> promise of an object URL; only where a token is needed, oldest first
+const pictures = new Map();  // URL -> promise of an object URL, oldest first; used only if a token is needed
 
 // An <img> cannot send the token, so the picture is fetched and shown from memory.
 function fetched_picture(url) {
@@ -65,7 +65,7 @@ function fetched_picture(url) {
   return pictures.get(url);
 }
 
-/** A decoded <img> of the job's output `index`; throws where there is none. */
+/** Returns a decoded <img> of the job's output `index`; throws if there is no thumbnail. */
 export async function thumbnail(job, index, text) {
   const url = `/api/jobs/${job.id}/thumbnails/${index}?changed=${job.changed_at}`;
   const image = new Image();

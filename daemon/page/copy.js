@@ -12,7 +12,8 @@ function select(text) {
   selection.addRange(range);
 }
 
-// Without a secure context (https, or this very machine) a page may not copy; whoever reads it may.
+// A page may write to the clipboard only in a secure context (https, or localhost). Otherwise the text is selected,
+// so that the reader can copy it.
 async function copy(text, note) {
   try {
     await navigator.clipboard.writeText(text.textContent);
@@ -25,13 +26,13 @@ async function copy(text, note) {
   setTimeout(() => set_text(note, ""), kNote_ms);
 }
 
-/** Shows another path in what path_with_copy() made. */
+/** Shows another path in an element that path_with_copy() made. */
 export function show_path(shown, path) {
   set_text(part(shown, "path"), path);
   set_text(part(shown, "copy-note"), "");
 }
 
-/** `what` says which path it is, for those who hear the button alone. */
+/** Returns the path with a copy button. `what` names the path for screen readers, which announce only the button. */
 export function path_with_copy(path, what) {
   const text = element("span", "path", path);
   const note = element("span", "copy-note quiet");

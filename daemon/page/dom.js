@@ -17,7 +17,7 @@ export function button(text, classes, action) {
   return made;
 }
 
-/** Sets the text only where it is another, so that a selection in it survives. */
+/** Sets the text only if it differs, so that a selection in it survives. */
 export function set_text(target, text) {
   if (target.textContent !== text) target.textContent = text;
 }
@@ -25,7 +25,7 @@ export function set_text(target, text) {
 /** The first child of `parent`, at any depth, that has the class. */
 export const part = (parent, name) => parent.querySelector(`.${name}`);
 
-/** Makes `select` offer [value, text] pairs; keeps the choice where it is still offered. Whether the choice changed. */
+/** Makes `select` offer [value, text] pairs; keeps the choice if it is still offered. Returns whether it changed. */
 export function offer(select, choices) {
   const offered = [...select.options].map((option) => option.value);
   if (choices.map(([value]) => value).join("\n") === offered.join("\n")) return false;
@@ -35,7 +35,7 @@ export function offer(select, choices) {
   return select.value !== chosen;
 }
 
-/** What has the focus, in which child of the list, and as which of its buttons. */
+/** Returns the focused element, the index of its child in the list, and its index among the child's buttons. */
 function focus_in(list) {
   const focused = document.activeElement;
   const place = [...list.children].findIndex((child) => child.contains(focused));
@@ -43,7 +43,8 @@ function focus_in(list) {
   return {focused, place, button_place: buttons.indexOf(focused)};
 }
 
-// Where what had the focus is gone, what took its place in the list gets it: a keyboard goes on from there.
+// If the focused element is gone, the element at its place in the list gets the focus, so that keyboard users
+// continue there.
 function keep_focus(list, {focused, place, button_place}) {
   if (place < 0) return;
   if (list.contains(focused)) {
@@ -55,8 +56,8 @@ function keep_focus(list, {focused, place, button_place}) {
 }
 
 /**
- * Makes `list` show `items`, one child each, keeping the child of an item that stays: focus and pictures survive.
- * `make(item)` returns a child, `update(child, item)` fills it; `empty` is shown where there are none, unless it is "".
+ * Makes `list` show `items`, one child each. The child of an item that stays is kept, so focus and pictures survive.
+ * `make(item)` returns a child, `update(child, item)` fills it. Without items, `empty` is shown unless it is "".
  */
 export function show_items(list, items, key, make, update, empty) {
   const kept = new Map([...list.children].map((child) => [child.dataset.key, child]));

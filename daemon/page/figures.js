@@ -1,4 +1,4 @@
-// The figures at the top: how fast files come and go, when the queue ends, and how full the disks are.
+// The figures at the top: how fast files arrive and are converted, when the queue ends, and how full the disks are.
 
 import {by_id, element, part, set_text, show_items} from "./dom.js";
 import * as format from "./format.js";
@@ -20,7 +20,7 @@ function show_flow(name, per_min, bytes_per_s, most) {
   by_id(`${name}-bar`).style.width = `${100 * (per_min ?? 0) / most}%`;
 }
 
-/** When nothing will wait any more, in words. */
+/** Returns in words when the queue will be empty. */
 function queue_end(status) {
   if (status.jobs.waiting === 0) return "";
   const seconds = status.queue_ends_in_s;

@@ -1,4 +1,4 @@
-// Values as text. Sizes are in powers of 1024, as the command prints them. What is unknown (null) is a dash.
+// Values as text. Sizes are in powers of 1024, as the command prints them. An unknown value (null) is a dash.
 
 const kUnknown = "\u2013";
 
@@ -21,7 +21,7 @@ export function seconds(value) {
   return `${Math.round(value / 86400)} days`;
 }
 
-/** "12.5", a number of files a minute. */
+/** Returns a number of files per minute: "12.5". */
 export function per_minute(value) {
   if (value === null) return kUnknown;
   return value >= 100 ? count(Math.round(value)) : value.toFixed(1);
@@ -31,7 +31,7 @@ export function bytes_per_s(value) {
   return value === null ? kUnknown : `${bytes(value)}/s`;
 }
 
-// Of usual sizes in plain digits, else in those or with an exponent, whichever is shorter.
+// Values of usual size are in plain digits; others are in plain digits or with an exponent, whichever is shorter.
 function written(value) {
   const size = Math.abs(value);
   const plain = String(value);
@@ -40,36 +40,36 @@ function written(value) {
   return exponential.length < plain.length ? exponential : plain;
 }
 
-/** Three digits, as short as they can be written: "0.0125", "4.2e-7", "125000". */
+/** Returns three digits in their shortest form: "0.0125", "4.2e-7", "125000". */
 export function number(value) {
   return value === null ? kUnknown : written(Number(value.toPrecision(3)));  // JSON has no NaN and no infinity
 }
 
-// With as few digits as tell its float32 from all others.
+// Returns the value with the fewest digits that still identify its float32.
 function shortest(value) {
   let digits = 1;
   while (digits < 9 && Math.fround(Number(value.toPrecision(digits))) !== Math.fround(value)) ++digits;
   return Number(value.toPrecision(digits));
 }
 
-/** A float32 with all digits that count: "12666", "1013.2". An infinity comes as its text. */
+/** Returns a float32 with all significant digits: "12666", "1013.2". An infinity is a text already. */
 export function exact(value) {
   if (value === null) return kUnknown;
   return typeof value === "string" ? value : written(shortest(value));
 }
 
-/** A place in the world where voxels are `spacing` wide, to a ten-thousandth of that or less. */
+/** Returns a world coordinate, rounded to a ten-thousandth of the voxel width `spacing` or less. */
 export function place(value, spacing) {
   const unit = 10 ** (Math.floor(Math.log10(spacing)) - 4);
   return written(Number((Math.round(value / unit) * unit).toPrecision(15)));
 }
 
-/** A float32 of a range that is `span` wide, likewise. */
+/** Returns a float32 of a range of width `span`, rounded to a ten-thousandth of the width or less. */
 export function within(value, span) {
   return span > 0 ? place(shortest(value), span) : exact(value);
 }
 
-/** Three digits of a bound, never below it. */
+/** Returns three digits of an upper bound, rounded up. */
 export function bound(value) {
   if (value === null) return kUnknown;
   const short = Number(value.toPrecision(3));
@@ -82,7 +82,7 @@ export function count(value) {
   return value.toLocaleString("en").replaceAll(",", "\u202f");
 }
 
-/** "3 min ago", of a Unix time. */
+/** Returns how long ago a Unix time was: "3 min ago". */
 export function ago(time) {
   const passed = Date.now() / 1000 - time;
   return passed < 2 ? "just now" : `${seconds(Math.floor(passed)).replace(".0", "")} ago`;
@@ -96,14 +96,14 @@ export function base_name(path) {
   return path.slice(path.lastIndexOf("/") + 1);
 }
 
-/** The text with its middle left out where it is longer than `letters`: what tells names apart stands at both ends. */
+/** Shortens a text to `letters` by leaving out its middle, because names differ at their beginning and their end. */
 export function middle(text, letters) {
   if (text.length <= letters) return text;
   const end = Math.floor(letters * 0.45);
   return `${text.slice(0, letters - end - 1)}\u2026${text.slice(-end)}`;
 }
 
-/** Why a job is where it is; without its path, which stands beside it. */
+/** Returns the reason of a job's state without its path, which the page shows beside it. */
 export function reason(job) {
   const start = `${job.source}: `;
   return job.reason.startsWith(start) ? job.reason.slice(start.length) : job.reason;
@@ -113,7 +113,7 @@ export function state(job) {
   return job.state === "discovered" ? "not taken yet" : job.state;
 }
 
-/** "51.2 dB" of an output, or "lossless"; the background may stand where the source holds no value. */
+/** Returns "51.2 dB" or "lossless". Without a value in the source, a voxel may hold the background: "valid voxels". */
 export function quality(output) {
   if (output.lossless) return "lossless";
   if (output.psnr_db === null && output.max_error === 0) return "lossless over valid voxels";
@@ -124,17 +124,17 @@ export function rate(output) {
   return `rate ${Number(output.rate.toPrecision(3))}`;
 }
 
-/** "largest error 0.0012", or nothing where that is unknown. */
+/** Returns "largest error 0.0012", or "" if it is unknown. */
 export function largest_error(output) {
   return output.max_error === null ? "" : `largest error ${bound(output.max_error)}`;
 }
 
-/** "values 0 to 4.2", or nothing where they are unknown. */
+/** Returns "values 0 to 4.2", or "" if they are unknown. */
 export function range(output) {
   return output.min === null || output.max === null ? "" : `values ${number(output.min)} to ${number(output.max)}`;
 }
 
-/** All that is known of an output, a text for each figure. */
+/** Returns all known figures of an output, one text each. */
 export function output_facts(output) {
   return [bytes(output.bytes), rate(output), quality(output), largest_error(output), range(output)].filter(Boolean);
 }

@@ -1,4 +1,4 @@
-// One job in full, with what can be done about it.
+// The dialog of one job: all its facts, and buttons to retry or cancel it.
 
 import {get, post} from "./api.js";
 import {path_with_copy} from "./copy.js";
@@ -68,6 +68,6 @@ export async function open_job(id) {
     show(job);
     if (!dialog.open) dialog.showModal();
   } catch {
-    changed();  // the page's own round says what is wrong
+    changed();  // the page's next round reports the error
   }
 }

@@ -1,4 +1,4 @@
-// The plain lists of jobs: what runs, what waits, and what is not taken yet.
+// The plain lists of jobs: running, waiting, and not taken yet.
 
 import {by_id, element, part, set_text, show_items} from "./dom.js";
 import * as format from "./format.js";
@@ -60,7 +60,7 @@ export function show_queue(page, open) {
   show_more("queue-more", page);
 }
 
-/** Files that were seen and are not complete, as far as anybody can tell. */
+/** Shows the files that were found but do not seem to be complete yet. */
 export function show_not_taken(page, open) {
   by_id("not-taken-section").hidden = page.total === 0;
   const update = (child, job) =>

@@ -3,8 +3,8 @@
 import {button, element} from "./dom.js";
 import * as format from "./format.js";
 
-const kLetters = 76;      // what two lines of a telephone hold
-const kCardLetters = 36;  // what two lines of a card hold
+const kLetters = 76;      // fits on two lines of a telephone
+const kCardLetters = 36;  // fits on two lines of a card
 
 /** A text of at most two lines. */
 export const clamped = (text) => element("span", "clamped", text);

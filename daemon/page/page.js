@@ -1,5 +1,4 @@
-// Asks the service how it is, every two seconds while the page is looked at, and
-// shows the answer.
+// Asks the service for its state every two seconds while the page is visible, and shows the answer.
 
 import {offer_watch_filter, prepare_all_jobs, refresh_all_jobs} from "./all_jobs.js";
 import {get, post, set_token} from "./api.js";
@@ -20,7 +19,7 @@ const kNotTakenShown = 10;
 const kResultsShown = 12;
 
 let answered_at = 0;      // when the last answer came, Unix ms
-let series_of = "";       // what the series was loaded for
+let series_of = "";       // watch and counts that the series was loaded for
 let timer = 0;
 let running = false;      // a round is under way
 
@@ -37,13 +36,13 @@ function show_banner(text, bad) {
   set_text(banner, text);
 }
 
-/** What keeps jobs from going on, and whether that is a fault. */
+/** Returns in words what keeps jobs from running, and whether it is a fault. */
 function troubles(status) {
   const reason = status.state === "paused" ? status.reason : "";
   const paused = reason ? [`Paused: ${reason}.`] : [];
   const held = status.disks.filter((disk) => disk.held && !reason.includes(disk.held))
                    .map((disk) => `Jobs wait for room on ${disk.path}: ${disk.held}.`);
-  // On a disk that no output lies on: where a conversion spills.
+  // The full disk has no outputs: conversions keep their spill files there.
   if (status.state === "running" && status.reason && !status.disks.some((disk) => disk.held)) {
     held.push(`Jobs wait: ${status.reason}.`);
   }
@@ -51,7 +50,7 @@ function troubles(status) {
   return {text: [...paused, ...held, ...down].join(" "), bad: held.length + down.length > 0};
 }
 
-/** Where requests that change something are taken elsewhere, this page has no buttons for them. */
+/** Hides the buttons for changes if only another address, `control_at`, accepts changes. */
 function show_who_controls(control_at) {
   document.body.classList.toggle("view-only", control_at !== null);
   by_id("view-only").hidden = control_at === null;
@@ -139,7 +138,7 @@ async function act(path) {
   try {
     await post(path);
   } catch (error) {
-    if (error.status !== 409) show_failure(error);  // 409: it has moved on meanwhile, which the round shows
+    if (error.status !== 409) show_failure(error);  // 409: the job has changed already; see the next round
   }
   round();
 }

@@ -1,4 +1,4 @@
-// One picture, large and whole, with its figures; from one to the next by arrow keys.
+// One picture in full size, with its figures. Arrow keys go to the next or the previous one.
 
 import {thumbnail} from "./api.js";
 import {path_with_copy, show_path} from "./copy.js";
@@ -52,7 +52,7 @@ function go_by_key(event) {
   go_to(steps[event.key]);
 }
 
-/** Opens the picture of all[start]; the others that have one can be gone to. `shown(entry)` is called for each. */
+/** Opens the picture of all[start]. Keys and buttons go to the others; `shown(entry)` is called for each one shown. */
 export function open_pictures(all, start, shown = () => {}) {
   const first = all[start];
   entries = all.filter(({output}) => output.thumbnail);

@@ -1,8 +1,8 @@
-// Axes of plots: what share of the height a value stands at, and where round numbers are.
+// Axes of plots: at which share of the height a value lies, and where the round numbers are.
 
 const kTicks = 3;  // intervals between ticks, about
 
-/** The smallest of 1, 2, 5, 10, 20 ... times a power of ten that is not less than `width`. */
+/** Returns the smallest of 1, 2, 5 or 10 times a power of ten that is not less than `width`. */
 function round_width(width) {
   const power = 10 ** Math.floor(Math.log10(width));
   return power * [1, 2, 5, 10].find((times) => times * power >= width * 0.999);
@@ -14,11 +14,11 @@ function tick_text(value, width) {
   return value.toFixed(Math.max(0, -Math.floor(Math.log10(width) + 0.001)));
 }
 
-/** The axis from a round number below all `lows` to one above all `highs`. */
+/** Returns a linear axis from a round number below all `lows` to one above all `highs`. */
 export function linear_axis(lows, highs) {
   let low = lows.reduce((a, b) => Math.min(a, b));
   let high = highs.reduce((a, b) => Math.max(a, b));
-  if (high <= low) {  // all the same
+  if (high <= low) {  // all values are equal
     const around = Math.abs(low) * 0.1 || 1;
     low -= around;
     high += around;
@@ -31,7 +31,7 @@ export function linear_axis(lows, highs) {
   return {is_log: false, ticks, share: (value) => (value - first * width) / ((last - first) * width)};
 }
 
-/** The axis of powers of ten around values that are all greater than 0. */
+/** Returns a logarithmic axis between powers of ten around values that are all greater than 0. */
 export function log_axis(lows, highs) {
   const first = Math.floor(Math.log10(lows.reduce((a, b) => Math.min(a, b))) + 1e-9);
   const last = Math.ceil(Math.log10(highs.reduce((a, b) => Math.max(a, b))) - 1e-9);
@@ -41,7 +41,7 @@ export function log_axis(lows, highs) {
   return {is_log: true, ticks, share: (value) => (Math.log10(value) - first) / (last - first)};
 }
 
-/** Round numbers of steps among 1 ... `steps`, 1 among them; about `room` of them. */
+/** Returns about `room` round step numbers from 1 to `steps`, with 1 as the first. */
 export function round_steps(steps, room) {
   const every = steps <= room ? 1 : Math.max(1, Math.round(round_width(steps / room)));
   const numbers = [1];

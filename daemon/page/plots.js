@@ -1,5 +1,5 @@
-// Plots of the figures of a series over its time steps: PSNR, largest error, range of values. Each is a slider of its own:
-// a click or an arrow key goes to a step.
+// Plots of the figures of a series over its time steps: PSNR, largest error, range of values. Each plot is also a
+// slider: a click or an arrow key goes to a step.
 
 import {by_id, element, set_text} from "./dom.js";
 import * as format from "./format.js";
@@ -10,8 +10,8 @@ const kTop = 12;
 const kRight = 10;
 const kBottom = 20;
 const kLetter = 6.6;      // width of a tick label's letter
-const kDotsUpTo = 60;     // steps; more would run into each other
-const kLogFrom = 100;     // times that the largest is more than the smallest
+const kDotsUpTo = 60;     // steps; more dots would overlap
+const kLogFrom = 100;     // ratio of largest to smallest value from which on the axis is logarithmic
 const kPage = 10;         // steps of Page Up and Page Down
 
 const kPlots = [
@@ -56,7 +56,7 @@ function svg(tag, attributes, text = "") {
 
 const round = (value) => Math.round(value * 10) / 10;
 
-/** Runs of steps without a gap, as arrays of their places. */
+/** Returns the runs of consecutive steps with known figures, as arrays of step indices. */
 function runs_of(plot) {
   const runs = [];
   outputs.forEach((output, step) => {
@@ -67,7 +67,7 @@ function runs_of(plot) {
   return runs;
 }
 
-/** Where things are within the plot. */
+/** Returns the positions of the plot's parts. */
 function layout_of(plot) {
   const shown = outputs.filter((output) => known(plot, output));
   const axis = shown.length > 0 ? plot.axis(shown.map(plot.low), shown.map(plot.high)) : null;
@@ -119,7 +119,7 @@ function draw_dots(plot, runs, {x, y}) {
       svg("circle", {class: "dot", cx: x(step), cy: y(value(outputs[step])), r: 2})));
 }
 
-// What has no figure because nothing was lost stands at the top edge.
+// A lossless output has no PSNR; its mark is at the top edge.
 function draw_lossless(plot, {left, right, x}) {
   const steps = outputs.flatMap((output, step) => (plot.is_top(output) ? [step] : []));
   if (steps.length === 0) return [];
@@ -207,7 +207,7 @@ function make_panel(plot) {
   return plot.panel;
 }
 
-/** Shows the figures of the series' outputs, a step each. */
+/** Shows the figures of the series' outputs, one step for each output. */
 export function show_plots(of_series) {
   outputs = of_series;
   for (const plot of kPlots) {
@@ -217,13 +217,13 @@ export function show_plots(of_series) {
   kPlots.filter((plot) => !plot.panel.hidden).forEach(draw);
 }
 
-/** Marks the step that is looked at. */
+/** Marks the step that is shown. */
 export function mark_step(step) {
   place = step;
   kPlots.forEach(show_mark);
 }
 
-/** `when_chosen(step)` is called for a step that is clicked or gone to by a key. */
+/** Sets up the plots. `when_chosen(step)` is called when a click or a key chooses a step. */
 export function prepare_plots(when_chosen) {
   go_to = when_chosen;
   by_id("plots").replaceChildren(...kPlots.map(make_panel));

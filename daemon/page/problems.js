@@ -1,4 +1,4 @@
-// Problems: the failed and quarantined jobs. Those whose reasons are alike are one line, which opens to its jobs.
+// Problems: the failed and quarantined jobs. Jobs with similar reasons share one line, which expands to its jobs.
 
 import {get, query} from "./api.js";
 import {button, by_id, element, part, set_text, show_items} from "./dom.js";
@@ -8,7 +8,7 @@ import {clamped, name_button} from "./names.js";
 const kGroupsShown = 10;
 const kJobsShown = 50;
 
-const opened = new Map();  // key of a group -> page of its jobs, null until it came
+const opened = new Map();  // key of a group -> page of its jobs; null until it has arrived
 let newest = new Map();    // "id/changed_at" -> the newest job of a group
 let problems = {total: 0, groups: []};
 let actions = {};
@@ -16,7 +16,7 @@ let actions = {};
 const newest_key = (group) => `${group.newest}/${group.changed_at}`;
 const group_query = (group, more = {}) => query({problem: group.key, ...more});
 
-// A group names its newest job by its number alone; null where the job is gone meanwhile.
+// Loads the newest job of a group, which the group gives only by number. Returns null if the job no longer exists.
 async function load_newest(group) {
   const known = newest.get(newest_key(group));
   if (known) return known;
@@ -45,7 +45,7 @@ async function toggle(key) {
     if (group) await load_opened(group);
     show();
   } catch {
-    // the page's own round says what is wrong, and asks again
+    // the page's next round reports the error and asks again
   }
 }
 

@@ -1,4 +1,4 @@
-// The last results: a card for each output, with its picture.
+// The latest results: a card for each output, with its picture.
 
 import {thumbnail} from "./api.js";
 import {button, by_id, element, part, set_text, show_items} from "./dom.js";

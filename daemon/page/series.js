@@ -1,5 +1,5 @@
-// The time slider: every output of one watch, in the order of the sources'
-// names, numbers by value; its picture, and plots of the figures of all.
+// The time slider over all outputs of one watch, sorted by the sources' names with numbers in numeric order. Shows
+// the picture of the chosen output, and plots of the figures of all.
 
 import {get, query, thumbnail} from "./api.js";
 import {by_id, element, offer, set_text} from "./dom.js";
@@ -9,9 +9,9 @@ import {mark_step, prepare_plots, show_plots} from "./plots.js";
 import {open_viewer} from "./viewer.js";
 
 const kPageLength = 200;
-const kLongest = 5000;  // jobs; of more, the latest
+const kLongest = 5000;  // jobs; if there are more, the latest ones
 const kFrame_ms = 200;
-const kLetters = 90;  // of a name; what two lines of the caption hold
+const kLetters = 90;  // letters of a name; fit on two lines of the caption
 
 const order = new Intl.Collator("en", {numeric: true});
 const slider = by_id("series-slider");
@@ -23,12 +23,12 @@ const picture = by_id("series-picture");
 let jobs = new Map();  // of the chosen watch, by id
 let frames = [];       // {job, output, index}
 let shown = "";        // key of the frame in the picture
-let player = 0;        // timer of the one that plays
+let player = 0;        // interval timer of the playback
 let loading = null;    // the load in progress
 
 const key_of = ({job, index}) => `${job.id}/${index}/${job.changed_at}`;
 
-// The latest jobs come first, so reading stops at a page with nothing new in it.
+// The latest jobs come first, so reading stops at a page without new jobs.
 async function load_new(watch, into) {
   for (let offset = 0; offset < kLongest; offset += kPageLength) {
     const page = await get(`/api/jobs?${query({state: "done", watch, limit: kPageLength, offset})}`);
@@ -41,10 +41,10 @@ async function load_new(watch, into) {
   }
 }
 
-/** What all steps of a field have in common: the output's name but for its numbers. */
+/** Returns the name that all steps of a field share: the output's name without its numbers. */
 const field_of = (output) => format.base_name(output.path).replaceAll(/\d+/g, "\u2026");
 
-/** The fields that the jobs' outputs are of, where a source has several; else none. */
+/** Returns the fields of the jobs' outputs if a source has several fields, otherwise none. */
 function fields_of(all) {
   const mixed = [...jobs.values()].some(({outputs}) => new Set(outputs.map(field_of)).size > 1);
   return mixed ? [...new Set(all.map(({output}) => field_of(output)))] : [];
@@ -88,10 +88,10 @@ async function show_frame() {
   if (key === shown) return;
   shown = key;
   const image = await picture_of(frame);
-  if (shown !== key) return;  // another one was asked for meanwhile
+  if (shown !== key) return;  // another frame was requested meanwhile
   picture.replaceChildren(image);
   picture.disabled = !frame.output.thumbnail;
-  picture_of(frames[(place + 1) % frames.length]);  // so that playing need not wait for it
+  picture_of(frames[(place + 1) % frames.length]);  // loads the next picture early, for the playback
 }
 
 function go_to(place) {
@@ -115,7 +115,7 @@ function show_frames() {
   by_id("series").hidden = frames.length === 0;
   by_id("series-empty").hidden = frames.length > 0;
   slider.max = String(Math.max(frames.length - 1, 0));
-  // Whoever looks at the newest step goes on to the next one.
+  // A reader who looks at the newest step moves on to each new one.
   if (at_end && !player) slider.value = slider.max;
   else if (current >= 0) slider.value = String(current);
   if (frames.length < 2) stop();
@@ -182,5 +182,5 @@ watch_choice.addEventListener("change", () => {
   frames = [];
   shown = "";
   slider.value = slider.max;
-  refresh_series().catch(() => {});  // the page's own round says what is wrong
+  refresh_series().catch(() => {});  // the page's next round reports the error
 });

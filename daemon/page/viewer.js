@@ -1,4 +1,4 @@
-// The viewer of an output: has the service start it, waits until it answers, and goes there.
+// Opens the viewer of an output: asks the service to start it, waits until it answers, and goes to its page.
 
 import {get, post} from "./api.js";
 import {button, by_id, set_text} from "./dom.js";
@@ -7,7 +7,7 @@ import * as format from "./format.js";
 const kAgain_ms = 250;
 
 const dialog = by_id("viewer");
-let asked = 0;    // an answer to an earlier question is not shown
+let asked = 0;    // number of requests; only the answer to the latest one is shown
 let wanted = {};  // {job, index, path}
 
 const after = (ms) => new Promise((done) => setTimeout(done, ms));
@@ -49,7 +49,7 @@ export function open_viewer(job, index, path) {
   ask(false);
 }
 
-/** A button that opens the viewer of what `entry()` gives: {job, output, index}. */
+/** Returns a button that opens the viewer of the output that `entry()` returns: {job, output, index}. */
 export function view_button(entry) {
   return button("View", "view control", () => {
     const {job, output, index} = entry();
@@ -57,7 +57,7 @@ export function view_button(entry) {
   });
 }
 
-/** Whether there are viewers at all. */
+/** Hides all view buttons if the service has no viewer. */
 export function offer_viewer({state}) {
   document.body.classList.toggle("no-viewer", state === "off");
 }

@@ -1,4 +1,4 @@
-// The watched directories, each with what became of its files.
+// The watched directories, each with the counts of its jobs.
 
 import {by_id, element, part, set_text, show_items} from "./dom.js";
 import * as format from "./format.js";

@@ -22,7 +22,7 @@ void DiskTurns::await_next() {
   });
 }
 
-// The work stays in the queue while it runs, so that what it asks for comes after it.
+// The piece stays in the queue while it runs, so that a call of take() from within it queues behind it.
 void DiskTurns::run_next() {
   queue_.front()();
   queue_.pop_front();

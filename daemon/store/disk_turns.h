@@ -1,5 +1,5 @@
-// Runs work that waits for the state file's disk on the event loop, one piece at a time: a request that comes meanwhile
-// is answered after one piece, not after all that are queued. Lives on the io_context's thread.
+// Runs work that waits for the state file's disk on the event loop, one piece at a time. A request that comes in
+// between is answered after one piece, not after all queued pieces. Lives on the io_context's thread.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -13,8 +13,8 @@ class DiskTurns {
  public:
   explicit DiskTurns(boost::asio::io_context& io) : timer_(io) {}
 
-  /// Calls `work` after those that are queued, each in a handler of its own and 1 ms after the one before, in which
-  /// what came meanwhile is answered. What it throws leaves the event loop, and nothing else has a turn.
+  /// Calls `work` after the pieces queued before. Each runs in a handler of its own, 1 ms after the one before, so
+  /// that requests are answered in between. An exception of `work` leaves the event loop, and no further piece runs.
   void take(std::function<void()> work);
 
  private:
@@ -23,7 +23,8 @@ class DiskTurns {
 
   boost::asio::steady_timer timer_;
   std::deque<std::function<void()>> queue_;
-  boost::asio::steady_timer::time_point next_ = boost::asio::steady_timer::clock_type::now();  ///< not before this time
+  boost::asio::steady_timer::time_point next_ =
+      boost::asio::steady_timer::clock_type::now();  ///< the next piece does not run before this time
 };
 
 }  // namespace weir

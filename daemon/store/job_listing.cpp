@@ -42,7 +42,7 @@ Job read_job(const Database& database, const Statement& row) {
   job.identity.bytes = row.whole(column++);
   job.identity.mtime_ns = row.integer(column++);
   job.identity.inode = row.whole(column++);
-  job.state = parse_job_state(row.text(column++)).value();  // the table allows no other
+  job.state = parse_job_state(row.text(column++)).value();  // the table allows no other value
   job.attempts = static_cast<int>(row.integer(column++));
   job.discovered_ms = row.integer(column++);
   job.changed_ms = row.integer(column++);
@@ -171,7 +171,7 @@ std::vector<JobListing::Problem> JobListing::with_problems(const std::string& pr
 }
 
 std::vector<JobProblem> JobListing::problems(std::size_t limit) const {
-  // Of a group, SQLite gives the columns of the row that has the largest changed_ms.
+  // In a group, SQLite returns the columns of the row with the largest changed_ms.
   Statement rows = database_.prepare(
       "SELECT problem, count(*), id, max(changed_ms) FROM jobs WHERE problem != '' GROUP BY problem "
       "ORDER BY 4 DESC, 3 DESC LIMIT ?");
@@ -202,7 +202,7 @@ std::map<std::string, JobCounts> JobListing::counts() const {
 std::vector<Job> JobListing::candidates(const std::string& watch, Priority priority, std::size_t limit) const {
   const std::int64_t now = clock_();
   const char* order = priority == Priority::newest ? "DESC" : "ASC";
-  // What changed after now did so before the clock went back.
+  // A job with a change after `now` was changed before the clock was set back.
   Statement rows = database_.prepare(cat(kColumns,
                                          "WHERE watch = ? AND state = 'waiting' AND (due_ms <= ? OR changed_ms > ?) "
                                          "ORDER BY mtime_ns ",

@@ -1,5 +1,4 @@
-// What can be asked of the jobs in the state file. job_store.h moves them from
-// state to state.
+// Queries of the jobs in the state file. job_store.h changes the jobs.
 #pragma once
 
 #include <array>
@@ -21,15 +20,15 @@
 
 namespace weir {
 
-/// Which jobs to list; empty: any.
+/// Selects the jobs to list; an empty member selects all.
 struct JobFilter {
   std::optional<JobState> state;
   std::string watch;
-  std::string text{};     ///< a part of the source's path or of the reason, letter case aside where it is ASCII
-  std::string problem{};  ///< of failed and quarantined ones: JobProblem::key
+  std::string text{};     ///< a part of the source's path or of the reason; ASCII letters match in either case
+  std::string problem{};  ///< JobProblem::key; selects failed and quarantined jobs
 };
 
-/// Failed and quarantined jobs of equal reasons (problem_key.h).
+/// Failed and quarantined jobs with equal reasons (problem_key.h).
 struct JobProblem {
   std::string key;
   std::uint64_t count = 0;
@@ -38,15 +37,15 @@ struct JobProblem {
 
 using JobCounts = std::array<std::uint64_t, kJobStates>;  ///< indexed by JobState
 
-/// Those that a person has to look at.
+/// States of jobs that a person has to look at.
 inline constexpr std::initializer_list<JobState> kProblemStates{JobState::failed, JobState::quarantined};
-/// Those that are forgotten with their source, or their watch.
+/// States of jobs that are forgotten when their source or their watch is gone.
 inline constexpr std::initializer_list<JobState> kForgottenStates{JobState::discovered, JobState::waiting,
                                                                   JobState::failed, JobState::quarantined};
-/// In SQL: "state IN ('waiting')".
+/// Returns the states as an SQL condition: "state IN ('waiting')".
 std::string in_state(std::initializer_list<JobState> states);
 
-/// All throw Error(io) where the file cannot be read.
+/// All functions throw Error(io) if the file cannot be read.
 class JobListing {
  public:
   /// Milliseconds since the epoch.
@@ -54,8 +53,8 @@ class JobListing {
 
   std::optional<Job> job(std::int64_t id) const;
   std::optional<Job> find(const std::string& watch, const std::string& source) const;
-  /// In the order of `order`; where none is given, last changed first, and where only waiting ones are asked for, the
-  /// one longest in the queue first.
+  /// Returns jobs sorted by `order`. Without an order, the last changed job comes first; but if only waiting jobs are
+  /// asked for, the job longest in the queue comes first.
   std::vector<Job> jobs(const JobFilter& filter, std::size_t offset, std::size_t limit,
                         const std::optional<JobOrder>& order = {}) const;
   std::uint64_t count(const JobFilter& filter) const;
@@ -65,14 +64,14 @@ class JobListing {
     std::string source;
     bool operator==(const Problem&) const = default;
   };
-  /// All failed and quarantined jobs, or those of one problem (JobProblem::key), by their IDs.
+  /// Returns all failed and quarantined jobs, or those of one problem (JobProblem::key), sorted by ID.
   std::vector<Problem> with_problems(const std::string& problem) const;
-  /// The first `limit` of them, the one with the newest job first.
+  /// Returns the first `limit` problems; the problem with the newest job comes first.
   std::vector<JobProblem> problems(std::size_t limit) const;
-  /// The first `limit` jobs above the id `after`, in the order of ids, that are done or cancelled for `age_ms`
-  /// milliseconds or longer.
+  /// Returns the first `limit` jobs with an ID above `after`, sorted by ID, that have been done or cancelled for at
+  /// least `age_ms` milliseconds.
   std::vector<Job> over_since(std::int64_t age_ms, std::int64_t after, std::size_t limit) const;
-  /// IDs of those that are done and whose thumbnails have not come, in their order.
+  /// Returns the IDs of done jobs whose thumbnails are missing, sorted.
   std::vector<std::int64_t> unrendered() const;
   struct Source {
     std::int64_t id = 0;
@@ -80,24 +79,24 @@ class JobListing {
     std::int64_t mtime_ns = 0;
     bool operator==(const Source&) const = default;
   };
-  /// Which job sources() goes on behind; as it is made: before the first.
+  /// The job behind which sources() continues; by default, sources() begins with the first job.
   struct SourcePlace {
     std::int64_t mtime_ns = std::numeric_limits<std::int64_t>::min();
     std::int64_t id = 0;
   };
-  /// Of the jobs of `watch` that are in `state`, by time and ID, the first `limit` behind `place`: a piece of what may
-  /// be a hundred thousand.
+  /// Returns the first `limit` jobs of `watch` in `state` behind `place`, sorted by time and ID. There may be a
+  /// hundred thousand jobs, so callers read them in pieces.
   std::vector<Source> sources(const std::string& watch, JobState state, const SourcePlace& place,
                               std::size_t limit) const;
-  /// By watch; watches without jobs are absent.
+  /// Returns the counts by watch; watches without jobs are absent.
   std::map<std::string, JobCounts> counts() const;
-  /// Source bytes of the jobs that wait, by watch; watches without such jobs are absent.
+  /// Returns the source bytes of waiting jobs by watch; watches without waiting jobs are absent.
   std::map<std::string, std::uint64_t> waiting_bytes() const;
-  /// The first `limit` jobs of a watch that are waiting and due, in the order of `priority`.
+  /// Returns the first `limit` jobs of a watch that are waiting and due, in the order of `priority`.
   std::vector<Job> candidates(const std::string& watch, Priority priority, std::size_t limit) const;
-  /// Milliseconds until a waiting job that is not due yet becomes so; nullopt: there is none.
+  /// Returns the milliseconds until the next waiting job becomes due; nullopt if no waiting job has a delay.
   std::optional<std::int64_t> next_due_ms() const;
-  /// Milliseconds since the job longest in the queue became complete; nullopt: none is waiting.
+  /// Returns the milliseconds since the job longest in the queue became complete; nullopt if no job is waiting.
   std::optional<std::int64_t> queue_age_ms() const;
 
  protected:

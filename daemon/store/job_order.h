@@ -1,4 +1,4 @@
-// In which order jobs are listed.
+// The order in which jobs are listed.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@ namespace weir {
 
 enum class JobOrderKey { changed, discovered, source, state, watch, bytes, seconds };
 
-/// As the API says them, indexed by JobOrderKey.
+/// Names in the API, indexed by JobOrderKey.
 inline constexpr std::array<std::string_view, 7> kJobOrderKeys{"changed", "discovered", "source", "state",
                                                                "watch",   "bytes",      "seconds"};
 

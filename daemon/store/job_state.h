@@ -1,4 +1,4 @@
-// Where a job stands, and the names that the state file, the API and the metrics know it by.
+// The state of a job, and its names in the state file, the API and the metrics.
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@ inline constexpr std::string_view job_state_name(JobState state) {
   return kJobStateNames[static_cast<std::size_t>(state)];
 }
 
-/// The state of that name; none where no state is called so.
+/// Returns the state of this name; none if there is no such state.
 inline constexpr std::optional<JobState> parse_job_state(std::string_view name) {
   for (std::size_t i = 0; i < kJobStates; ++i) {
     if (kJobStateNames[i] == name) return static_cast<JobState>(i);

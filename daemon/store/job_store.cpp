@@ -13,32 +13,32 @@ namespace {
 
 constexpr std::int64_t kFirstDelay_ms = 5'000;
 constexpr std::int64_t kLongestDelay_ms = 600'000;
-constexpr int kKilledExit = 128 + SIGKILL;     ///< mostly by the system, that is out of memory
-constexpr std::int64_t kClockStep_ms = 1'000;  ///< smaller steps back are the clock's being kept right
+constexpr int kKilledExit = 128 + SIGKILL;     ///< mostly by the system when it is out of memory
+constexpr std::int64_t kClockStep_ms = 1'000;  ///< smaller steps back are ordinary clock corrections
 constexpr int kJournalPages = 1000;            ///< 4 MiB
 constexpr std::size_t kLogTailBytes = 4096;
 
-/// What a job starts anew with, besides its state.
+/// Resets all columns but the state, for a job that starts anew.
 constexpr const char* kFresh =
     "attempts = 0, queued_ms = 0, due_ms = 0, started_ms = 0, finished_ms = 0, seconds = 0, bytes_read = 0, "
     "bytes_written = 0, peak_rss_bytes = 0, exit_code = 0, reason = '', problem = '', log_tail = '', forced = 0, "
     "rendering = 0, source_bytes = 0";
 
-/// Has the jobs that follow it their turn at once; binds the time.
+/// Makes the jobs that the rest of the statement selects due at once; binds the time.
 constexpr const char* kAtOnce =
     "UPDATE jobs SET state = CASE state WHEN 'waiting' THEN 'waiting' ELSE 'discovered' END, due_ms = 0, problem = '', "
     "rendering = 0, changed_ms = ? ";
-/// The same, and what went before counts no more.
+/// The same, and resets the attempts and the reason.
 const std::string kRetried = cat(kAtOnce, ", attempts = 0, reason = '' ");
 
-/// What the state that a job comes to makes of its problem; binds is_problem() of that state and the reason.
+/// Sets `problem` for the job's new state; binds is_problem() of this state and the reason.
 constexpr const char* kProblem = "problem = CASE WHEN ? THEN problem_key(source, ?) ELSE '' END ";
 
 bool is_problem(JobState state) {
   return std::find(kProblemStates.begin(), kProblemStates.end(), state) != kProblemStates.end();
 }
 
-// Times later than `now` become `now`.
+// Sets times later than `now` to `now`.
 void end_the_future(const Database& database, std::int64_t now) {
   database.prepare("UPDATE jobs SET due_ms = 0 WHERE changed_ms > ?").bind(now).step();
   for (const char* time : {"changed_ms", "discovered_ms", "queued_ms"}) {
@@ -84,7 +84,8 @@ JobStore::JobStore(Opened opened, Clock clock)
   interrupted.bind(latest_).step();
 }
 
-// Where the clock was set back, what is dated later than now would be the newest for as long as it was ahead.
+// If the clock was set back, times later than now are corrected. Otherwise their jobs would count as the newest until
+// the clock has caught up.
 std::int64_t JobStore::now() {
   const std::int64_t now = clock_();
   if (now < latest_ - kClockStep_ms) end_the_future(database_, now);
@@ -296,7 +297,7 @@ bool JobStore::remove(std::int64_t id) {
 
 void JobStore::forget_other_watches(const std::vector<Watched>& watches) {
   Transaction transaction(database_);
-  // A condition with a term for each watch is too deep for SQLite from a thousand on.
+  // A condition with one term per watch is too deep for SQLite from a thousand terms on.
   database_.run("CREATE TEMPORARY TABLE kept (watch TEXT, below TEXT, PRIMARY KEY (watch, below)) WITHOUT ROWID");
   for (const Watched& watch : watches) {
     const std::string below = watch.directory.ends_with('/') ? watch.directory : watch.directory + '/';

@@ -8,14 +8,15 @@ namespace {
 
 bool is_word_letter(char c) { return is_digit(c) || is_letter(c); }
 
-// Whether the text does not go on on either side as a word would.
+// Returns whether the text at `at` is a whole word, not a part of a longer one.
 bool is_word_at(std::string_view text, std::size_t at, std::size_t length) {
   const bool begins = at == 0 || !is_word_letter(text[at - 1]) || !is_word_letter(text[at]);
   const std::size_t end = at + length;
   return begins && (end == text.size() || !is_word_letter(text[end]) || !is_word_letter(text[end - 1]));
 }
 
-// Outputs begin with the name of their source up to its first dot: "/out/rho.nvdb", "/out/rho_density_3.nvdb.partial".
+// Replaces the names of outputs. They begin with the name of the source up to its first dot: "/out/rho.nvdb",
+// "/out/rho_density_3.nvdb.partial".
 void hide_outputs(std::string& text, std::string_view source_name) {
   constexpr std::string_view kEnding = ".nvdb";
   const std::string begin = cat('/', source_name.substr(0, source_name.find('.')));
@@ -40,7 +41,7 @@ std::string_view without_path(std::string_view source, std::string_view reason) 
 std::string problem_key(std::string_view source, std::string_view reason) {
   std::string text(without_path(source, reason));
   const std::string_view source_name = source.substr(source.rfind('/') + 1);
-  // The path or the name may stand further inside, too, as that of the output's.
+  // The path or the name may also stand further inside, for example within the name of an output.
   for (const std::string_view name : {source, source_name}) {
     if (name.empty()) continue;
     for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + 1)) {

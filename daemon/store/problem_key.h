@@ -1,5 +1,4 @@
-// Which problems are the same one: a run that writes a thousand cut files has one
-// problem, not a thousand.
+// Decides which problems are the same: a run that writes a thousand truncated files has one problem, not a thousand.
 #pragma once
 
 #include <string>
@@ -7,11 +6,12 @@
 
 namespace weir {
 
-/// `reason`, that of the job of `source`, without the source's path, with the names of its outputs as "*" and every
-/// number as "#"; in ASCII, so that it comes back from a client as it went, and never empty.
+/// Returns the key of the problem `reason` of the job of `source`: the reason without the source's path, with the
+/// names of its outputs as "*" and every number as "#". The key is ASCII, so that a client returns it unchanged, and
+/// never empty.
 std::string problem_key(std::string_view source, std::string_view reason);
 
-/// `reason` without the source's path in front.
+/// Returns `reason` without the source's path in front.
 std::string_view without_path(std::string_view source, std::string_view reason);
 
 }  // namespace weir

@@ -10,8 +10,8 @@
 namespace weir {
 namespace {
 
-constexpr int kMostJournalPages = 16'384;  // 64 MiB: checkpoint() was not called for long
-constexpr int kBusyTimeout_ms = 1000;      // a daemon that was just killed may not be gone yet
+constexpr int kMostJournalPages = 16'384;  // 64 MiB; reached only if checkpoint() was not called for long
+constexpr int kBusyTimeout_ms = 1000;      // a daemon that was just killed may still be ending
 
 const char* remedy(int status) {
   switch (status) {
@@ -28,14 +28,14 @@ const char* remedy(int status) {
 
 int after_commit(void* pages_of_connection, sqlite3* database, const char* /*schema*/, int pages) {
   *static_cast<int*>(pages_of_connection) = pages;
-  // The commit itself is done: what goes wrong here, the next checkpoint says.
+  // The commit itself is done. A fault of this checkpoint is reported by the next one.
   if (pages >= kMostJournalPages)
     sqlite3_wal_checkpoint_v2(database, nullptr, SQLITE_CHECKPOINT_PASSIVE, nullptr, nullptr);
   return SQLITE_OK;
 }
 
 [[noreturn]] void fail(const Connection& connection, int status) {
-  const int primary = status & 0xff;  // the rest is SQLite's extended code
+  const int primary = status & 0xff;  // the other bits are SQLite's extended code
   const std::string message =
       cat(connection.path, ": cannot use the state: ", sqlite3_errmsg(connection.database.get()), remedy(primary));
   if (primary == SQLITE_CORRUPT || primary == SQLITE_NOTADB) throw CorruptDatabase(ErrorKind::io, message);
@@ -59,7 +59,7 @@ Statement::Statement(Connection& connection, std::string_view sql) : connection_
 
 Statement::~Statement() {
   if (!statement_) return;
-  sqlite3_reset(statement_.get());  // its result is the error that step() has thrown
+  sqlite3_reset(statement_.get());  // returns the error that step() has thrown already
   sqlite3_clear_bindings(statement_.get());
   const char* sql = sqlite3_sql(statement_.get());
   connection_->idle.emplace(sql, std::move(statement_));
@@ -80,7 +80,7 @@ Statement& Statement::bind(double value) {
 }
 
 Statement& Statement::bind(std::string_view value) {
-  // An empty view may hold a null pointer, which SQLite would take for NULL.
+  // An empty view may hold a null pointer, which SQLite takes for NULL.
   const char* text = value.empty() ? "" : value.data();
   check(sqlite3_bind_text(statement_.get(), ++bound_, text, static_cast<int>(value.size()), SQLITE_TRANSIENT));
   return *this;
@@ -123,13 +123,13 @@ Database::Database(const std::string& path) : connection_(std::make_unique<Conne
   connection_->database.reset(database);
   if (database == nullptr) throw Error(ErrorKind::io, cat(path, ": cannot use the state: out of memory"));
   if (status != SQLITE_OK) {
-    // SQLite keeps the reason of its last try alone, which is to open for reading.
+    // SQLite reports only the failure of its last try, which is to open for reading.
     const int again = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
     if (again < 0) throw io_error(path, "use the state", errno);
     close(again);
     fail(*connection_, status);
   }
-  // SQLite opens what it may not write for reading.
+  // SQLite opens a file for reading if it may not write to it.
   if (sqlite3_db_readonly(database, "main") == 1) {
     throw Error(ErrorKind::io, cat(path, ": cannot use the state: it is read-only", remedy(SQLITE_READONLY)));
   }
@@ -175,13 +175,13 @@ void Database::checkpoint() {
 Transaction::Transaction(Database& database) : database_(database) { database_.run("SAVEPOINT weir"); }
 
 Transaction::~Transaction() {
-  // After some failures, a full disk among them, SQLite has rolled back by itself.
+  // After some failures, for example a full disk, SQLite has rolled back by itself.
   if (committed_ || !database_.in_transaction()) return;
   try {
     database_.run("ROLLBACK TO weir");
     database_.run("RELEASE weir");
   } catch (const Error&) {
-    // Nothing was committed, and what failed before is being reported.
+    // Nothing was committed, and the first failure is being reported.
   }
 }
 

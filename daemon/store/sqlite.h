@@ -1,5 +1,5 @@
-// SQLite behind values that close themselves. Errors are weir's: one line with
-// the file, what was done, SQLite's reason.
+// SQLite behind objects that close themselves. Errors are weir's: one line with the file, the action and SQLite's
+// reason.
 #pragma once
 
 #include <sqlite3.h>
@@ -16,14 +16,14 @@
 
 namespace weir {
 
-/// A failure that says the file's content is damaged or no database.
+/// An error that says that the file is damaged or no database.
 class CorruptDatabase : public Error {
  public:
   using Error::Error;
 };
 
-/// What a Database and its statements share: the connection, and statements that wait to be used again, because to
-/// prepare one takes longer than most take to run.
+/// The state that a Database and its statements share: the connection, and idle statements for later use, because
+/// preparing a statement takes longer than running most of them.
 struct Connection {
   struct Close {
     void operator()(sqlite3* open) const { sqlite3_close_v2(open); }
@@ -35,11 +35,11 @@ struct Connection {
 
   std::string path;
   std::unique_ptr<sqlite3, Close> database;
-  int journal_pages = 0;                                   ///< of the write-ahead journal, after the last commit
-  std::multimap<std::string, Prepared, std::less<>> idle;  ///< by their SQL
+  int journal_pages = 0;                                   ///< pages of the write-ahead journal after the last commit
+  std::multimap<std::string, Prepared, std::less<>> idle;  ///< by SQL text
 };
 
-/// One run of a prepared statement: bind the parameters in order, then step through the rows. Must not outlive its
+/// One run of a prepared statement: bind the parameters in order, then step through the rows. Must not outlive the
 /// database.
 class Statement {
  public:
@@ -55,7 +55,7 @@ class Statement {
   Statement& bind(std::string_view value);
   Statement& bind(const std::optional<double>& value);  ///< absent: NULL
 
-  /// Whether there is a (further) row.
+  /// Moves to the next row. Returns whether there is one.
   bool step();
 
   bool is_null(int column) const;
@@ -75,30 +75,30 @@ class Statement {
 
 class Database {
  public:
-  /// Opens or makes the file. Throws Error(io); CorruptDatabase appears with the first statement.
+  /// Opens or creates the file. Throws Error(io). CorruptDatabase is thrown only by the first statement.
   explicit Database(const std::string& path);
 
   Statement prepare(std::string_view sql) const { return {*connection_, sql}; }
   /// Runs a statement without parameters to its end.
   void run(std::string_view sql) const;
-  /// From now on SQL may call NAME(a, b) of two texts: what `function`, which must not throw but for want of memory,
-  /// says of them.
+  /// Lets SQL call NAME(a, b) with two texts from now on; the result is that of `function`, which may throw only
+  /// std::bad_alloc.
   void add_function(const char* name, std::string (*function)(std::string_view, std::string_view));
-  /// Rows changed by the last statement.
+  /// Returns the number of rows that the last statement changed.
   int changes() const { return sqlite3_changes(connection_->database.get()); }
-  /// Pages in the write-ahead journal after the last commit. Commits copy them to the database by themselves only where
-  /// they are many; until then it is checkpoint() that does, because that takes flushes of the disk of its own.
+  /// Returns the pages in the write-ahead journal after the last commit. A commit copies them to the database only if
+  /// there are very many. Otherwise checkpoint() does it, because this takes disk flushes of its own.
   int journal_pages() const { return connection_->journal_pages; }
   void checkpoint();
-  /// Whether a transaction is open.
+  /// Returns whether a transaction is open.
   bool in_transaction() const { return sqlite3_get_autocommit(connection_->database.get()) == 0; }
 
  private:
-  std::unique_ptr<Connection> connection_;  ///< at an address that statements may keep
+  std::unique_ptr<Connection> connection_;  ///< on the heap, because statements keep its address
 };
 
-/// All statements between its making and commit(), or none. Transactions may be nested: the inner one takes back
-/// its own statements, the outermost one writes to disk.
+/// Commits all statements between its construction and commit(), or none of them. Transactions may be nested: an
+/// inner one undoes its own statements, and the outermost one writes to disk.
 class Transaction {
  public:
   explicit Transaction(Database& database);

@@ -9,7 +9,7 @@ namespace weir {
 namespace {
 
 constexpr const char* kTables[] = {
-    // A row for every source of every watch; names and units as in struct Job.
+    // One row for each source of each watch; names and units as in struct Job.
     R"(CREATE TABLE jobs (
          id INTEGER PRIMARY KEY AUTOINCREMENT,
          watch TEXT NOT NULL,
@@ -39,11 +39,11 @@ constexpr const char* kTables[] = {
          rendering INTEGER NOT NULL DEFAULT 0,
          source_bytes INTEGER NOT NULL DEFAULT 0,
          UNIQUE (watch, source)) STRICT)",
-    // What the scheduler and /metrics ask for.
+    // Indexes for the scheduler and /metrics.
     "CREATE INDEX jobs_queue ON jobs (watch, state, mtime_ns)",
     "CREATE INDEX jobs_age ON jobs (queued_ms) WHERE state = 'waiting'",
     "CREATE INDEX jobs_due ON jobs (due_ms) WHERE state = 'waiting'",
-    // What people list.
+    // Indexes for the lists that people ask for.
     "CREATE INDEX jobs_waiting ON jobs (watch, bytes) WHERE state = 'waiting'",
     "CREATE INDEX jobs_problem ON jobs (problem, changed_ms) WHERE problem != ''",
     "CREATE INDEX jobs_latest ON jobs (changed_ms)", "CREATE INDEX jobs_latest_of_state ON jobs (state, changed_ms)",
@@ -60,7 +60,7 @@ constexpr const char* kTables[] = {
          max REAL,
          PRIMARY KEY (job, place)) STRICT, WITHOUT ROWID)"};
 
-/// What makes a file of version 1 one of version 2, ...
+/// Changes that turn a file of version 1 into one of version 2; the next arrays do the same for later versions.
 constexpr const char* kFromVersion1[] = {
     "ALTER TABLE jobs ADD COLUMN forced INTEGER NOT NULL DEFAULT 0",
     "ALTER TABLE jobs ADD COLUMN problem TEXT NOT NULL DEFAULT ''",
@@ -73,7 +73,7 @@ constexpr const char* kFromVersion1[] = {
 
 constexpr const char* kFromVersion2[] = {"ALTER TABLE jobs ADD COLUMN rendering INTEGER NOT NULL DEFAULT 0"};
 
-// Options that an output's bytes do not depend on are no part of the text any more: what was done stays done.
+// The text leaves out options that do not change an output's bytes: done jobs stay done.
 constexpr const char* kFromVersion3[] = {
     "UPDATE jobs SET options = replace(replace(replace(options, ' --direct-io=auto', ''), ' --direct-io=on', ''), "
     "' --direct-io=off', '') WHERE instr(options, ' --direct-io=') > 0"};
@@ -111,8 +111,8 @@ void check_ours(const Database& database, const std::string& path) {
 
 Database open_whole(const std::string& path) {
   Database database(path);
-  // Held until the file is closed: a second daemon is refused, and WAL needs no memory shared between processes,
-  // which network file systems do not have.
+  // The lock is held until the file is closed. So a second daemon is refused, and WAL needs no memory shared between
+  // processes, which network file systems do not have.
   database.run("PRAGMA locking_mode=EXCLUSIVE");
   check_ours(database, path);  // before anything is written
   database.run("PRAGMA journal_mode=WAL");
@@ -144,14 +144,15 @@ Database open_whole(const std::string& path) {
   return database;
 }
 
-/// The first PATH.corrupt-N that is free.
+/// Moves the file to the first free PATH.corrupt-N and returns that name.
 std::string move_aside(const std::string& path) {
   std::string aside;
   for (int n = 1; aside.empty() || std::filesystem::exists(aside); ++n) aside = cat(path, ".corrupt-", n);
   std::error_code error;
   std::filesystem::rename(path, aside, error);
   if (error) throw io_error(path, cat("move the damaged state to ", aside), error.value());
-  for (const char* journal : {"-wal", "-shm", "-journal"}) {  // rarely there; of no use to the new file
+  for (const char* journal :
+       {"-wal", "-shm", "-journal"}) {  // the journals rarely exist, and are of no use to the new file
     std::filesystem::rename(path + journal, aside + journal, error);
   }
   return aside;
@@ -160,7 +161,7 @@ std::string move_aside(const std::string& path) {
 }  // namespace
 
 Database open_state_file(const std::string& path, std::string& notice) {
-  refuse_foreign_state(path);  // before SQLite may remove its journal
+  refuse_foreign_state(path);  // checked before SQLite may remove the file's journal
   try {
     return open_whole(path);
   } catch (const CorruptDatabase& damage) {

@@ -1,5 +1,4 @@
-// The SQLite file that jobs are kept in: its tables and their version, and what
-// opening does where the file is damaged, foreign or of a newer weir.
+// The SQLite file of the jobs: its tables and their version, and how a damaged, foreign or newer file is opened.
 #pragma once
 
 #include <string>
@@ -9,13 +8,14 @@
 
 namespace weir {
 
-/// PRAGMA user_version. A change of the tables raises it and brings older files up to date in open_state_file.
+/// PRAGMA user_version. A change of the tables raises this number, and open_state_file updates older files.
 inline constexpr int kStateVersion = 5;
 
-/// Opens `path`, made if missing, for this process alone, durable at every commit. A damaged file is moved aside
-/// to PATH.corrupt-N (its journal with it) and an empty one made; `notice` then says so in one line, else it is
-/// left alone. Throws Error(input) for a newer version, another program's database and any other file that is no state
-/// file (refuse_foreign_state), Error(io) where the file cannot be opened or another process has it open.
+/// Opens `path` for this process alone, durable at every commit; creates the file if it is missing. A damaged file is
+/// moved aside to PATH.corrupt-N (with its journal), and an empty one is created; `notice` then says so in one line,
+/// otherwise it is unchanged. Throws Error(input) for a newer version, another program's database or any other file
+/// that is no state file (refuse_foreign_state), Error(io) if the file cannot be opened or another process has it
+/// open.
 Database open_state_file(const std::string& path, std::string& notice);
 
 }  // namespace weir

@@ -19,20 +19,21 @@ namespace {
 
 using boost::system::error_code;
 
-constexpr std::uint64_t kViewers = 4;  // at a time
+constexpr std::uint64_t kViewers = 4;  // viewing pages at the same time
 
-// How a viewer's memory is divided: forecasts of conversions, a process of its own, where there is enough; the program;
-// then as much for pictures as for voxels. One viewer's picture takes so many bytes a pixel while it is drawn and
-// encoded, which is one at a time; another's waits in its sums and as PNG. As measured: docs/limits.md.
+// How a viewer's memory is divided. Forecasts of conversions, a separate process, get a share if there is enough. Of
+// the rest, the program takes kProgramBytes, and pictures and voxels get half each. One viewer's picture takes
+// kDrawnPixelBytes per pixel while it is drawn and encoded, one viewer at a time; the pictures of the others wait as
+// sums and PNG and take kWaitingPixelBytes. Measured: docs/limits.md.
 constexpr std::uint64_t kProgramBytes = std::uint64_t{16} << 20;
 constexpr std::uint64_t kDrawnPixelBytes = 34;
 constexpr std::uint64_t kWaitingPixelBytes = 28;
-constexpr std::uint64_t kMostPixels = std::uint64_t{4} << 20;  // of weir view
+constexpr std::uint64_t kMostPixels = std::uint64_t{4} << 20;  // the most that weir view accepts
 
 struct ViewerShares {
-  std::uint64_t forecast_bytes;  ///< 0: there is none
+  std::uint64_t forecast_bytes;  ///< 0: no forecasts
   std::uint64_t voxel_bytes;
-  std::uint64_t pixels;  ///< of a picture
+  std::uint64_t pixels;  ///< pixels of a picture
 };
 
 ViewerShares shares_of(std::uint64_t memory) {
@@ -70,7 +71,7 @@ JobViewer::Opened JobViewer::open(const std::string& file, bool force) {
   return Opened::made;
 }
 
-// The one before has given its memory back before the next one takes any.
+// Ends the old viewer first, so that its memory is free before the new one takes any.
 void JobViewer::start(const std::string& file) {
   stop();
   file_ = file;
@@ -108,7 +109,7 @@ void JobViewer::heard(std::string_view line) {
     const ListenAddress address = parse_listen_address(told.at("address").get<std::string>());
     token_ = told.at("token").get<std::string>();
     address_ = {boost::asio::ip::make_address(address.host), address.port};
-  } catch (const std::exception&) {  // of the progress of something, which nothing here makes
+  } catch (const std::exception&) {  // a line about progress, which does not matter here
     return;
   }
   state_ = ViewerState::ready;
@@ -146,7 +147,7 @@ std::size_t JobViewer::sockets() const {
 
 bool JobViewer::looked_at() const { return sockets() > 0; }
 
-// Who has asked for it is not overtaken on the way.
+// Returns whether somebody uses the viewer or waits for it: a requester keeps it until the page connects.
 bool JobViewer::taken() const {
   return state_ == ViewerState::starting || looked_at() ||
          (state_ == ViewerState::ready && std::chrono::steady_clock::now() < awaited_until_);
@@ -157,7 +158,8 @@ void JobViewer::end() {
   stop();
 }
 
-// From now on, unless somebody looks or comes back. Files of the page alone keep nothing alive.
+// Ends the viewer after the idle time unless somebody looks again. Connections for files of the page do not keep it
+// alive.
 void JobViewer::end_when_idle() {
   wait_.cancel();
   if (looked_at()) return;
@@ -183,7 +185,7 @@ void JobViewer::look_at_memory() {
 }
 
 void JobViewer::relay(Relay::Client client, const UpgradeRequest& request) {
-  if (state_ != ViewerState::ready) return;  // it ended a moment ago; the client asks again
+  if (state_ != ViewerState::ready) return;  // the viewer ended a moment ago; the client asks again
   const bool looks = boost::beast::websocket::is_upgrade(request);
   if (!looks) make_room_for_a_file();
   const auto relay = std::make_shared<Relay>(std::move(client), forwarded_request(request, token_),
@@ -196,7 +198,8 @@ void JobViewer::relay(Relay::Client client, const UpgradeRequest& request) {
   relay->start(address_, looks ? std::nullopt : std::optional(times_.page));
 }
 
-// Whoever takes files of the page slowly, or not at all, keeps them from nobody.
+// Closes the oldest connection for a page file if there are too many, so that slow clients keep nobody else from
+// them.
 void JobViewer::make_room_for_a_file() {
   if (connections_.size() - sockets() < kMostViewerFiles) return;
   const auto oldest =

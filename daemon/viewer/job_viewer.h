@@ -1,6 +1,6 @@
-// The one viewer of outputs: `weir view` as a process of its own, started when somebody asks for it, ended when nobody
-// is connected for a while, when it takes more memory than it may, and with the service. It is reached through the
-// service alone, which passes bytes on; its token is known to nobody else. One thread, that of the io_context.
+// The only viewer of outputs: `weir view` in a process of its own. It starts when somebody asks for it. It ends when
+// nobody is connected for a while, when it takes more memory than it may, and with the service. Clients reach it only
+// through the service, which passes bytes on; nobody else knows its token. One thread: the io_context's.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -22,39 +22,40 @@
 namespace weir {
 
 struct JobViewerTimes {
-  std::chrono::milliseconds start{60'000};  ///< until it answers
-  std::chrono::milliseconds open{20'000};   ///< from its answer, for the page of who asked for it to come
-  std::chrono::milliseconds idle{300'000};  ///< while nobody looks
-  std::chrono::milliseconds look{1'000};    ///< between two looks at its memory
-  std::chrono::milliseconds page{30'000};   ///< for one file of its page to be taken
+  std::chrono::milliseconds start{60'000};  ///< limit from the start to the first answer
+  std::chrono::milliseconds open{20'000};   ///< limit from the answer until the page of the requester connects
+  std::chrono::milliseconds idle{300'000};  ///< without a viewing page, until the viewer ends
+  std::chrono::milliseconds look{1'000};    ///< between two checks of its memory
+  std::chrono::milliseconds page{30'000};   ///< limit for sending one file of its page
 };
 
 class JobViewer {
  public:
   enum class Opened { made, off, taken };
 
-  /// `log` must outlive the object. `program` is the `weir` that views. Nothing is started before configure().
+  /// `log` must outlive the object. `program` is the path of the `weir` that runs the viewer. Nothing is started
+  /// before configure().
   JobViewer(boost::asio::io_context& io, const EventLog& log, std::string program, JobViewerTimes times = {});
   ~JobViewer() { end(); }
   JobViewer(const JobViewer&) = delete;
   JobViewer& operator=(const JobViewer&) = delete;
 
-  /// Takes memory, threads and priority from now on; a viewer that runs with others ends.
+  /// Uses the memory, threads and priority of `service` from now on. A viewer that runs with other settings ends.
   void configure(const ServiceConfig& service);
-  /// Has a viewer of the series of `file`, a NanoVDB file: the one that runs, where it is of that series, else a new
-  /// one in its place. That one is left to those who look at it, or have asked for it and are on their way, unless
-  /// `force`. A failure to start is in view().
+  /// Opens a viewer of the series of `file`, a NanoVDB file. A running viewer of this series is kept; a viewer of
+  /// another series is replaced. But unless `force`, it is not replaced while somebody looks at it, or has asked for
+  /// it and is about to connect. view() reports a failure to start.
   Opened open(const std::string& file, bool force);
   ViewerView view() const;
-  /// Answers a connection by the viewer, which is ready.
+  /// Lets the viewer, which must be ready, answer the connection.
   void relay(Relay::Client client, const UpgradeRequest& request);
-  /// Ends it and all connections to it; none is started from here on.
+  /// Ends the viewer and all connections to it; no viewer starts afterwards.
   void end();
 
  private:
   struct Connection {
     std::shared_ptr<Relay> relay;
-    bool looks = false;  // a WebSocket: somebody has the page open
+    bool looks = false;  // a WebSocket, which means that somebody has the page open
   };
 
   void start(const std::string& file);
@@ -80,12 +81,13 @@ class JobViewer {
   ViewerState state_ = ViewerState::none;
   std::string reason_;
   std::string file_;
-  std::chrono::steady_clock::time_point awaited_until_;  // a page of who asked for it; over when it has come
+  std::chrono::steady_clock::time_point
+      awaited_until_;  // until when the requester's page is awaited; in the past when it has connected
   std::string token_;
   boost::asio::ip::tcp::endpoint address_;
   std::unique_ptr<WorkerProcess> worker_;
   std::vector<Connection> connections_;
-  boost::asio::steady_timer wait_;  // for its start, or for the end of the idle time
+  boost::asio::steady_timer wait_;  // for the start limit, or for the idle limit
   boost::asio::steady_timer look_;
 };
 

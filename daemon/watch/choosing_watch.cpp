@@ -14,8 +14,8 @@
 namespace weir {
 namespace {
 
-/// Chooses how to watch, when the directory is there and each time that it comes back, and hands what is known of its
-/// files from one way to the other.
+/// Chooses the method when the directory is there and each time it comes back. The table of known files passes from
+/// one method to the other.
 class ChoosingWatch final : public DirectoryWatch {
  public:
   ChoosingWatch(boost::asio::io_context& io, const WatchConfig& config, WatchListener listener, OpenInotify open)
@@ -38,7 +38,8 @@ class ChoosingWatch final : public DirectoryWatch {
  private:
   void pass_on(const FileEvent& event) {
     listener_.event(event);
-    // Another file system may be there now. The watch that speaks cannot be replaced while it does.
+    // The new directory may be on another file system. The watch is replaced later, because it is the caller of this
+    // function.
     if (event.kind == FileEventKind::root_back) later([this] { use(choice()); });
   }
 
@@ -58,7 +59,7 @@ class ChoosingWatch final : public DirectoryWatch {
       polling_because(cat("lies on ", kind.name, ", where inotify does not see what other machines do"));
       return WatchMethod::poll;
     } catch (const Error&) {
-      return WatchMethod::inotify;  // it is not there: chosen again when it is
+      return WatchMethod::inotify;  // the directory is missing; the method is chosen again when it is back
     }
   }
 

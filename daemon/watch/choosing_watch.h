@@ -1,4 +1,4 @@
-// Watches a directory by inotify where the file system's changes pass through this machine, elsewhere by polling.
+// Watches a directory by inotify if this machine sees all changes of its file system, otherwise by polling.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -10,12 +10,12 @@
 
 namespace weir {
 
-/// Watches config.directory from now on by config.watch. automatic: inotify where it sees everything
-/// (file_system_kind.h), else polling; inotify whose limits are reached becomes polling and a notice says so.
-/// Events of one file are merged within 20 ms, by polling within config.poll_interval_s.
+/// Watches config.directory from now on by the method config.watch. The method `automatic` uses inotify if it sees
+/// all changes (file_system_kind.h), otherwise polling. If inotify's limits are reached, polling replaces it, and a
+/// notice says so. Events of one file are merged within 20 ms, with polling within config.poll_interval_s.
 std::unique_ptr<DirectoryWatch> make_directory_watch(boost::asio::io_context& io, const WatchConfig& config,
                                                      WatchListener listener);
-/// The same with another inotify than the system's, for tests.
+/// For tests: uses the given inotify instead of the system's.
 std::unique_ptr<DirectoryWatch> make_directory_watch(boost::asio::io_context& io, const WatchConfig& config,
                                                      WatchListener listener, OpenInotify open_inotify);
 

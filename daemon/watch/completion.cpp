@@ -39,7 +39,7 @@ std::optional<Index3> extent_of(std::string_view dims) {
   return Index3{*x, *y, *z};
 }
 
-// Of the file `path`, where it is a raw one whose shape is known. What convert will refuse has no expected size.
+// Returns the size of `path` if it is a raw file of known shape. A shape that convert will refuse gives no size.
 std::optional<std::uint64_t> expected_bytes(const WatchConfig& watch, const std::string& path) {
   const std::optional<RawName> name = parse_raw_name(path);
   const auto dims = watch.convert_option("dims");
@@ -55,7 +55,7 @@ std::optional<std::uint64_t> expected_bytes(const WatchConfig& watch, const std:
   }
 }
 
-// Other programs, and AMReX in its checkpoints, have files called Header, too.
+// Checks the content, because other programs, and AMReX in its checkpoints, also write files called Header.
 bool is_plotfile_header(const std::string& path) {
   std::array<char, kMagicBytes> head{};
   std::ifstream file(path, std::ios::binary);
@@ -64,7 +64,7 @@ bool is_plotfile_header(const std::string& path) {
   return recognises_amrex(path, bytes);
 }
 
-// False where nothing is there.
+// Returns false if nothing is there.
 bool look_at(const std::string& path, struct stat& status) {
   if (::stat(path.c_str(), &status) == 0) return true;
   if (says_missing(errno)) return false;
@@ -81,7 +81,7 @@ CompletionRules completion_rules(const WatchConfig& watch, const std::string& pa
   rules.expected_bytes = expected_bytes(watch, path);
   rules.marker = watch.marker;
   if (rules.policy == Completion::rename || rules.policy == Completion::close) {
-    // What may not be read is for the job to say.
+    // An unreadable file counts as having no writer; its job reports the fault.
     rules.has_writer = [path] { return ::access(path.c_str(), R_OK) == 0 && FileWriters(path).some(); };
   }
   if (is_plotfile_head(path)) rules.unwritten = [path] { return unwritten_part(path); };
@@ -97,7 +97,7 @@ FileSample sample_file(const std::string& path, const std::string& marker,
   struct stat status {};
   if (!look_at(path, status) || !S_ISREG(status.st_mode)) return sample;
   if (is_plotfile_head(path) && !is_plotfile_header(path)) return sample;
-  // A hierarchy may have the metadata of both versions.
+  // A hierarchy may have the metadata of both Zarr versions; only one of the two files is its head.
   if (is_store_head(path)) {
     if (head_in_directory(std::string(named_by_head(path))) != path) return sample;
     const auto identity = identify_source(path, convert_options);
@@ -115,10 +115,10 @@ void FileCompletion::happened(FileEventKind kind, Time now) {
   const bool of_writer = kind == FileEventKind::written || kind == FileEventKind::closed;
   found_open_ = found_open_ && (of_writer || kind == FileEventKind::found);
   switch (kind) {
-    case FileEventKind::found:  // a look sees what a writer did whose close will be seen
+    case FileEventKind::found:  // a look also sees changes of a writer whose close will still be seen
       if (writer_ != Writer::open) writer_ = Writer::unknown;
       break;
-    case FileEventKind::overflow:  // it may have been closed
+    case FileEventKind::overflow:  // the close may be among the lost events
       writer_ = Writer::unknown;
       break;
     case FileEventKind::created:
@@ -147,7 +147,7 @@ void FileCompletion::happened(FileEventKind kind, Time now) {
 CompletionAnswer FileCompletion::look(const FileSample& sample, Time now) {
   CompletionAnswer answer = by_policy(sample, now);
   if (answer.state != State::complete) {
-    if (rules_.store) rules_.store->stop();  // others may take its turn
+    if (rules_.store) rules_.store->stop();  // other hierarchies may take the turn
     return answer;
   }
   if (rules_.store) {
@@ -184,7 +184,7 @@ CompletionAnswer FileCompletion::by_policy(const FileSample& sample, Time now) {
       if (!sample.marked) return {State::waiting, Time::max(), cat("its marker *", rules_.marker, " is not there")};
       return when_unchanged(kCloseSettle, now);
     case Completion::size:
-      if (rules_.store || rules_.unwritten) return when_unchanged(rules_.settle, now);  // a directory
+      if (rules_.store || rules_.unwritten) return when_unchanged(rules_.settle, now);  // the source is a directory
       if (!rules_.expected_bytes) {
         return {State::broken, {}, "its size cannot be known; name it NAME_XxYxZ_TYPE.raw or give dims and type"};
       }
@@ -218,7 +218,7 @@ CompletionAnswer FileCompletion::when_renamed(Time now) {
   if (writer_ != Writer::unknown && !found_open_) {
     return {State::waiting, Time::max(), "it has not got its name by a rename"};
   }
-  // It was there already.
+  // The file was there when the watch found it.
   if (rules_.has_writer && rules_.has_writer()) {
     found_open_ = true;
     return {State::waiting, asked_again(now), kHasWriter};

@@ -1,9 +1,8 @@
-// Reports what happens to the sources in a watched directory, for as long as it lives: every source, and nothing that
-// PathFilter refuses. choosing_watch.h makes one.
+// Reports the events of the sources in a watched directory as long as the object lives: of every source, and of no
+// file that PathFilter refuses. choosing_watch.h creates the object.
 //
-// The directory may be missing, go away, come back or be replaced at any time. What cannot be
-// watched (a directory without permission, a link that leaves the tree) is said once, in one line, and
-// everything else goes on.
+// The directory may be missing, go away, come back or be replaced at any time. A part that cannot be watched (a
+// directory without permission, a link that leaves the tree) is reported once, in one line; everything else goes on.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +14,8 @@
 
 namespace weir {
 
-/// Both are called from handlers of the io_context only, never from within a call of the watch; they must not
-/// destroy it.
+/// Both functions are called only from handlers of the io_context, never from within a call of the watch. They must
+/// not destroy the watch.
 struct WatchListener {
   std::function<void(const FileEvent&)> event;
   std::function<void(const std::string& line)> notice;  ///< for the log: "PATH: what, what to do"
@@ -24,20 +23,20 @@ struct WatchListener {
 
 struct WatchFigures {
   std::uint64_t overflows = 0;    ///< of the inotify queue
-  std::uint64_t directories = 0;  ///< being watched
-  std::uint64_t files = 0;        ///< sources there are, as far as known
-  bool looked = false;            ///< all that was there at first is known
+  std::uint64_t directories = 0;  ///< that are watched
+  std::uint64_t files = 0;        ///< known sources
+  bool looked = false;            ///< the first look at the directory has ended
 };
 
 class DirectoryWatch {
  public:
   virtual ~DirectoryWatch() = default;
-  /// inotify or poll: what is used now.
+  /// Returns the method in use: inotify or poll.
   virtual WatchMethod method() const = 0;
-  /// Whether the directory is there, as of the last look.
+  /// Returns whether the directory was there at the last look.
   virtual bool up() const = 0;
   virtual WatchFigures figures() const = 0;
-  /// What prevented inotify may be over (a limit was raised): chooses the way to watch again.
+  /// Chooses the method again, because what prevented inotify may be over (for example, a limit was raised).
   virtual void choose_again() {}
 };
 

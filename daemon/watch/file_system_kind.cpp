@@ -21,7 +21,7 @@ struct Known {
   bool local;
 };
 
-// Numbers: statfs(2), linux/magic.h; Lustre, GPFS, BeeGFS, ZFS and bcachefs: their own sources.
+// Sources of the numbers: statfs(2) and linux/magic.h; for Lustre, GPFS, BeeGFS, ZFS and bcachefs, their own sources.
 constexpr std::array kKnown{
     Known{0xEF53, "ext4", true},         Known{0x58465342, "xfs", true},
     Known{0x9123683E, "btrfs", true},    Known{0x2FC12FC1, "zfs", true},
@@ -36,7 +36,7 @@ constexpr std::array kKnown{
     Known{0x01021997, "9p", false},      Known{0x00C36400, "ceph", false},
     Known{0x19830326, "beegfs", false},  Known{0x20030528, "orangefs", false},
     Known{0x5346414F, "afs", false},     Known{0x6B414653, "afs", false},
-    Known{0x01161970, "gfs2", false},  // on a disk that other machines write too
+    Known{0x01161970, "gfs2", false},  // on a disk that other machines write to as well
     Known{0x7461636F, "ocfs2", false},
 };
 
@@ -51,7 +51,7 @@ FileSystemKind file_system_kind(std::uint64_t statfs_type) {
 }
 
 FileSystemKind file_system_kind(const struct statfs& status) {
-  // f_type is signed, and the numbers of some are above 2^31.
+  // f_type is signed, and some type numbers are above 2^31.
   return file_system_kind(std::uint64_t{static_cast<std::uint32_t>(status.f_type)});
 }
 

@@ -1,4 +1,4 @@
-// Whether inotify sees what happens on a file system.
+// Tells whether inotify sees all changes on a file system.
 #pragma once
 
 #include <cstdint>
@@ -9,14 +9,15 @@ struct statfs;
 namespace weir {
 
 struct FileSystemKind {
-  std::string name;               ///< "ext4", "nfs", ..., or "type 0x1234" where weir does not know it
+  std::string name;               ///< "ext4", "nfs", ..., or "type 0x1234" if weir does not know it
   bool sees_all_changes = false;  ///< all changes pass through this machine's kernel, so that inotify reports them
 };
 
-/// By the number statfs gives as its type. What is not known to be local is not: polling is slower and never wrong.
+/// Returns the kind for the type number of statfs. An unknown type counts as not local, because polling is slower but
+/// never misses a change.
 FileSystemKind file_system_kind(std::uint64_t statfs_type);
 FileSystemKind file_system_kind(const struct statfs& status);
-/// Of the file system that `path` lies on. Throws Error(io) where it cannot be asked.
+/// Returns the kind of the file system of `path`. Throws Error(io) if the system cannot tell.
 FileSystemKind file_system_kind(const std::string& path);
 
 }  // namespace weir

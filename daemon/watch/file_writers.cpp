@@ -29,7 +29,7 @@ bool sees_all_changes(int file) {
   return local;
 }
 
-// False in a container: its /proc has its own processes alone.
+// Returns false in a container, because its /proc shows only its own processes.
 bool sees_all_processes() {
   constexpr ino_t kNamespaceOfTheSystem = 0xEFFFFFFC;  // PROC_PID_INIT_INO of Linux
   struct stat own {};
@@ -40,7 +40,7 @@ bool is_process(const fs::path& directory) {
   return directory.filename().string().find_first_not_of("0123456789") == std::string::npos;
 }
 
-// Whether /proc/PID/fdinfo/FD says that the descriptor may write: "flags:\t0100002", in octal.
+// Returns whether /proc/PID/fdinfo/FD allows writing. The line is "flags:\t0100002", in octal.
 bool may_write(const fs::path& information) {
   std::ifstream lines(information);
   std::string word;
@@ -53,7 +53,7 @@ bool may_write(const fs::path& information) {
   return false;
 }
 
-// `error` where its descriptors cannot be listed.
+// Sets `error` if the descriptors of the process cannot be listed.
 bool has_descriptor(const fs::path& process, const struct stat& file, std::error_code& error) {
   for (fs::directory_iterator at(process / "fd", error), end; !error && at != end; at.increment(error)) {
     struct stat status {};
@@ -66,7 +66,8 @@ bool has_descriptor(const fs::path& process, const struct stat& file, std::error
   return false;
 }
 
-// Lines of /proc/PID/maps are "7f00-7f10 rw-s 00000000 fe:00 1234 PATH", device and inode the fourth and fifth.
+// Lines of /proc/PID/maps are "7f00-7f10 rw-s 00000000 fe:00 1234 PATH"; device and inode are the fourth and fifth
+// field.
 bool has_mapping(const fs::path& process, const struct stat& file) {
   std::ifstream maps(process / "maps");
   std::string line;
@@ -89,19 +90,21 @@ bool has_mapping(const fs::path& process, const struct stat& file) {
 }  // namespace
 
 FileWriters::FileWriters(const std::string& path) : file_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
-  // The kernel tells the holder of a lease by this signal that a writer waits; the lease ends with the object anyway.
+  // The kernel sends SIGIO to the holder of a lease when a writer waits. The signal is ignored, because the lease
+  // ends with the object anyway.
   static const auto ignored = std::signal(SIGIO, SIG_IGN);
   static_cast<void>(ignored);
   struct stat status {};
   if (!file_ || ::fstat(file_.get(), &status) != 0) {
-    some_ = true;  // one with a lease for writing, as file servers take it, is the reason to expect
+    some_ = true;  // most likely, the open fails because a file server holds a lease for writing
     return;
   }
   if (::fcntl(file_.get(), F_SETLEASE, F_RDLCK) == 0) {
     leased_ = true;
     return;
   }
-  // A file server grants no lease without one of its own, whoever writes.
+  // On a file server's file, the kernel refuses the lease without a lease of the server, whether or not a program
+  // writes. So EAGAIN means a writer only on a local file system.
   const bool local = sees_all_changes(file_.get());
   if (errno == EAGAIN && local) {
     some_ = true;
@@ -118,7 +121,7 @@ FileWriters::FileWriters(const std::string& path) : file_(::open(path.c_str(), O
   }
 }
 
-// Of a lease that is being broken, the kernel tells what it is to become.
+// While a lease is being broken, F_GETLEASE returns the type that it is to become.
 bool FileWriters::one_waits() const { return leased_ && ::fcntl(file_.get(), F_GETLEASE) != F_RDLCK; }
 
 FileWriters::~FileWriters() {

@@ -1,5 +1,5 @@
-// Whether a program has a file open for writing, or maps it so: then it may still be written to, whatever its size and
-// times say.
+// Finds out whether a program has a file open for writing, or maps it writable. If so, the file may still change,
+// whatever its size and times say.
 #pragma once
 
 #include <string>
@@ -8,11 +8,11 @@
 
 namespace weir {
 
-/// Looks once, at construction. On local file systems it takes a read lease (fcntl(2), F_SETLEASE), which the kernel
-/// grants where nobody writes, mappings counted, and to a file's owner or a process with CAP_LEASE only; while the
-/// object lives, whoever opens the file for writing waits, and one_waits() tells of it. Where there is no lease to be
-/// had (a file server's file, another user's), it looks through the descriptors and mappings of the processes that it
-/// may look at.
+/// Looks once, at construction. On a local file system it takes a read lease (fcntl(2), F_SETLEASE). The kernel
+/// grants the lease only if nobody writes to the file or maps it writable, and only to the file's owner or a process
+/// with CAP_LEASE. While the object holds the lease, a program that opens the file for writing waits, and one_waits()
+/// reports it. If no lease is available (a file server's file, another user's file), the object searches the
+/// descriptors and mappings of all processes that it may read.
 class FileWriters {
  public:
   explicit FileWriters(const std::string& path);
@@ -20,12 +20,14 @@ class FileWriters {
   FileWriters(const FileWriters&) = delete;
   FileWriters& operator=(const FileWriters&) = delete;
 
-  /// A writer was found, or the file cannot be opened.
+  /// Returns whether a writer was found or the file cannot be opened.
   bool some() const { return some_; }
-  /// Whether all writers on this machine would have been found; never those of other clients of a file server.
+  /// Returns whether the look would have found every writer on this machine. It never finds those of other clients of
+  /// a file server.
   bool known() const { return known_; }
-  /// Whether a program has asked for the file for writing since: it waits for this object's end, or gave up, or lost
-  /// its patience (/proc/sys/fs/lease-break-time). False where there was no lease to be had.
+  /// Returns whether a program has tried to open the file for writing since construction. The program waits for the
+  /// end of this object, or has given up, or its wait timed out (/proc/sys/fs/lease-break-time). False if there is no
+  /// lease.
   bool one_waits() const;
 
  private:

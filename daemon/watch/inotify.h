@@ -1,4 +1,4 @@
-// One queue of inotify, behind an interface that a test can make fail.
+// One inotify queue, behind an interface that a test can make fail.
 #pragma once
 
 #include <cstddef>
@@ -12,18 +12,19 @@ namespace weir {
 class Inotify {
  public:
   virtual ~Inotify() = default;
-  /// Becomes readable when there are events. Owned by this object.
+  /// Returns the descriptor, which becomes readable when there are events. This object owns it.
   virtual int descriptor() const = 0;
-  /// Watches `directory` for all that happens to it and to its entries. The watch's number, which is that of an
-  /// earlier one of the same directory; -errno where there is none.
+  /// Watches `directory` for all events of it and of its entries. Returns the watch's number, or -errno if there is
+  /// no watch. If the same directory is watched already, returns the number of that watch.
   virtual int add(const std::string& directory) = 0;
-  /// A watch that is no more is no error.
+  /// Removes a watch. It is no error if the watch does not exist any more.
   virtual void remove(int watch) = 0;
-  /// Whole events (inotify_event and name), as many as there are and fit; the bytes, 0 where there are none.
+  /// Reads as many whole events (inotify_event and name) as there are and fit. Returns the number of bytes; 0 if
+  /// there are no events.
   virtual std::size_t read(std::span<std::byte> events) = 0;
 };
 
-/// The system's. Throws Error(io) where it gives no further queue.
+/// Opens a queue of the system. Throws Error(io) if the system refuses another queue.
 std::unique_ptr<Inotify> open_system_inotify();
 
 using OpenInotify = std::function<std::unique_ptr<Inotify>()>;

@@ -20,9 +20,10 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kRootInterval{1000};
 constexpr std::chrono::minutes kTreeLookInterval{5};
-/// Between two readings of the queue: events of one file are merged, and a busy writer costs little.
+/// Time between two readings of the queue. Events of one file are merged within it, so that a busy writer costs
+/// little.
 constexpr milliseconds kBatchTime{20};
-/// After an overflow: a storm goes on for a while.
+/// Wait after an overflow, because a storm of events goes on for a while.
 constexpr milliseconds kAfterOverflow{100};
 constexpr std::size_t kReadsPerBatch = 32;
 constexpr std::size_t kBufferBytes = std::size_t{64} << 10U;
@@ -70,7 +71,7 @@ void InotifyWatch::report_failure() { give_up_(failure_); }
 void InotifyWatch::close(State next) {
   batch_timer_.cancel();
   look_timer_.cancel();
-  if (stream_.is_open()) stream_.release();  // cancels its wait; inotify_ closes it
+  if (stream_.is_open()) stream_.release();  // cancels the wait; inotify_ closes the descriptor
   inotify_.reset();
   directories_.clear();
   watches_.clear();
@@ -107,7 +108,7 @@ void InotifyWatch::look_at_root() {
       start();
       break;
     case SourceTable::Root::same:
-      if (state_ == State::absent) {  // another watch had been there before
+      if (state_ == State::absent) {  // another kind of watch was used before
         start();
       } else if (state_ == State::watching && !looking_ && (!watches_.contains({}) || look_is_due())) {
         look_at_all(true);
@@ -134,7 +135,7 @@ void InotifyWatch::look_on() {
 
 void InotifyWatch::step() {
   const bool more = look_.step();
-  if (!is_open()) return;  // it failed on the way
+  if (!is_open()) return;  // it failed during the step
   if (more) return after(look_timer_, milliseconds(0), &InotifyWatch::step);
   looking_ = false;
   if (!std::exchange(looking_at_all_, false)) return;
@@ -149,13 +150,15 @@ void InotifyWatch::enter(const std::string& directory) {
   const int watch = inotify_->add(path);
   if (watch < 0) {
     const int error = -watch;
-    // Removed or replaced meanwhile, which is an event of its own; or out of reach, which the listing says.
+    // The directory was removed or replaced, which is an event of its own; or it is unreachable, which the listing
+    // reports.
     if (error == ENOENT || error == ENOTDIR || error == ELOOP || error == EACCES || error == ENAMETOOLONG) return;
     return fail(error == ENOSPC ? cat("inotify watches no further directory (the limit is fs.inotify.max_user_watches)")
                                 : cat("inotify cannot watch ", path, ": ", std::generic_category().message(error)));
   }
   const auto [at, is_new] = directories_.try_emplace(watch, directory);
-  if (!is_new && at->second != directory) {  // it had another name, whose removal is an event on its way
+  if (!is_new &&
+      at->second != directory) {  // the directory had another name; the event of that name's removal is still to come
     const std::string before = std::exchange(at->second, directory);
     if (same_directory(table_.absolute(before), path)) {
       return fail(
@@ -218,13 +221,13 @@ void InotifyWatch::take(const inotify_event& event, std::string_view name) {
     return;
   }
   const auto at = directories_.find(event.wd);
-  if (at == directories_.end()) return;  // left meanwhile
+  if (at == directories_.end()) return;  // the directory was left before
   const std::string directory = at->second;
   if (name.empty()) {
-    if (directory.empty()) {  // the root's own end is seen by looking at it
+    if (directory.empty()) {  // look_at_root() notices the end of the root itself
       after(root_timer_, milliseconds(0), &InotifyWatch::look_at_root);
     } else if ((event.mask & IN_UNMOUNT) != 0) {
-      state_ = State::lost;  // what was below the mount is to be watched now: begin anew
+      state_ = State::lost;  // the directories below the mount point must be watched now: begin anew
     }
     if ((event.mask & IN_IGNORED) != 0) {
       if (const auto own = watches_.find(directory); own != watches_.end() && own->second == event.wd) {
@@ -240,13 +243,13 @@ void InotifyWatch::take(const inotify_event& event, std::string_view name) {
 
 void InotifyWatch::take_directory(std::uint32_t mask, const std::string& path) {
   if (!table_.filter().enters_directory(path)) return;
-  deliver();  // in the order things happened
+  deliver();  // keeps the order of the events
   if ((mask & (IN_MOVED_FROM | IN_DELETE)) != 0) {
     leave(path);
     table_.removed_below(path);
   }
-  if ((mask & IN_ATTRIB) != 0 && watches_.contains(path)) return;  // it was readable before
-  // After a removal too: another directory may have this name already, and have been told of before.
+  if ((mask & IN_ATTRIB) != 0 && watches_.contains(path)) return;  // the directory was readable before
+  // Also after a removal: another directory may already have this name, and its event may have come before.
   look_.add(path);
   look_on();
 }
@@ -268,7 +271,7 @@ void InotifyWatch::take_file(std::uint32_t mask, const std::string& path) {
   if ((mask & (IN_MOVED_FROM | IN_DELETE)) != 0) changes_.emplace_back(FileEventKind::removed, path);
 }
 
-// Of what happened to a file several times, the last time is told.
+// Delivers the changes. If a change of a file came several times, only the last one is delivered.
 void InotifyWatch::deliver() {
   std::set<Change> told;
   std::vector<Change> last;
@@ -284,7 +287,7 @@ void InotifyWatch::deliver() {
       continue;
     }
     table_.removed(path);
-    look_.look_at(path);  // another file may have this name already, and have been told of before
+    look_.look_at(path);  // another file may already have this name, and its event may have come before
   }
 }
 

@@ -1,13 +1,13 @@
-// Watching by inotify. What makes it lose nothing:
-//   1. A directory is watched first and listed then: what comes before the watch is in the list, what comes
-//      after it is an event. So for the first look, and for each directory that is made or moved in later.
-//   2. Where events were lost (the queue overflowed) all begins anew: a new queue, new watches, a look at everything.
-//   3. The directory itself is looked at every second: its being renamed, mounted over or replaced along with
-//      its parents is no event of its own.
-//   4. Every five minutes everything is looked at all the same, for what inotify does not tell: a
-//      mount below the directory, the target of a link that changed.
+// Watching by inotify. These rules make sure that no change is lost:
+//   1. A directory is watched first and listed afterwards: an entry made before the watch is in the list, an entry
+//      made after it is an event. This holds for the first look and for each directory made or moved in later.
+//   2. When events are lost (the queue overflowed), everything begins anew: a new queue, new watches, a full look.
+//   3. The directory itself is looked at every second, because inotify reports no event when its parents are renamed,
+//      mounted over or replaced.
+//   4. A full look is made every five minutes for changes that inotify does not report: a mount below the directory,
+//      or a changed target of a link.
 //
-// States, and what leads from one to another:
+// States and their transitions:
 //
 //   state      the queue  what it means
 //   absent     closed     the directory is not there
@@ -25,7 +25,7 @@
 //   lost                scanning  0.1 s later, with a new queue
 //   any but absent      failed    a watch or a queue is refused, or the queue fails
 //
-// Beside that, where the queue is open, single directories and files are looked at (TreeLook) that events tell of.
+// Besides, while the queue is open, single directories and files that events name are looked at (TreeLook).
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -55,8 +55,8 @@ class InotifyWatch final : public DirectoryWatch {
  public:
   using GiveUp = std::function<void(const std::string& reason)>;
 
-  /// `give_up` is called, from a handler, when inotify cannot do it; then nothing is reported any more, and the
-  /// callee may destroy the watch once it returned. `table` must outlive the object.
+  /// `give_up` is called from a handler when inotify cannot do the work. Afterwards nothing is reported, and the
+  /// owner may destroy the watch once `give_up` has returned. `table` must outlive the object.
   InotifyWatch(boost::asio::io_context& io, SourceTable& table, OpenInotify open, GiveUp give_up);
   ~InotifyWatch() override;
 
@@ -98,17 +98,17 @@ class InotifyWatch final : public DirectoryWatch {
   std::string failure_;  ///< why it failed
   std::unique_ptr<Inotify> inotify_;
   boost::asio::posix::stream_descriptor stream_;
-  std::unordered_map<int, std::string> directories_;  ///< by watch; relative paths
-  std::map<std::string, int> watches_;                ///< by directory
-  std::vector<Change> changes_;                       ///< of this batch, to be delivered
+  std::unordered_map<int, std::string> directories_;  ///< relative paths by watch number
+  std::map<std::string, int> watches_;                ///< watch numbers by directory
+  std::vector<Change> changes_;                       ///< changes of this batch, to be delivered
   TreeLook look_;
   bool looking_ = false;         ///< look_timer_ waits for the next step of look_
-  bool looking_at_all_ = false;  ///< the whole tree is among what it looks at
+  bool looking_at_all_ = false;  ///< the whole tree is part of the present look
   std::chrono::steady_clock::time_point looked_at_all_{};
   boost::asio::steady_timer root_timer_;
   boost::asio::steady_timer look_timer_;
   boost::asio::steady_timer batch_timer_;
-  std::shared_ptr<void> alive_ = std::make_shared<char>();  ///< a handler may be on its way when the watch ends
+  std::shared_ptr<void> alive_ = std::make_shared<char>();  ///< a queued handler may outlive the object
 };
 
 }  // namespace weir

@@ -20,14 +20,14 @@ namespace fs = std::filesystem;
 
 std::string_view name_of(std::string_view path) { return path.substr(path.find_last_of('/') + 1); }
 
-// What AMReX calls a directory that it still writes, and one that had the name of a new one.
+// Returns whether AMReX still writes the plotfile's directory, or has renamed it to make room for a new one.
 bool is_no_plotfile_yet(std::string_view path) {
   if (!is_plotfile_head(path)) return false;
   const std::string_view name = name_of(named_by_head(path));
   return name.ends_with(".temp") || name.find(".old.") != std::string_view::npos;
 }
 
-// A plotfile goes by its directory's name, and so does a Zarr hierarchy.
+// Compares a plotfile or a Zarr hierarchy by the name of its directory.
 bool matches(const std::vector<std::string>& patterns, std::string_view path) {
   if (is_plotfile_head(path) || is_store_head(path)) path = named_by_head(path);
   return std::any_of(patterns.begin(), patterns.end(),
@@ -44,7 +44,7 @@ bool is_known_format(std::string_view path, bool any_raw) {
       source_formats(), [&](const SourceFormat& format) { return ends_with_one_of(name, format.watched_endings); });
 }
 
-// What a conversion writes beside a volume, or is in the middle of writing.
+// Returns whether a conversion writes such a file beside a volume, as a result or temporarily.
 bool is_of_weir(std::string_view path) {
   const auto is_beside_volume = [&](std::string_view ending) { return path.ends_with(cat(".nvdb", ending)); };
   return path.ends_with(kPartialEnding) || is_beside_volume(kSidecarEnding) || is_beside_volume(kSidecarPreviousEnding);
@@ -81,7 +81,7 @@ PathFilter::PathFilter(const WatchConfig& watch)
   }
 }
 
-// Relative to the tree, without links; none where it lies elsewhere.
+// Returns `path` relative to the tree with links resolved; none if it lies elsewhere.
 std::optional<std::string> PathFilter::in_tree(const std::string& path) const {
   const fs::path relative = real_path(path).lexically_relative(real_directory_);
   if (relative.empty() || *relative.begin() == "..") return std::nullopt;

@@ -1,4 +1,4 @@
-// Watching by polling: where other machines make changes, and where inotify's limits are reached.
+// Watching by polling, for file systems that other machines change and for when inotify's limits are reached.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -14,7 +14,7 @@ namespace weir {
 
 class PollWatch final : public DirectoryWatch {
  public:
-  /// Begins a look WatchConfig::poll_interval_s after the end of the one before. `table` must outlive the object.
+  /// Begins each look WatchConfig::poll_interval_s after the end of the look before. `table` must outlive the object.
   PollWatch(boost::asio::io_context& io, SourceTable& table);
 
   WatchMethod method() const override { return WatchMethod::poll; }
@@ -28,10 +28,10 @@ class PollWatch final : public DirectoryWatch {
 
   SourceTable& table_;
   TreeLook look_;
-  std::uint64_t directories_ = 0;  ///< in the last look that ended
-  std::uint64_t entered_ = 0;      ///< in this one
+  std::uint64_t directories_ = 0;  ///< number of directories in the last complete look
+  std::uint64_t entered_ = 0;      ///< number of directories entered so far in this look
   boost::asio::steady_timer timer_;
-  std::shared_ptr<void> alive_ = std::make_shared<char>();  ///< a handler may be on its way when the watch ends
+  std::shared_ptr<void> alive_ = std::make_shared<char>();  ///< a queued handler may outlive the object
 };
 
 }  // namespace weir

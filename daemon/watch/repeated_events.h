@@ -1,4 +1,5 @@
-// Events that wait, while they cannot be written down: as many as there are files, not as there are writes.
+// Bounds the queue of events that cannot be written to the state file yet: it grows with the number of files, not
+// with the number of writes.
 #pragma once
 
 #include <cstddef>
@@ -8,8 +9,8 @@
 
 namespace weir {
 
-/// Of equal ones keeps the last: what counts is what happened to a file, and what happened to it last. Returns how many
-/// of the first `first` are left, which stand first again.
+/// Keeps only the last of equal events: only what happened to a file, and what happened last, matters. Returns how
+/// many of the first `first` events remain; they stay at the front.
 std::size_t drop_repeated_events(std::deque<FileEvent>& events, std::size_t first);
 
 }  // namespace weir

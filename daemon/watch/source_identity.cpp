@@ -28,8 +28,8 @@ namespace weir {
 namespace {
 
 constexpr std::array kMetadata{"zarr.json", ".zarray", ".zgroup", ".zattrs", ".zmetadata"};
-/// Larger documents are taken for those of groups, which may hold the metadata of all that is in them: nothing is
-/// missed where an array is looked into.
+/// Larger documents are taken for groups, which may hold the metadata of all their members. A large array that is
+/// looked into by mistake loses nothing.
 constexpr std::size_t kMostArrayBytes = std::size_t{16} << 10U;
 
 bool exists(const std::string& path) {
@@ -41,7 +41,7 @@ bool is_node(const std::string& directory) {
   return exists(directory + "/zarr.json") || exists(directory + "/.zarray") || exists(directory + "/.zgroup");
 }
 
-/// Whether the metadata in `directory` are those of an array, in which there are chunks alone.
+/// Returns whether the metadata in `directory` are those of an array, which holds only chunks.
 bool is_array(const std::string& directory) {
   if (exists(directory + "/.zarray")) return true;
   const std::string document = directory + "/zarr.json";
@@ -54,16 +54,17 @@ bool is_array(const std::string& directory) {
   text.resize(static_cast<std::size_t>(file.gcount()));
   try {
     return json_string(parse_zarr_json(text, document), "node_type") == "array";
-  } catch (const Error&) {  // it may still be being written
+  } catch (const Error&) {  // the document may still be being written
     return false;
   }
 }
 
-/// What may be groups and arrays directly in `directory`, by their names; none where it cannot be listed whole, or has
-/// more than `entries`, which those that it has are taken from.
+/// Returns the entries directly in `directory`, sorted by name, that may be groups and arrays. Returns none if the
+/// directory cannot be listed completely or has more than `entries` entries. Subtracts the listed entries from
+/// `entries`.
 std::set<std::string> directories_in(const std::string& directory, std::size_t& entries) {
   std::set<std::string> found;
-  std::error_code error;  // what may not be listed cannot be converted either
+  std::error_code error;  // a directory that may not be listed cannot be converted either
   for (std::filesystem::directory_iterator entry(directory, error), end; !error && entry != end;
        entry.increment(error)) {
     if (entries == 0) return {};
@@ -74,8 +75,8 @@ std::set<std::string> directories_in(const std::string& directory, std::size_t& 
   return error ? std::set<std::string>() : found;
 }
 
-/// Adds the groups and arrays in that of `top`, the outer ones first, until there are kMostWatchedNodes or `entries`
-/// are listed.
+/// Adds the groups and arrays in `top`, the outer ones first, until `nodes` has kMostWatchedNodes or `entries` are
+/// listed.
 void add_nodes_in(const std::string& top, std::size_t& entries, std::set<std::string>& nodes) {
   std::vector<std::string> groups{top};
   while (!groups.empty()) {
@@ -94,8 +95,8 @@ void add_nodes_in(const std::string& top, std::size_t& entries, std::set<std::st
   }
 }
 
-/// The directory `store`, those in it on the way to the datasets that the options name, and the groups and arrays in
-/// these; of a pattern, and where none is named, all in the store.
+/// Returns the directory `store`, the directories on the way to the datasets that the options name, and the groups
+/// and arrays in these. If a name is a pattern, or none is given, returns all groups and arrays in the store.
 std::set<std::string> node_directories(const std::string& store, const std::vector<std::string>& convert_options) {
   std::set<std::string> directories{store};
   std::vector<std::string> tops;
@@ -143,7 +144,7 @@ std::optional<FileIdentity> identify_source(const std::string& path, const std::
   }
   const Digest digest = piece_digest(std::as_bytes(std::span(states)));
   std::memcpy(&identity->inode, digest.bytes.data(), sizeof identity->inode);
-  identity->inode >>= 1U;  // SQLite's integers have a sign
+  identity->inode >>= 1U;  // SQLite's integers are signed
   return identity;
 }
 

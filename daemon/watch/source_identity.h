@@ -1,4 +1,4 @@
-// The identity of a source: of a file, or of the metadata of a Zarr hierarchy in a directory.
+// The identity of a source: a single file, or the metadata of a Zarr hierarchy in a directory.
 #pragma once
 
 #include <cstddef>
@@ -10,19 +10,23 @@
 
 namespace weir {
 
-/// Groups and arrays of one hierarchy whose metadata are looked at, those on the way to what is named aside.
+/// The most groups and arrays of one hierarchy whose metadata are looked at. Directories on the way to a named
+/// dataset are looked at in any case.
 inline constexpr std::size_t kMostWatchedNodes = 256;
-/// Entries of directories that are listed to find them, over one hierarchy: an event loop looks at them, which has
-/// others to serve.
+/// The most directory entries that are listed to find groups and arrays, per hierarchy. The limit exists because the
+/// event loop makes these looks and serves others, too.
 inline constexpr std::size_t kMostListedEntries = 4096;
 
-/// That of the file at `path`, as identify() says. Where the file is the head of a Zarr hierarchy: also of the metadata
-/// of the groups and arrays on the way to what --dataset or --magnitude among `convert_options` name, and in it, or of
-/// all, kMostWatchedNodes in any case, where they name none: the total size, the newest time, and an inode that is
-/// another one wherever a state of those files is. So a step that is appended to an array of a group makes another
-/// identity. Arrays are not looked into, groups are, the outer ones first and in the order of their names; of the group
-/// with which they have more than kMostListedEntries entries, and of those behind it, none is taken, so that the order
-/// in which a directory is listed does not matter. None where one of the files cannot be looked at.
+/// Returns the identity of the file at `path` as identify() does. If the file is the head of a Zarr hierarchy, the
+/// identity also covers the metadata of its groups and arrays: `bytes` is their total size, `mtime_ns` the newest
+/// time, and `inode` a hash of the states of all these files. So a step that is appended to an array of a group
+/// changes the identity.
+///   Covered: the groups and arrays on the way to the datasets that --dataset or --magnitude among `convert_options`
+///   name, and those in them. If the options name none, those of the whole hierarchy. At most kMostWatchedNodes.
+///   Order: groups are looked into, arrays are not; outer groups come first, in the order of their names.
+///   Limit: a group whose entries exceed the rest of kMostListedEntries gives no member, and neither do the groups
+///   behind it. So the result does not depend on the order that a directory is listed in.
+/// Returns none if one of the files cannot be looked at.
 std::optional<FileIdentity> identify_source(const std::string& path, const std::vector<std::string>& convert_options);
 
 }  // namespace weir

@@ -12,7 +12,7 @@
 namespace weir {
 namespace {
 
-// Of no file.
+// The identity of no real file.
 constexpr FileIdentity kNoFile{std::numeric_limits<std::uint64_t>::max(), std::numeric_limits<std::int64_t>::min(), 0};
 
 }  // namespace
@@ -47,7 +47,7 @@ SourceTable::Root SourceTable::look_at_root() {
   filter_ = PathFilter(watch_);
   if (first) return Root::another;
   listener_.event({FileEventKind::root_back, watch_.directory});
-  // What is there is found once more, though it is as it was: its jobs may be forgotten by now.
+  // Every file is reported as found again, even if it is unchanged, because its job may have been forgotten.
   for (auto& [path, known] : known_) known.identity = kNoFile;
   return Root::another;
 }
@@ -61,7 +61,8 @@ void SourceTable::end_look() {
   events_tell_ = true;
   looked_ = true;
   for (auto at = known_.begin(); at != known_.end();) {
-    // Directories that could not be listed this time, and renames while they were, hide files that are there.
+    // A file that the look did not see may still be there: its directory could not be listed, or was renamed during
+    // the look.
     struct stat status {};
     const bool gone = at->second.look != look_ && ::lstat(absolute(at->first).c_str(), &status) != 0 &&
                       (errno == ENOENT || errno == ENOTDIR);
@@ -78,8 +79,8 @@ void SourceTable::saw(const std::string& path, const FileIdentity& identity) {
   Known& known = at->second;
   const bool during_look = known.look == look_;
   known.look = look_;
-  if (!is_new && !known.identity && (events_tell_ || during_look)) {  // events told of it
-    // What changes from now on, and no event tells of, is found by the next look.
+  if (!is_new && !known.identity && (events_tell_ || during_look)) {  // events have reported the file already
+    // A later change that no event reports is found by the next look.
     if (!during_look) known.identity = identity;
     return;
   }

@@ -1,5 +1,5 @@
-// The sources that are known in a watched directory, and the reports of what
-// changes: the part that inotify and polling share, and that one hands to the other.
+// The known sources of a watched directory, and the reports of their changes. Inotify and polling share this part,
+// and one passes it to the other.
 #pragma once
 
 #include <sys/types.h>
@@ -26,32 +26,33 @@ class SourceTable {
 
   const WatchConfig& watch() const { return watch_; }
   const PathFilter& filter() const { return filter_; }
-  /// Whether a file of this name is kept here.
+  /// Returns whether files of this name are kept in the table.
   bool wants(std::string_view path) const;
 
-  /// Whether the directory is there, as of the last look_at_root.
+  /// Returns whether the directory was there at the last look_at_root().
   bool up() const { return root_.has_value(); }
   enum class Root { missing, same, another };
-  /// Looks whether the directory is there and is the one it was, and reports what changed. Of one that is back, or
-  /// another one, the filter's paths are looked up anew, and the next look reports every file as found.
+  /// Looks whether the directory is there and is the same as before, and reports a change. If it is back or is
+  /// another one, the filter's paths are resolved again, and the next look reports every file as found.
   Root look_at_root();
 
-  /// Begins a look at everything; what neither saw() nor happened() names before end_look is looked for once more and
-  /// then reported as removed. `events_tell`: files that events came of since the look before are left to
-  /// events, as after end_look; else those from before begin_look are reported once more, for events may have been
-  /// lost.
+  /// Begins a look at everything. A file that neither saw() nor happened() names before end_look() is looked for once
+  /// more, and reported as removed if it is gone. If `events_tell`, the look does not report files that had events
+  /// since the last look; this also holds after end_look(). Otherwise events may have been lost: then the look
+  /// reports files as found if their events came before begin_look().
   void begin_look(bool events_tell);
   void end_look();
-  /// A look shows that the file is there; reported as found where it was not known to be so.
+  /// Records that a look found the file. Reports it as found if it was unknown or has changed.
   void saw(const std::string& path, const FileIdentity& identity);
   void overflowed();
 
-  /// An event of the file: created, written, closed, moved_in, or permitted, which says nothing of its content.
+  /// Records and reports an event of the file: created, written, closed, moved_in, or permitted, which says nothing
+  /// of its content.
   void happened(FileEventKind kind, const std::string& path);
   void removed(const std::string& path);
   void removed_below(const std::string& directory);
 
-  /// One line for the log about `path`, once until settled(path).
+  /// Sends one line about `path` to the log, once until settled(path).
   void complain(const std::string& path, const std::string& what);
   void settled(const std::string& path) { complaints_.erase(path); }
 
@@ -63,7 +64,7 @@ class SourceTable {
  private:
   struct Known {
     std::optional<FileIdentity> identity;  ///< as the last look showed it; none: events came since
-    std::uint64_t look = 0;                ///< the last one that knew of it
+    std::uint64_t look = 0;  ///< number of the last look, or of the look during the last event, that knew the file
   };
   using Place = std::map<std::string, Known>::iterator;
 

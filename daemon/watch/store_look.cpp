@@ -61,7 +61,7 @@ bool StoreLook::look_at(const char* name) {
     return says_missing(errno) || fail(name, cat("cannot be looked at: ", words(errno)));
   }
   const bool linked = S_ISLNK(status.st_mode);
-  if (linked) {  // one that leads nowhere yet is looked at itself
+  if (linked) {  // a link without a target yet is looked at itself
     struct stat target {};
     if (::fstatat(directory, name, &target, 0) == 0) {
       status = target;

@@ -8,7 +8,7 @@
 namespace weir {
 namespace {
 
-constexpr std::size_t kStoresAtOnce = 32;  // in one turn of the event loop, which has others to serve
+constexpr std::size_t kStoresAtOnce = 32;  // in one turn of the event loop, which serves others, too
 
 }  // namespace
 

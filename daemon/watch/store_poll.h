@@ -1,5 +1,5 @@
-// Looks again and again whether the metadata of known Zarr hierarchies have changed: those of their groups and arrays
-// lie in directories that nothing watches, as there may be as many directories as chunks.
+// Checks again and again whether the metadata of known Zarr hierarchies have changed. Nothing watches the directories
+// of their groups and arrays, because there may be as many directories as chunks.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -19,13 +19,13 @@ namespace weir {
 /// One thread, that of the io_context.
 class StorePoll {
  public:
-  /// `changed` is called, from a handler, with the head of each hierarchy that is not what it was when seen() was
-  /// called; again in each round, WatchConfig::poll_interval_s after the end of the one before, until it is called
-  /// anew.
+  /// `changed` is called from a handler with the head of each hierarchy that differs from its state at the last call
+  /// of seen(). It is called again in each round until seen() is called anew. A round begins
+  /// WatchConfig::poll_interval_s after the end of the round before.
   StorePoll(boost::asio::io_context& io, const WatchConfig& watch,
             std::function<void(const std::string& head)> changed);
 
-  /// What identify_source() says of the hierarchy with this head.
+  /// Records what identify_source() returned for the hierarchy with this head.
   void seen(const std::string& head, const FileIdentity& identity);
   void forget(const std::string& head) { known_.erase(head); }
 
@@ -37,10 +37,10 @@ class StorePoll {
   std::chrono::duration<double> interval_;
   std::function<void(const std::string& head)> changed_;
   std::map<std::string, FileIdentity> known_;
-  std::string last_;  ///< looked at in this round; empty: it has not begun
+  std::string last_;  ///< the last head of this round; empty: the round has not begun
   bool waiting_ = false;
   boost::asio::steady_timer timer_;
-  std::shared_ptr<void> alive_ = std::make_shared<char>();  ///< a handler may be on its way when the poll ends
+  std::shared_ptr<void> alive_ = std::make_shared<char>();  ///< a queued handler may outlive the object
 };
 
 }  // namespace weir

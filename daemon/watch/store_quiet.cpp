@@ -9,7 +9,7 @@
 namespace weir {
 namespace {
 
-constexpr std::chrono::seconds kQueued{10};  // it is told when its turn comes; this is for where that is lost
+constexpr std::chrono::seconds kQueued{10};  // a hierarchy is told when its turn comes; this limit is for a lost notice
 
 bool names_store(std::string_view component) { return component.size() > 5 && component.ends_with(".zarr"); }
 
@@ -49,7 +49,7 @@ StoreQuiet::Answer StoreQuiet::look(Time now) {
   const StoreLook::Found found = look_->found();
   std::string fault = look_->fault();
   stop();
-  if (!fault.empty()) {  // what was not seen may be what changes
+  if (!fault.empty()) {  // the unseen part may be the one that changes
     before_.reset();
     return {false, now + pause, std::move(fault)};
   }

@@ -1,5 +1,5 @@
-// Whether a Zarr hierarchy in a directory is written yet. Its metadata come first, and nothing in it says which chunk
-// is the last one: what can be known is that nothing in it changes any more.
+// Decides whether a Zarr hierarchy in a directory is written completely. Its metadata come first, and no file says
+// which chunk is the last. So the hierarchy counts as complete when nothing in it changes any more.
 #pragma once
 
 #include <chrono>
@@ -13,17 +13,17 @@
 
 namespace weir {
 
-/// Between two looks at what no event tells of, where `settle` is shorter.
+/// The least time between two looks for changes that no event reports; used if `settle` is shorter.
 inline constexpr std::chrono::milliseconds kLeastPause{100};
 
-/// Whether `path` is the file in a directory NAME.zarr that says that this is a Zarr hierarchy, one that lies in no
-/// other. Looks at the name alone.
+/// Returns whether `path` is the file that makes a directory NAME.zarr a Zarr hierarchy, and that directory lies in
+/// no other hierarchy. Looks at the name alone.
 bool is_store_head(std::string_view path);
 
-/// Whether `path` lies in a directory NAME.zarr.
+/// Returns whether `path` lies in a directory NAME.zarr.
 bool is_in_store(std::string_view path);
 
-/// Looks through a directory, a thousand files at a time: an event loop has others to serve. One thread.
+/// Looks through a directory, a thousand files at a time, because the event loop serves others, too. One thread.
 class StoreQuiet {
  public:
   using Time = std::chrono::steady_clock::time_point;
@@ -33,20 +33,20 @@ class StoreQuiet {
 
   struct Answer {
     bool quiet = false;  ///< two looks, `settle` or more between them, found the same files, sizes and times
-    Time until{};        ///< else when to look again
-    std::string reason;  ///< else, in words
+    Time until{};        ///< if not quiet: when to look again
+    std::string reason;  ///< if not quiet: why, in words
   };
   Answer look(Time now);
-  /// Ends a look in progress, which then has found nothing.
+  /// Ends the present look and discards its result.
   void stop();
 
  private:
   std::string directory_;
   std::chrono::nanoseconds settle_;
   StoreTurn turn_;
-  std::optional<StoreLook> look_;  ///< in progress
+  std::optional<StoreLook> look_;  ///< the look in progress
   Time begun_{};
-  std::optional<StoreLook::Found> before_;  ///< of the last look, where it was a whole one
+  std::optional<StoreLook::Found> before_;  ///< result of the last complete look
   Time before_end_{};
 };
 

@@ -1,5 +1,5 @@
-// Turns at looking through Zarr hierarchies: a look holds a directory open for each level between its parts, and there
-// may be more hierarchies than the process may open files.
+// Limits how many Zarr hierarchies are looked through at once. Between its parts, a look holds a directory open for
+// each level, and there may be more hierarchies than the process may open files.
 #pragma once
 
 #include <cstddef>
@@ -12,17 +12,17 @@
 
 namespace weir {
 
-/// A few at a time, in the order they ask. One thread.
+/// Gives a few turns at a time, in the order of the requests. One thread.
 class StoreTurns {
  public:
-  /// `turn` is called with the head of a hierarchy that has waited, when it is its turn: from within take() and
-  /// give_back() of others.
+  /// `turn` is called with the head of a hierarchy when it gets its turn. The call comes from within take() and
+  /// give_back(), also those of other hierarchies.
   StoreTurns(std::size_t at_once, std::function<void(const std::string& head)> turn)
       : at_once_(at_once), turn_(std::move(turn)) {}
 
-  /// Whether it is its turn now, until it is given back; else it waits for it.
+  /// Returns whether `head` has its turn now, until it is given back. If not, `head` waits for its turn.
   bool take(const std::string& head);
-  /// Gives the turn back, or waits for it no more.
+  /// Gives the turn back, or stops waiting for it.
   void give_back(const std::string& head);
 
  private:
@@ -32,13 +32,13 @@ class StoreTurns {
   std::function<void(const std::string& head)> turn_;
   std::set<std::string> looking_;
   std::set<std::string> waiting_;
-  std::deque<std::string> order_;  ///< of the waiting ones; some may wait no more
+  std::deque<std::string> order_;  ///< heads in the order of their requests; some of them may not wait any more
 };
 
 /// The turn of one hierarchy, given back on destruction.
 class StoreTurn {
  public:
-  /// Always its turn.
+  /// Without StoreTurns, take() always returns true.
   StoreTurn() = default;
   StoreTurn(std::weak_ptr<StoreTurns> turns, std::string head) : turns_(std::move(turns)), head_(std::move(head)) {}
   StoreTurn(StoreTurn&& other) noexcept = default;

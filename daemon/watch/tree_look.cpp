@@ -38,7 +38,7 @@ void TreeLook::open_next() {
   directory_ = std::move(waiting_.front());
   waiting_.pop_front();
   entering_(directory_);
-  // The watched directory may be a link, those below it may not.
+  // The watched directory may be a link; directories below it may not.
   const int flags = O_RDONLY | O_DIRECTORY | O_CLOEXEC | O_NONBLOCK | (directory_.empty() ? 0 : O_NOFOLLOW);
   const int descriptor = ::open(table_.absolute(directory_).c_str(), flags);
   stream_.reset(descriptor < 0 ? nullptr : ::fdopendir(descriptor));
@@ -91,7 +91,7 @@ void TreeLook::look_at(const struct stat& status, const std::string& path) {
   if (!table_.wants(path)) return;
   if (S_ISREG(status.st_mode)) return table_.saw(path, identity_of(status));
   if (!S_ISLNK(status.st_mode)) return;
-  // A directory that a link leads to is looked at where it really is, or not at all: so there are no loops.
+  // A linked directory is looked at only at its real place, if that is in the tree: so there are no loops.
   const auto target = identify(table_.absolute(path));
   if (!target) return;
   const std::string refusal = table_.filter().link_refusal(path);

@@ -1,5 +1,4 @@
-// A look at all that lies in a watched directory, a piece at a time, so that
-// nothing else has to wait for a large one.
+// Looks through a watched directory a piece at a time, so that nothing else has to wait for a large one.
 #pragma once
 
 #include <dirent.h>
@@ -16,21 +15,21 @@ namespace weir {
 
 class TreeLook {
  public:
-  /// Called before a directory is listed, so that what comes after the listing can be noticed. `path` is relative,
-  /// empty: the watched directory itself.
+  /// Called before a directory is listed, so that the callee can notice changes after the listing. `path` is
+  /// relative; empty: the watched directory itself.
   using Entering = std::function<void(const std::string& path)>;
 
-  /// What is seen goes to `table`, which must outlive the object.
+  /// Each entry that is seen goes to `table`, which must outlive the object.
   TreeLook(SourceTable& table, Entering entering) : table_(table), entering_(std::move(entering)) {}
 
-  /// Look at `directory`, and all directories below it that the filter enters.
+  /// Adds `directory`, and all directories below it that the filter enters, to the look.
   void add(const std::string& directory) { waiting_.push_back(directory); }
-  /// Look at the file or link `path` now, if the table wants it.
+  /// Looks at the file or link `path` now if the table wants it.
   void look_at(const std::string& path);
-  /// `directory` was renamed or removed: drops what was still to be looked at in it.
+  /// Must be called when `directory` was renamed or removed: drops all entries in it from the look.
   void leave(const std::string& directory);
   void clear();
-  /// Looks at some entries, for about a millisecond on a local disk. False when there is nothing more to look at.
+  /// Looks at some entries, for about a millisecond on a local disk. Returns false when nothing is left to look at.
   bool step();
 
  private:

@@ -1,4 +1,4 @@
-// sample_device FILE.nvdb X Y Z ...: as sample_host, with the values read by the device.
+// sample_device FILE.nvdb X Y Z ...: like sample_host, but the device reads the values.
 #include <cstdio>
 #include <cstdlib>
 #include <span>
@@ -22,7 +22,7 @@ int main(int argc, char** argv) {
     std::printf("%.1f GB/s, %s\n", grid.report().gb_per_s(), weir::load_path_name(grid.report().path).data());
 
     const weir::LeafTable host(file.grid());
-    weir::LeafTableView table = host.view();  // of host memory; now of the device's:
+    weir::LeafTableView table = host.view();  // in host memory; the lines below make it the device's
     const auto blocks = static_cast<std::size_t>(table.count.x) * table.count.y * table.count.z;
     const weir::DeviceArray<std::uint32_t> entries({table.entries, blocks});
     const weir::DeviceArray<float> tile_values({table.tile_values, table.tile_count});

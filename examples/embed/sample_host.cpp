@@ -1,4 +1,4 @@
-// sample_host FILE.nvdb X Y Z ...: trilinear values at positions in voxels, read where the file is mapped.
+// sample_host FILE.nvdb X Y Z ...: trilinear values at positions in voxels, read directly from the mapped file.
 #include <cstdio>
 #include <cstdlib>
 
@@ -9,7 +9,7 @@
 int main(int argc, char** argv) {
   if (argc < 2) return 2;
   try {
-    const weir::NvdbFile file(argv[1]);        // mapped and checked: no later call leaves the file
+    const weir::NvdbFile file(argv[1]);        // mapped and checked: no later call reads outside the file
     const weir::LeafTable table(file.grid());  // 4 bytes for each 8^3 voxels, and all packed blocks, decoded
     const weir::VolumeSampler volume{table.view(), weir::Filter::trilinear};
     for (int a = 2; a + 2 < argc; a += 3) {

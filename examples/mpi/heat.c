@@ -1,4 +1,4 @@
-/* heat OUTPUT_DIR [EDGE] [STEPS]: heat spreads through a cube that the processes of an MPI job hold in layers; each
+/* heat OUTPUT_DIR [EDGE] [STEPS]: heat spreads through a cube that the processes of an MPI job hold in layers. Each
  * saved step becomes one file, to which every process hands over its own layers. */
 #include <stdint.h>
 #include <stdio.h>
@@ -12,7 +12,7 @@ static void stop_on(weir_status status, const weir_error* error) {
   MPI_Abort(MPI_COMM_WORLD, status);
 }
 
-/* Layers z0 to z0 + nz of the step, into DIR/heat_STEP.nvdb. */
+/* Saves layers z0 to z0 + nz - 1 of the step to DIR/heat_STEP.nvdb. */
 static void save(const char* directory, int step, int64_t edge, int64_t z0, int64_t nz, const float* layers) {
   weir_error error;
   char output[4096];
@@ -30,7 +30,7 @@ static void save(const char* directory, int step, int64_t edge, int64_t z0, int6
   weir_mpi_push_free(push);
 }
 
-/* The layer below the lowest and above the highest one are those of the neighbours. */
+/* Gets the layers below this process's lowest and above its highest layer from the neighbours. */
 static void exchange(float* field, size_t layer, int64_t nz, int below, int above) {
   const int count = (int)layer;
   float* const last = field + (size_t)nz * layer;
@@ -74,7 +74,7 @@ int main(int argc, char** argv) {
     MPI_Finalize();
     return 2;
   }
-  const int64_t z0 = edge * rank / size; /* whose borders need not be those of blocks */
+  const int64_t z0 = edge * rank / size; /* borders of layers need not be borders of blocks */
   const int64_t nz = edge * (rank + 1) / size - z0;
   const int below = rank > 0 ? rank - 1 : MPI_PROC_NULL;
   const int above = rank + 1 < size ? rank + 1 : MPI_PROC_NULL;

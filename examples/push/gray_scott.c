@@ -1,6 +1,6 @@
-/* gray_scott EDGE STEPS EVERY DIRECTORY: two substances that react and diffuse (Gray and Scott, 1984) in EDGE^3 voxels.
- * Of every EVERY-th step the second one's concentration becomes DIRECTORY/v_NNNN.nvdb, plane by plane, while the step
- * is computed: no copy of it is kept, and no raw file written. */
+/* gray_scott EDGE STEPS EVERY DIRECTORY: two substances that react and diffuse (Gray and Scott, 1984) in EDGE^3
+ * voxels. For every EVERY-th step, the second substance's concentration becomes DIRECTORY/v_NNNN.nvdb, plane by
+ * plane, while the step is computed: it keeps no copy and writes no raw file. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <weir.h>
@@ -30,7 +30,7 @@ static weir_push* begin(const char* directory, int step) {
   volume.name = "v";
   weir_convert_options options;
   weir_convert_options_init(&options, sizeof options);
-  options.budget_kind = WEIR_BUDGET_PSNR; /* as few bytes as keep 50 dB */
+  options.budget_kind = WEIR_BUDGET_PSNR; /* the fewest bytes that keep 50 dB */
   options.budget = 50;
   options.overwrite = 1;
   weir_push* push = NULL;

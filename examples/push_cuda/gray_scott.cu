@@ -1,8 +1,8 @@
 // gray_scott_cuda EDGE STEPS EVERY DIRECTORY [DEVICE_BYTES]: two substances that react and diffuse (Gray and Scott,
-// 1984) in EDGE^3 voxels on a device. Of every EVERY-th step the second one's concentration becomes
-// DIRECTORY/v_NNNN.nvdb, from the buffer it was computed into, while the next steps run. DEVICE_BYTES of the device's
-// memory, if given, hold what is being saved: where all of a step fits, it is coded there and does not cross the bus.
-// Prints how long steps take while none is saved, and while one is.
+// 1984) in EDGE^3 voxels on a device. For every EVERY-th step, the second substance's concentration becomes
+// DIRECTORY/v_NNNN.nvdb, from the buffer in which it was computed, while the next steps run. DEVICE_BYTES of the
+// device's memory, if given, hold the step that is being saved: if a whole step fits, it is encoded there and does not
+// cross the bus. Prints how long steps take while no step is being saved, and while one is.
 #include <weir_cuda.h>
 
 #include <chrono>
@@ -26,7 +26,7 @@ void check(weir_status status, const weir_error& error) {
   std::exit(status);
 }
 
-// Voxel (x, y, z) of a periodic volume of n^3.
+// Returns the index of voxel (x, y, z) of a periodic volume of n^3.
 __device__ size_t at(int x, int y, int z, int n) {
   const auto wrapped = [n](int i) { return static_cast<size_t>(i < 0 ? i + n : i >= n ? i - n : i); };
   return wrapped(x) + n * (wrapped(y) + n * wrapped(z));
@@ -68,9 +68,9 @@ weir_push* begin_push(const std::string& output, int n, uint64_t device_bytes) {
   weir_convert_options options;
   weir_convert_options_init(&options, sizeof options);
   options.encoding = WEIR_ENCODING_PACKED;
-  options.budget_kind = WEIR_BUDGET_PSNR;  // as few bytes as keep 70 dB of a volume that is mostly empty
+  options.budget_kind = WEIR_BUDGET_PSNR;  // the fewest bytes that keep 70 dB of a volume that is mostly empty
   options.budget = 70;
-  options.memory = 2ULL << 30U;  // from 1 GiB on the device surveys and encodes
+  options.memory = 2ULL << 30U;  // from 1 GiB on, the device surveys and encodes
   options.overwrite = 1;
   weir_push* push = nullptr;
   weir_error error;
@@ -81,7 +81,7 @@ weir_push* begin_push(const std::string& output, int n, uint64_t device_bytes) {
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-// Beside the steps: selects, encodes and writes. Returns the seconds since `begun`.
+// Runs beside the steps: selects, encodes and writes. Returns the seconds since `begun`.
 double end_push(weir_push* push, double begun) {
   weir_error error;
   check(weir_push_end(push, &error), error);
@@ -116,7 +116,7 @@ int main(int argc, char** argv) {
   const dim3 blocks((n + 127) / 128, n, n);
   begin_state<<<blocks, threads, 0, stream>>>(u, v, n);
 
-  std::future<double> save;  // of the last step that is saved
+  std::future<double> save;  // of the last saved step
   double held_up = 0;
   double saved_in = 0;
   int saved = 0;
@@ -128,7 +128,7 @@ int main(int argc, char** argv) {
     react<<<blocks, threads, 0, stream>>>(u, v, next_u, next_v, n);
     check(cudaGetLastError(), "computing a step");
     if (step % every == 0) {
-      if (save.valid()) saved_in += save.get();  // one at a time
+      if (save.valid()) saved_in += save.get();  // one save at a time
       check(cudaStreamSynchronize(stream), "computing a step");
       const double begun = now();
       char name[32];

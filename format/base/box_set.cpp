@@ -11,14 +11,15 @@ namespace {
 
 constexpr std::array<std::int64_t Index3::*, 3> kBoxAxes{&Index3::x, &Index3::y, &Index3::z};
 
-// The box of both where they share a whole side.
+// Returns the union of two boxes if it is a box, that is if they share a whole side.
 std::optional<Box> joined(const Box& a, const Box& b) {
   const Box all{min(a.lo, b.lo), max(a.hi, b.hi)};
   if (all.voxels() != a.voxels() + b.voxels()) return std::nullopt;
   return all;
 }
 
-// Adds what of `box` lies outside `hole` to `rest`: whole layers below and above it, then rows, then what is left.
+// Adds the part of `box` outside `hole` to `rest`: first whole layers below and above it, then rows, then the
+// remainder.
 void cut(const Box& box, const Box& hole, std::vector<Box>& rest) {
   const Box inner = intersect(box, hole);
   if (inner.empty()) {
@@ -38,8 +39,9 @@ void cut(const Box& box, const Box& hole, std::vector<Box>& rest) {
   }
 }
 
-// Halves a box, and its halves, until each part lies in all of the boxes that reach into it: as a k-d tree is built, at
-// the middle one of their faces, so that the borders of a regular decomposition cut none of them.
+// Halves a box, and its halves, until each part lies inside all of the boxes that reach into it. It cuts at the median
+// of the boxes' faces, as a k-d tree does, so that the cuts fall on the borders of a regular decomposition and split
+// none of its boxes.
 class CoverageSearch {
  public:
   explicit CoverageSearch(std::span<const Box> boxes) : boxes_(boxes), repeated_(boxes.size()) {}
@@ -69,7 +71,7 @@ class CoverageSearch {
     search(high, those_in(high, reaching));
   }
 
-  // Without those that do not matter any more, since another box before them is known to be repeated.
+  // Returns the boxes of `among` that reach into `part`, except those after a box that is known to be repeated.
   std::vector<std::size_t> those_in(const Box& part, const std::vector<std::size_t>& among) const {
     std::vector<std::size_t> reaching;
     for (const std::size_t i : among) {
@@ -78,7 +80,7 @@ class CoverageSearch {
     return reaching;
   }
 
-  // `low` and `high` are one box, and become halves of it; false where no face of a box lies inside.
+  // `low` and `high` are the same box on entry and become its halves. Returns false if no face of a box lies inside it.
   bool halve(const std::vector<std::size_t>& reaching, Box& low, Box& high) {
     for (std::vector<std::int64_t>& faces : faces_) faces.clear();
     for (const std::size_t i : reaching) {
@@ -99,7 +101,7 @@ class CoverageSearch {
   }
 
   std::span<const Box> boxes_;
-  std::size_t repeated_;  // the first one that is known; as many as there are boxes: none
+  std::size_t repeated_;  // the first repeated box that is known; boxes_.size() if none is
   BoxSet missing_;
   std::array<std::vector<std::int64_t>, 3> faces_;  // room for halve()
 };

@@ -1,7 +1,6 @@
-// The one error type of weir. A message is one line: what, where (path and
-// offset, dataset or key), the value found, what to do. `main` prints it and
-// exits with the kind's code; nothing else in the project ends the process.
-// Options in it are worded by whoever shows it: format/base/message.h.
+// The one error type of weir. A message is one line: what happened, where (path and offset, dataset or key), the value
+// found, what to do. `main` prints it and exits with the kind's code; nothing else in the project ends the process. The
+// front end that shows a message words its options: format/base/message.h.
 #pragma once
 
 #include <exception>
@@ -23,7 +22,7 @@ enum class ErrorKind {
   interrupted = 130  ///< SIGINT or SIGTERM
 };
 
-/// What the system said of a call that failed.
+/// The system's report of a call that failed.
 struct SystemFailure {
   int errno_value = 0;
   std::string path;
@@ -35,9 +34,9 @@ class Error : public std::exception {
 
   ErrorKind kind() const noexcept { return kind_; }
   int exit_code() const noexcept { return static_cast<int>(kind_); }
-  /// For a front end with words of its own for options.
+  /// For a front end that has its own words for options.
   const Message& message() const noexcept { return content_->message; }
-  /// For a front end whose errors have a number and a file's name; nullopt where no call of the system failed.
+  /// For a front end with errors that carry a number and a file name; nullopt if no call of the system failed.
   const std::optional<SystemFailure>& system_failure() const noexcept { return content_->failure; }
   /// The message in the command line's words.
   const char* what() const noexcept override { return content_->text.c_str(); }
@@ -52,25 +51,26 @@ class Error : public std::exception {
   std::shared_ptr<const Content> content_;  // shared: copying an exception must not throw
 };
 
-/// The end of every message of a full disk.
+/// Returns the end of every message about a full disk.
 Message disk_full_remedy();
 
-/// Of kind usage.
+/// Returns an Error of kind usage.
 Error usage_error(Message message);
 
-/// "PATH: MESSAGE", kind input.
+/// Returns an Error of kind input with the message "PATH: MESSAGE".
 Error input_error(const std::string& path, const Message& message);
 
-/// "; what to do", where that follows from what the system said alone; else empty.
+/// Returns "; what to do" if that follows from `errno_value` alone; otherwise empty.
 const char* remedy_of(int errno_value);
 
-/// "PATH: cannot ACTION: strerror(ERRNO)" and what to do, kind io.
+/// Returns an Error of kind io with the message "PATH: cannot ACTION: strerror(ERRNO)" and what to do.
 Error io_error(const std::string& path, const Message& action, int errno_value);
 
-/// What `error` says in the command line's words, without "WHERE: " where it begins so: for a list that says where.
+/// Returns the message of `error` in the command line's words, without a leading "WHERE: ", for lists that name the
+/// place.
 std::string reason_of(const Error& error, const std::string& where);
 
-/// The exception that is being handled; one of another type is of kind internal.
+/// Returns the exception that is being handled; one of another type becomes an Error of kind internal.
 Error error_in_flight();
 
 }  // namespace weir

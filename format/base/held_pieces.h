@@ -1,4 +1,4 @@
-// Pieces of memory that have served and are held for whoever needs some next.
+// Keeps used pieces of memory for the next user that needs some.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,8 @@ namespace weir {
 template <class Piece>
 class HeldPieces {
  public:
-  /// The smallest one that has so many bytes, at most `most_times` as many, and suits(piece); none where there is none.
+  /// Takes the smallest piece of at least `bytes` and at most most_times * bytes for which suits(piece) holds; nullopt
+  /// if there is none.
   template <class Suits>
   std::optional<Piece> take(std::size_t bytes, std::size_t most_times, const Suits& suits) {
     auto best = pieces_.end();
@@ -21,14 +22,14 @@ class HeldPieces {
     }
     return best == pieces_.end() ? std::nullopt : take(best);
   }
-  /// The one that was added first; none where there is none.
+  /// Takes the piece that was added first; nullopt if there is none.
   std::optional<Piece> take_oldest() { return pieces_.empty() ? std::nullopt : take(pieces_.begin()); }
-  /// Throws std::bad_alloc; the piece is destroyed then.
+  /// Throws std::bad_alloc; `piece` is destroyed then.
   void add(std::size_t bytes, Piece piece) {
     pieces_.push_back({bytes, std::move(piece)});
     bytes_ += bytes;
   }
-  /// Of all.
+  /// Returns the bytes of all pieces together.
   std::size_t bytes() const { return bytes_; }
 
  private:

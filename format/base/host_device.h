@@ -1,5 +1,6 @@
-// WEIR_HOST_DEVICE marks functions that the CUDA part compiles for both sides, WEIR_UNROLL their loops that a device
-// has to run without indices, WEIR_NO_UNROLL those it is to run as they are, WEIR_NO_INLINE functions it is to call.
+// WEIR_HOST_DEVICE marks functions that the CUDA part compiles for host and device. On a device WEIR_UNROLL unrolls a
+// loop that must run without indices, WEIR_NO_UNROLL keeps a loop as it is, and WEIR_NO_INLINE makes a function a real
+// call.
 #pragma once
 
 #if defined(__CUDACC__)

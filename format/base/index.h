@@ -33,13 +33,13 @@ constexpr Index3 min(const Index3& a, const Index3& b) {
 constexpr Index3 max(const Index3& a, const Index3& b) {
   return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
 }
-/// Number of elements in an extent; the caller has checked that it fits.
+/// Returns the number of elements of the extent `e`; the caller has checked that it fits.
 constexpr std::int64_t volume(const Index3& e) { return e.x * e.y * e.z; }
-/// Position of `i` in an array of `extent`, x fastest.
+/// Returns the position of `i` in an array of `extent`, x fastest.
 constexpr std::int64_t linear_index(const Index3& i, const Index3& extent) {
   return i.x + extent.x * (i.y + extent.y * i.z);
 }
-/// Inverse of linear_index.
+/// The inverse of linear_index().
 constexpr Index3 index_at(std::int64_t linear, const Index3& extent) {
   return {linear % extent.x, linear / extent.x % extent.y, linear / (extent.x * extent.y)};
 }
@@ -65,7 +65,7 @@ struct Box {
   friend constexpr bool operator==(const Box&, const Box&) = default;
 };
 
-/// Bytes of the voxels of a box as float32.
+/// Returns the bytes of the voxels of `box` as float32.
 constexpr std::uint64_t float32_bytes(const Box& box) {
   return static_cast<std::uint64_t>(box.voxels()) * sizeof(float);
 }
@@ -95,29 +95,29 @@ struct NodeLattice {
   std::int64_t dim = kLeafDim;
 
   constexpr std::int64_t size() const { return volume(count); }
-  /// Voxels of the node at lattice position `i` (0 <= i < count), domain ignored.
+  /// Returns the voxels of the node at lattice position `i` (0 <= i < count), including those outside the domain.
   constexpr Box node_box(const Index3& i) const {
     const Index3 lo = (first + i) * dim;
     return {lo, lo + Index3{dim, dim, dim}};
   }
-  /// The part of node_box inside the domain; never empty.
+  /// Returns the part of node_box(i) inside the domain; never empty.
   constexpr Box voxels(const Index3& i) const { return intersect(node_box(i), domain); }
-  /// The same of a box of positions that is not empty.
+  /// Returns the voxels of all nodes at `positions`, a box that is not empty, including those outside the domain.
   constexpr Box nodes_box(const Box& positions) const {
     return {(first + positions.lo) * dim, (first + positions.hi) * dim};
   }
   constexpr Box voxels(const Box& positions) const { return intersect(nodes_box(positions), domain); }
-  /// Positions of the nodes that a non-empty box of voxels touches.
+  /// Returns the positions of the nodes that a non-empty box of voxels touches.
   constexpr Box positions(const Box& voxels) const {
     return {floor_div(voxels.lo, dim) - first, floor_div(voxels.hi - Index3{1, 1, 1}, dim) - first + Index3{1, 1, 1}};
   }
-  /// True where the node reaches outside the domain.
+  /// Returns whether the node reaches outside the domain.
   constexpr bool overhangs(const Index3& i) const { return !domain.contains(node_box(i)); }
   constexpr std::int64_t linear(const Index3& i) const { return linear_index(i, count); }
   constexpr Index3 position(std::int64_t linear) const { return index_at(linear, count); }
 };
 
-/// Lattice of nodes of `dim` voxels over a non-empty domain.
+/// Returns the lattice of nodes of `dim` voxels over a non-empty domain.
 constexpr NodeLattice make_lattice(const Box& domain, std::int64_t dim) {
   const Index3 first = floor_div(domain.lo, dim);
   const Index3 last = floor_div(domain.hi - Index3{1, 1, 1}, dim);

@@ -1,4 +1,4 @@
-// Numbers in the text files of the kernel.
+// Numbers in the text files of the Linux kernel.
 #pragma once
 
 #include <cstdint>
@@ -7,10 +7,10 @@
 
 namespace weir {
 
-/// The number behind the word `key` in one of the kernel's tables; 0 where there is none.
+/// Returns the number behind the word `key` in one of the kernel's tables; 0 if there is none.
 std::uint64_t number_in_table(const std::string& path, const std::string& key);
 
-/// The number that a file begins with; nullopt where it is missing or says another word ("max").
+/// Returns the number at the beginning of a file; nullopt if the file is missing or begins with a word ("max").
 std::optional<std::uint64_t> number_in_file(const std::string& path);
 
 }  // namespace weir

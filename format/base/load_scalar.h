@@ -1,4 +1,4 @@
-// Numbers in the bytes of a file, in either byte order.
+// Reads numbers from the bytes of a file, in either byte order.
 #pragma once
 
 #include <bit>
@@ -16,7 +16,7 @@ constexpr std::uint16_t with_bytes_swapped(std::uint16_t bits) { return __builti
 constexpr std::uint32_t with_bytes_swapped(std::uint32_t bits) { return __builtin_bswap32(bits); }
 constexpr std::uint64_t with_bytes_swapped(std::uint64_t bits) { return __builtin_bswap64(bits); }
 
-/// The T that the sizeof(T) bytes from `bytes` on are; no alignment needed.
+/// Returns the T in the sizeof(T) bytes from `bytes` on; needs no alignment.
 template <typename T>
 T load_scalar(const std::byte* bytes, bool big_endian) {
   static_assert(std::is_arithmetic_v<T> && sizeof(T) <= sizeof(std::uint64_t));

@@ -1,6 +1,6 @@
-// One line for people that may name options. An option has another name wherever it can be set, --max-error on the
-// command line and max_error in Python, so a message keeps the options apart from the text around them, and whoever
-// shows it chooses the words.
+// A message: one line for people that may name options. An option has a different name in each front end, --max-error
+// on the command line and max_error in Python. So a message keeps the options apart from the text around them, and the
+// front end that shows it chooses the words.
 #pragma once
 
 #include <functional>
@@ -14,15 +14,15 @@
 
 namespace weir {
 
-/// An option, and perhaps a value of it, inside a message.
+/// An option, possibly with a value, inside a message.
 struct OptionName {
   std::string key;    ///< as on the command line, without dashes: "max-error"
-  std::string value;  ///< "keep" where the message says `--nonfinite keep`; empty: the option alone
+  std::string value;  ///< "keep" if the message says `--nonfinite keep`; empty: the option alone
 };
 
-/// The option `key` as an argument of compose().
+/// Returns the option `key` as an argument of compose().
 inline OptionName option(std::string_view key) { return {std::string(key), {}}; }
-/// The option with this value; a number as cat() writes it.
+/// Returns the option `key` with `value`; a number is written as cat() writes it.
 template <typename Value>
 OptionName option(std::string_view key, const Value& value) {
   return {std::string(key), cat(value)};
@@ -31,13 +31,13 @@ OptionName option(std::string_view key, const Value& value) {
 /// How one front end writes an option: "--nonfinite keep", "nonfinite keep".
 using OptionWording = std::string (*)(const OptionName& option);
 
-/// "--nonfinite keep"; the output is "-o".
+/// Returns "--nonfinite keep"; the option "output" is "-o".
 std::string command_line_wording(const OptionName& option);
-/// "max_error 2": a key of a configuration, a keyword of Python.
+/// Returns "max_error 2", for keys of a configuration and keywords of Python.
 std::string key_wording(const OptionName& option);
 
-/// A part of a message that a command line shows, a command to type for instance, and what every other front end shows
-/// in its place.
+/// A part of a message that only the command line shows, for instance a command to type, and the text that every other
+/// front end shows instead.
 struct CommandLineText {
   std::string command_line;
   std::string elsewhere;
@@ -51,17 +51,17 @@ class Message {
   Message(OptionName option);
   Message(CommandLineText text);
 
-  /// One line in the words of a front end.
+  /// Returns the line in the words of a front end.
   std::string worded(OptionWording wording) const;
-  /// In the command line's words.
+  /// Returns the line in the command line's words.
   std::string text() const { return worded(command_line_wording); }
-  /// Keys of the options named, in their order.
+  /// Returns the keys of the options that the message names, in their order.
   std::vector<std::string> option_keys() const;
   bool empty() const { return parts_.empty(); }
-  /// As bytes for another process, which unpack() makes the message of again. Texts hold no NUL.
+  /// Returns the message as bytes for another process, from which unpack() makes the message again. Texts hold no NUL.
   std::string packed() const;
   static Message unpack(std::string_view packed);
-  /// The same line as one that tells how what was asked for came out, and warns of nothing.
+  /// Returns the same line as a remark: it tells how a request came out and is no warning.
   Message as_remark() const;
   bool is_remark() const { return remark_; }
 
@@ -87,12 +87,12 @@ class MessagePiece {
   Message message_;
 };
 
-/// Takes what the user should know and is no error.
+/// Receives lines that the user should know and that are not errors.
 using Notice = std::function<void(const Message& line)>;
 
 Message concatenate(std::initializer_list<MessagePiece> pieces);
 
-/// All arguments one after the other, as cat(), which may be options and messages too.
+/// Joins all arguments like cat(); they may also be options and messages.
 template <typename... Args>
 Message compose(const Args&... args) {
   return concatenate({MessagePiece(args)...});

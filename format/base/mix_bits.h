@@ -1,4 +1,4 @@
-// Mixing of 64 bits, for repeatable chance without a state. For host and device.
+// Mixes 64 bits, for repeatable pseudo-random numbers without a state. For host and device.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ WEIR_HOST_DEVICE constexpr std::uint64_t mix_bits(std::uint64_t v) {
   return v ^ (v >> 31U);
 }
 
-/// SplitMix64's increment: mix_bits(v + kGoldenGamma) is its number after the state v.
+/// The increment of SplitMix64: mix_bits(v + kGoldenGamma) is its number after the state v.
 inline constexpr std::uint64_t kGoldenGamma = 0x9E3779B97F4A7C15ULL;
 
 }  // namespace weir

@@ -6,7 +6,7 @@
 namespace weir {
 namespace {
 
-// Slips between two words: the optimal string alignment distance.
+// Returns the slips between two words: the optimal string alignment distance.
 std::size_t slips(std::string_view a, std::string_view b) {
   std::vector<std::vector<std::size_t>> table(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
   for (std::size_t i = 0; i <= a.size(); ++i) table[i][0] = i;

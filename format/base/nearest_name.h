@@ -1,4 +1,4 @@
-// The name that was probably meant by one that does not exist.
+// Finds the existing name that a misspelt word probably meant.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace weir {
 
-/// The one of `names` that takes the fewest slips to become `word`, where a slip is a letter more, less or another, or
-/// two neighbours swapped; empty where all take more than one slip in three letters.
+/// Returns the name of `names` that needs the fewest slips to become `word`. A slip is a letter added, removed or
+/// replaced, or two neighbours swapped. Empty if every name needs more than one slip per three letters.
 std::string nearest_name(std::string_view word, const std::vector<std::string>& names);
 
 }  // namespace weir

@@ -5,7 +5,7 @@
 namespace weir {
 namespace {
 
-/// "a", "a or b", "a, b or c".
+/// Returns "a", "a or b" or "a, b or c".
 Message list_of(const std::vector<Message>& items, std::string_view last) {
   Message list;
   for (std::size_t i = 0; i < items.size(); ++i) {

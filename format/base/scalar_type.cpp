@@ -29,7 +29,7 @@ struct Alias {
   ScalarType type;
 };
 
-// C's names, and numpy's.
+// The names of C and numpy.
 constexpr std::array<Alias, 13> kAliases{{{"float", ScalarType::float32},
                                           {"double", ScalarType::float64},
                                           {"u1", ScalarType::uint8},

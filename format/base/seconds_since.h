@@ -5,7 +5,7 @@
 
 namespace weir {
 
-/// Between `start` and now.
+/// Returns the seconds between `start` and now.
 inline double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }

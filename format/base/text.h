@@ -11,7 +11,7 @@
 
 namespace weir {
 
-/// One argument of cat() as text; numbers in a buffer of its own.
+/// One argument of cat() as text; a number is written into a buffer of the object.
 class TextPiece {
  public:
   TextPiece(std::string_view text) : text_(text) {}
@@ -39,32 +39,32 @@ class TextPiece {
 
 std::string concatenate(std::initializer_list<std::string_view> pieces);
 
-/// All arguments one after the other; floating-point numbers with up to 9 significant digits. Not a template of
-/// streams, since it is called in a thousand places, each of which would be compiled for longer.
+/// Joins all arguments; floating-point numbers get up to 9 significant digits. Streams are not used, because cat() is
+/// called in a thousand places and each would take longer to compile.
 template <typename... Args>
 std::string cat(const Args&... args) {
   return concatenate({TextPiece(args).text()...});
 }
 
-/// "512MiB", "1.5GB", "4096", "4096B" in bytes (B KB MB GB TB are powers of 1000, KiB ... TiB
-/// powers of 1024). nullopt where the text is no size, is negative, or is no whole number of bytes
-/// below 2^63.
+/// Parses "512MiB", "1.5GB", "4096" or "4096B" as bytes (B KB MB GB TB are powers of 1000, KiB ... TiB powers of 1024;
+/// K M G T mean KiB ... TiB). Returns nullopt if the text is not a size, is negative, is not a whole number of bytes,
+/// or is above 2^62.
 std::optional<std::uint64_t> parse_bytes(std::string_view text);
-/// "512.0 MiB", "17 B": for people, never parsed back.
+/// Returns "512.0 MiB" or "17 B", for people; it is never parsed back.
 std::string format_bytes(std::uint64_t bytes);
-/// Whole text as an integer or a double; nullopt where anything is left over or out of range.
+/// Parse the whole text as an integer or a double; nullopt if anything is left over or out of range.
 std::optional<std::int64_t> parse_int(std::string_view text);
 std::optional<double> parse_double(std::string_view text);
-/// Parts between `separator`, none dropped.
+/// Returns the parts between separators, including empty parts.
 std::vector<std::string> split(std::string_view text, char separator);
 
-/// With four significant digits: for people.
+/// Returns `value` with four significant digits, for people.
 std::string short_number(double value);
 
-/// With that many digits behind the point.
+/// Returns `value` with `digits` digits behind the point.
 std::string fixed(double value, int digits);
 
-/// In hexadecimal, with leading zeros up to that many digits.
+/// Returns `value` in hexadecimal, with leading zeros up to `digits` digits.
 std::string hex(std::uint64_t value, int digits = 1);
 
 }  // namespace weir

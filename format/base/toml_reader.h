@@ -1,5 +1,5 @@
-// A TOML table read key by key: every value is checked for type and range, and
-// a key that nobody asked for is an error. Messages are "PATH:LINE:COLUMN: ...".
+// Reads a TOML table key by key: checks the type and range of every value, and reports a key that no caller asked for.
+// Messages are "PATH:LINE:COLUMN: ...".
 #pragma once
 
 #include <toml++/toml.h>
@@ -16,13 +16,13 @@
 
 namespace weir {
 
-/// Throws Error(input) at the place of `source` in `path`.
+/// Throws Error(input) that names `path` and the place of `source` in it.
 [[noreturn]] void fail_toml(const std::string& path, const toml::source_region& source, const std::string& message);
 
-/// Parses a whole document; Error(input) with the parser's place and reason.
+/// Parses a whole document. Throws Error(input) with the parser's place and reason.
 toml::table parse_toml(std::string_view text, const std::string& path);
 
-/// `node` for a message: "90d" in quotes, true, 1.5; of what is no single value what it is: an array.
+/// Returns `node` for a message: "90d" in quotes, true, 1.5; for a node that is not a single value, its type: an array.
 std::string value_found(const toml::node& node);
 
 /// Inclusive bounds of a number.
@@ -33,23 +33,23 @@ struct Bounds {
 
 class TomlReader {
  public:
-  /// `table` and `path` must outlive the reader. `name` is for messages, as "[camera]".
+  /// `table` and `path` must outlive the reader. `name`, such as "[camera]", is for messages.
   TomlReader(const toml::table& table, std::string name, const std::string& path)
       : table_(table), name_(std::move(name)), path_(path) {}
 
   const std::string& path() const { return path_; }
 
-  /// The node of `key`, null where absent; the key counts as known from now on.
+  /// Returns the node of `key`, null if it is absent; the key counts as known from now on.
   const toml::node* find(std::string_view key);
-  /// Each leaves `value` alone where the key is absent and returns whether it was there.
+  /// Each read() returns whether the key is there, and leaves `value` as it is if not.
   bool read(std::string_view key, double& value, Bounds bounds = {});
   bool read(std::string_view key, std::optional<double>& value, Bounds bounds = {});
   bool read(std::string_view key, int& value, Bounds bounds);
   bool read(std::string_view key, bool& value);
   bool read(std::string_view key, std::string& value);
-  /// An array of strings.
+  /// Reads an array of strings.
   bool read(std::string_view key, std::vector<std::string>& value);
-  /// An array of exactly N numbers.
+  /// Reads an array of exactly N numbers.
   template <std::size_t N>
   bool read(std::string_view key, std::array<double, N>& value, Bounds bounds = {}) {
     const toml::node* node = find(key);
@@ -63,7 +63,7 @@ class TomlReader {
     if (present) value = found;
     return present;
   }
-  /// `node` as N numbers.
+  /// Returns `node` as N numbers.
   template <std::size_t N>
   std::array<double, N> numbers(const toml::node& node, std::string_view key, Bounds bounds) const {
     std::array<double, N> values{};
@@ -72,7 +72,7 @@ class TomlReader {
     for (std::size_t i = 0; i < N; ++i) values[i] = number(*array->get(i), key, bounds);
     return values;
   }
-  /// Throws for the first key that was never asked for.
+  /// Throws for the first key that no call asked for.
   void finish() const;
   [[noreturn]] void fail(const toml::node& node, const std::string& message) const {
     fail_toml(path_, node.source(), message);

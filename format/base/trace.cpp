@@ -12,7 +12,7 @@ double microseconds(Trace::Clock::duration time) { return std::chrono::duration<
 }  // namespace
 
 // The JSON array form of "Trace Event Format" (Google): complete events, "X", in microseconds, and a name for each
-// thread. The closing bracket is optional there.
+// thread. That form allows the closing bracket to be missing.
 Trace::Trace(const std::string& path) : path_(path), file_(std::fopen(path.c_str(), "we")) {
   if (file_ == nullptr) throw io_error(path, "create", errno);
   threads_[std::this_thread::get_id()] = 0;
@@ -24,7 +24,7 @@ Trace::~Trace() {
   try {
     if (file_ != nullptr) close();
   } catch (const Error&) {
-    // The failure that led here is the one to report.
+    // The earlier failure is the one to report.
   }
 }
 

@@ -1,7 +1,6 @@
-// Where the time goes: spans of work, thread by thread, written as Chrome trace
-// events for chrome://tracing and ui.perfetto.dev. Events go to the file as they
-// come, through a buffer, so that a long run takes no more memory than a short
-// one and a killed one leaves what both viewers still read. Thread-safe.
+// Records spans of work, thread by thread, as Chrome trace events for chrome://tracing and ui.perfetto.dev, to show
+// where the time goes. Events go to the file through a buffer as they come. So a long run takes no more memory than a
+// short one, and a killed run leaves a file that both viewers still read. Thread-safe.
 #pragma once
 
 #include <chrono>
@@ -19,17 +18,18 @@ class Trace {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// Creates or replaces `path`. Throws Error(io).
+  /// Creates or replaces the file `path`. Throws Error(io).
   explicit Trace(const std::string& path);
-  /// Completes the file; what goes wrong then is not reported.
+  /// Completes the file; reports no errors.
   ~Trace();
   Trace(const Trace&) = delete;
   Trace& operator=(const Trace&) = delete;
 
-  /// Work called `name` (letters and spaces) of the calling thread; `bytes` are what it went through, 0: not counted.
+  /// Adds a span of the calling thread called `name` (letters and spaces). `bytes` is the amount of data it handled; 0:
+  /// not counted.
   void add(const char* name, Clock::time_point begin, Clock::time_point end, std::uint64_t bytes);
 
-  /// Completes the file. Throws Error(io) where any of it could not be written. Nothing may be added afterwards.
+  /// Completes the file. Throws Error(io) if any of it could not be written. Nothing may be added afterwards.
   void close();
 
  private:
@@ -41,10 +41,10 @@ class Trace {
   Clock::time_point start_ = Clock::now();
   std::mutex mutex_;
   std::unique_ptr<std::FILE, Close> file_;
-  std::map<std::thread::id, int> threads_;  // numbered as they come
+  std::map<std::thread::id, int> threads_;  // numbered in the order of their first span
 };
 
-/// Work that begins and ends with this object. Costs nothing where there is no trace.
+/// A span that begins and ends with this object. Costs nothing if `trace` is null.
 class TraceSpan {
  public:
   TraceSpan(Trace* trace, const char* name, std::uint64_t bytes = 0) : trace_(trace), name_(name), bytes_(bytes) {

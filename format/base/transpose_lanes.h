@@ -1,4 +1,4 @@
-// Eight vectors of eight floats, transposed.
+// Transposes eight vectors of eight floats.
 #pragma once
 
 #include "format/base/simd.h"
@@ -25,7 +25,7 @@ namespace weir {
   }
 }
 
-/// The same of each half of the vectors.
+/// Transposes the lower and the upper half of the vectors, each like transpose_8() above.
 [[gnu::always_inline]] inline void transpose_8(Floats16 (&r)[8]) {
   Floats16 a[8];
   for (int i = 0; i < 8; i += 2) {

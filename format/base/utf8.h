@@ -6,8 +6,8 @@
 
 namespace weir {
 
-/// Bytes of the character that `text` begins with; 0 where that is no UTF-8 (Unicode 15, table 3-7: no overlong form,
-/// no surrogate, nothing above U+10FFFF), or there is none.
+/// Returns the bytes of the character that `text` begins with. Returns 0 if `text` is empty or does not begin with
+/// UTF-8 (Unicode 15, table 3-7: no overlong form, no surrogate, nothing above U+10FFFF).
 inline std::size_t utf8_bytes(std::string_view text) {
   const auto at = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
   const auto follows = [&](std::size_t i, unsigned least = 0x80, unsigned most = 0xBF) {
@@ -25,7 +25,7 @@ inline std::size_t utf8_bytes(std::string_view text) {
   return 0;
 }
 
-/// Whether all of `text` is.
+/// Returns whether all of `text` is UTF-8.
 inline bool is_utf8(std::string_view text) {
   while (const std::size_t bytes = utf8_bytes(text)) text.remove_prefix(bytes);
   return text.empty();

@@ -7,9 +7,9 @@
 namespace weir {
 namespace {
 
-/// How much of a second's bytes may be moved at once after a pause.
+/// Seconds of the rate that may be moved at once after a pause.
 constexpr double kBurst_s = 0.1;
-/// How long a cancellation may be overlooked.
+/// The longest sleep, and so the longest time until a cancellation is noticed.
 constexpr std::chrono::milliseconds kNap{100};
 
 }  // namespace
@@ -42,7 +42,7 @@ TokenBucket::Time TokenBucket::take(std::uint64_t bytes, Time now) {
   tokens_ = std::min(capacity_, tokens_ + Seconds(then - at_).count() * rate_) - static_cast<double>(bytes);
   at_ = then;
   if (tokens_ >= 0) return now;
-  // What would take centuries (a terabyte at a byte a second) must not overflow the clock.
+  // A wait of centuries (a terabyte at a byte a second) must not overflow the clock.
   const Seconds longest(1e9);
   return then + std::chrono::ceil<Time::duration>(std::min(longest, Seconds(-tokens_ / rate_)));
 }

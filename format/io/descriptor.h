@@ -7,7 +7,7 @@
 
 namespace weir {
 
-/// Closes on destruction; -1 owns nothing.
+/// Closes its descriptor on destruction; -1 means that it owns none.
 class Descriptor {
  public:
   explicit Descriptor(int descriptor = -1) : descriptor_(descriptor) {}

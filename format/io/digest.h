@@ -19,33 +19,34 @@ struct XXH3_state_s;
 
 namespace weir {
 
-/// Bytes of a piece of a file.
+/// Bytes of a piece of a file; the last piece may be shorter.
 inline constexpr std::uint64_t kDigestPieceBytes = std::uint64_t{16} << 20U;
 
-/// A good size for the scratch memory of piece_digest: it stays in the second-level cache.
+/// A good size for the scratch memory of piece_digest(): it fits the second-level cache.
 inline constexpr std::size_t kDigestScratchBytes = std::size_t{1} << 20U;
 
 /// An xxh3-128 in canonical form.
 struct Digest {
   std::array<std::byte, 16> bytes{};
 
-  /// 32 lower-case hex digits.
+  /// Returns 32 lower-case hex digits.
   std::string hex() const;
   friend constexpr bool operator==(const Digest&, const Digest&) = default;
 };
 
-/// xxh3-128 of one piece.
+/// Returns the xxh3-128 of one piece.
 Digest piece_digest(std::span<const std::byte> piece);
-/// xxh3-128 of `bytes` bytes of a file from `offset` on, read through `scratch`, of any size.
+/// Returns the xxh3-128 of the `bytes` bytes of `file` from `offset` on, read through `scratch`, which may have any
+/// size.
 Digest piece_digest(File& file, std::uint64_t offset, std::uint64_t bytes, std::span<std::byte> scratch);
-/// The same of the float32 values of a leaf inside the domain (x fastest), as little-endian bytes.
+/// Returns the xxh3-128 of the float32 values of a leaf inside the domain (x fastest), as little-endian bytes.
 Digest leaf_digest(std::span<const float> values);
 
-/// xxh3-64 of bytes that lie at `place`, which is its seed: sums of these over the pieces of a file tell whether all
-/// are as they were, in whatever order they are written.
+/// Returns the xxh3-64 of `bytes`, with their position `place` in the file as the seed. The sum of these over the
+/// pieces of a file does not depend on the order in which they are written, and tells whether all are as they were.
 std::uint64_t placed_checksum(std::uint64_t place, std::span<const std::byte> bytes);
 
-/// Combines digests as they come, in constant memory. Not thread-safe.
+/// Combines digests one after the other, in constant memory. Not thread-safe.
 class DigestStream {
  public:
   DigestStream();
@@ -54,9 +55,9 @@ class DigestStream {
   DigestStream& operator=(DigestStream&&) noexcept;
 
   void update(const Digest& next);
-  /// Several consecutive ones.
+  /// Adds several consecutive digests.
   void update(std::span<const Digest> next);
-  /// Of everything so far; more may follow.
+  /// Returns the digest of everything added so far; more may be added afterwards.
   Digest digest() const;
 
  private:
@@ -66,19 +67,19 @@ class DigestStream {
   std::unique_ptr<XXH3_state_s, Free> state_;
 };
 
-/// DigestStream of all `pieces` at once.
+/// Returns what a DigestStream of all `pieces` returns.
 Digest combine(std::span<const Digest> pieces);
 
-/// The digest of a whole file, its pieces read one after the other.
+/// Returns the digest of a whole file; reads its pieces one after the other.
 Digest whole_digest(File& file);
-/// The same of one in memory.
+/// Returns the digest of a whole file in memory.
 Digest whole_digest(std::span<const std::byte> file);
 
-/// Number of pieces of a file of `bytes`.
+/// Returns the number of pieces of a file of `bytes` bytes.
 constexpr std::uint64_t piece_count(std::uint64_t bytes) {
   return bytes / kDigestPieceBytes + (bytes % kDigestPieceBytes != 0 ? 1 : 0);
 }
-/// Piece `i` of a file in memory; i < piece_count(file.size()).
+/// Returns piece `i` of a file in memory; i < piece_count(file.size()).
 std::span<const std::byte> file_piece(std::span<const std::byte> file, std::uint64_t i);
 
 }  // namespace weir

@@ -1,4 +1,4 @@
-// Which file a path leads to, whatever its names.
+// The identity of a file (device and inode), whichever of its names a path uses.
 #pragma once
 
 #include <cstdint>
@@ -15,14 +15,14 @@ struct FileId {
   auto operator<=>(const FileId&) const = default;
 };
 
-/// By way of symbolic links; nullopt where there is none.
+/// Returns the identity of the file at `path`, symbolic links followed; nullopt if there is no file.
 std::optional<FileId> file_id(const std::string& path);
 
-/// Of those of the files that there are.
+/// Returns the identities of those files of `paths` that exist.
 std::vector<FileId> file_ids(std::span<const std::string> paths);
 
-/// Throws Error(usage) where one of `inputs` is the file at `output` or at one of weir's own names beside it, and so
-/// would be replaced or removed.
+/// Throws Error(usage) if one of `inputs` is the file at `output` or at one of weir's own names beside it, because a
+/// conversion would replace or remove that file.
 void require_not_input(std::span<const FileId> inputs, const std::string& output);
 
 }  // namespace weir

@@ -35,9 +35,9 @@ struct stat status_of(const Descriptor& file, const std::string& path) {
   return status;
 }
 
-// MAP_SHARED, so that pages pinned for a device are those of the page cache: of a private mapping the kernel would
-// copy every page first, in case it is written to. A few file systems (FUSE past the page cache) have private ones
-// only.
+// Maps with MAP_SHARED, so that pages pinned for a device are those of the page cache: the kernel would copy every page
+// of a private mapping first, in case it is written to. A few file systems (FUSE past the page cache) allow private
+// mappings only.
 void* map(const Descriptor& file, std::size_t bytes) {
   void* shared = ::mmap(nullptr, bytes, PROT_READ, MAP_SHARED, file.get(), 0);
   return shared != MAP_FAILED ? shared : ::mmap(nullptr, bytes, PROT_READ, MAP_PRIVATE, file.get(), 0);
@@ -100,9 +100,9 @@ void FileMapping::populate(std::uint64_t offset, std::uint64_t bytes) const {
   do {
     failure = ::madvise(at, offset + bytes - begin, MADV_POPULATE_READ) == 0 ? 0 : errno;
   } while (failure == EINTR || failure == EAGAIN);
-  if (failure == 0 || failure == EINVAL || failure == ENOSYS) return;  // the latter two: an older system
+  if (failure == 0 || failure == EINVAL || failure == ENOSYS) return;  // EINVAL, ENOSYS: an older system
   check_unchanged();
-  // EFAULT is what the kernel says for pages that it could not read.
+  // The kernel reports EFAULT for pages that it could not read.
   throw io_error(path_, cat("read bytes ", offset, " to ", offset + bytes), failure == EFAULT ? EIO : failure);
 }
 

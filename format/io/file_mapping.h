@@ -11,14 +11,15 @@
 
 namespace weir {
 
-/// Looking at bytes() of a file that another process truncates ends this one by SIGBUS, as with any mapping;
-/// populate, read and check_unchanged report it instead. All const calls may be made by any thread at any time.
+/// If another process truncates the file, reading bytes() ends this process by SIGBUS, as with any mapping; populate(),
+/// read() and check_unchanged() report it instead. Any thread may make any const call at any time.
 class FileMapping {
  public:
-  /// Throws Error(input) for a missing, empty or no regular file; `suffix`, ".nvdb", is what should have been given.
-  /// Error(io) where it cannot be opened or mapped although it may be a good one: no right, no memory, a file server.
+  /// Throws Error(input) for a file that is missing, empty or not regular; messages name `suffix` (".nvdb") as what to
+  /// give. Throws Error(io) if a file that may be good cannot be opened or mapped: no permission, no memory, a file
+  /// server.
   FileMapping(const std::string& path, const std::string& suffix);
-  /// The same of `file`, open for reading, whatever has `path` now, which messages name.
+  /// Maps `file`, which is open for reading. Messages name `path`, even if another file has that name by now.
   FileMapping(Descriptor file, const std::string& path, const std::string& suffix);
   ~FileMapping();
   FileMapping(FileMapping&& other) noexcept;
@@ -28,26 +29,27 @@ class FileMapping {
 
   const std::string& path() const { return path_; }
   std::span<const std::byte> bytes() const { return bytes_; }
-  /// Of the file as it was opened, whatever has the path now.
+  /// Returns the descriptor of the file that was opened, even if another file has the path by now.
   int descriptor() const { return file_.get(); }
 
-  /// Releases the pages read so far, since mapped pages count as the process's memory; they stay in the page cache and
-  /// are mapped again when they are read.
+  /// Releases the pages read so far, because mapped pages count as the process's memory. They stay in the page cache
+  /// and are mapped again when they are read.
   void release_pages() const;
-  /// True where a sample of the pages of [offset, offset + bytes) is in the page cache, or the system does not tell.
+  /// Returns true if a sample of the pages of [offset, offset + bytes) is in the page cache, or if the system does not
+  /// tell.
   bool cached(std::uint64_t offset, std::uint64_t bytes) const;
-  /// Starts to read what is not in the page cache; returns before it is there.
+  /// Starts to read the bytes that are not in the page cache; returns before they are there.
   void prefetch(std::uint64_t offset, std::uint64_t bytes) const;
-  /// Reads and maps the pages of [offset, offset + bytes) at once, where the system can (Linux 5.14), else does
-  /// nothing. Throws Error(input) where the file was truncated, Error(io) where the disk cannot be read.
+  /// Reads and maps the pages of [offset, offset + bytes) at once if the system can (Linux 5.14); otherwise does
+  /// nothing. Throws Error(input) if the file was truncated, Error(io) if the disk cannot be read.
   void populate(std::uint64_t offset, std::uint64_t bytes) const;
-  /// The file's bytes from `offset` on, by pread. Throws Error(input) where it ends before, Error(io) where it cannot
-  /// be read.
+  /// Reads the file's bytes from `offset` on, by pread. Throws Error(input) if the file ends before, Error(io) if it
+  /// cannot be read.
   void read(std::uint64_t offset, std::span<std::byte> into) const;
-  /// Throws Error(input) where the file's size or time of change is not that at opening. A change through another
-  /// mapping may be noticed late.
+  /// Throws Error(input) if the file's size or modification time is not what it was at opening. A change through
+  /// another mapping may be noticed late.
   void check_unchanged() const;
-  /// Whether `path` leads to the file that is mapped: another one may have been given its name.
+  /// Returns whether `path` leads to the mapped file; another file may have been given that name.
   bool is_at(const std::string& path) const;
 
  private:

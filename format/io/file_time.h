@@ -1,4 +1,4 @@
-// Times of files as one number.
+// The time of a file as one number.
 #pragma once
 
 #include <cstdint>
@@ -6,8 +6,8 @@
 
 namespace weir {
 
-/// Nanoseconds since 1970 of a file system's seconds and nanoseconds; of a time before 1678 or after 2261, the nearest
-/// that 64 bits hold.
+/// Returns the nanoseconds since 1970 for a file system's seconds and nanoseconds. A time before 1678 or after 2261
+/// becomes the nearest that 64 bits hold.
 inline std::int64_t nanoseconds_of(std::int64_t seconds, std::int64_t nanoseconds) {
   std::int64_t total = 0;
   if (!__builtin_mul_overflow(seconds, std::int64_t{1'000'000'000}, &total) &&

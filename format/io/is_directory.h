@@ -7,7 +7,7 @@
 
 namespace weir {
 
-/// False where `path` cannot be looked at.
+/// Returns false if `path` cannot be looked at.
 inline bool is_directory(const std::string& path) {
   struct stat status {};
   return ::stat(path.c_str(), &status) == 0 && S_ISDIR(status.st_mode);

@@ -1,4 +1,4 @@
-// A file system whose files keep to a bandwidth, spill files among them.
+// A file system that keeps the reads and writes of all its files, spill files too, to a bandwidth.
 #pragma once
 
 #include <memory>
@@ -8,7 +8,7 @@
 
 namespace weir {
 
-/// Both must outlive the result and its files.
+/// Both arguments must outlive the result and its files.
 std::unique_ptr<FileSystem> limit_file_system(FileSystem& files, Bandwidth& bandwidth);
 
 }  // namespace weir

@@ -9,8 +9,8 @@
 namespace weir {
 namespace {
 
-// Has the system map the pages that `bytes` of a mapping lie in, 16 together where they are cleared: it does so for a
-// read alone.
+// Has the system map the pages of `bytes`, 16 together if they are cleared. It maps several together only on a read, so
+// this function reads one byte per group.
 void map_pages(std::span<const std::byte> bytes) {
   constexpr std::size_t kTogether = std::size_t{64} << 10U;
   const std::size_t first = kTogether - reinterpret_cast<std::uintptr_t>(bytes.data()) % kTogether;
@@ -25,7 +25,7 @@ void clear_reserved_pages(File& file, std::uint64_t bytes, const std::atomic<boo
   if (file.descriptor() < 0) return;
   constexpr std::uint64_t kPiece = std::uint64_t{4} << 20U;
   for (std::uint64_t at = 0; at < bytes && !stop; at += kPiece) {
-    // Space that is reserved once more is cleared.
+    // fallocate() of space that is reserved already clears it.
     const auto piece = static_cast<off_t>(std::min(kPiece, bytes - at));
     if (::fallocate(file.descriptor(), 0, static_cast<off_t>(at), piece) != 0) return;
   }

@@ -1,5 +1,5 @@
-// Writes to a file of a memory file system by way of a mapping: the system lets one thread at a time write to a file,
-// and 16 that copy into its pages take a fifth of the time.
+// Writes to a file of a memory file system (tmpfs) through a mapping. The system lets only one thread at a time write()
+// to a file; 16 threads that copy into its pages take a fifth of the time.
 #pragma once
 
 #include <atomic>
@@ -12,17 +12,18 @@
 
 namespace weir {
 
-/// Clears the pages of the first `bytes` of a file of a memory file system, whose space is reserved and to which
-/// nothing is written yet, until `stop`. Of pages that are cleared the system maps 16 at a time, of others one: 16
-/// threads copy 0.5 GB there in 0.013 s, not 0.032. Clearing takes one thread 0.1 s, to be spent beside other work.
+/// Clears the pages of the first `bytes` of a file of a memory file system, until `stop` is set. Their space is
+/// reserved and nothing is written there yet. The system maps cleared pages 16 at a time, others one at a time: 16
+/// threads then copy 0.5 GB in 0.013 s instead of 0.032 s. Clearing takes one thread 0.1 s, which it should spend
+/// beside other work.
 void clear_reserved_pages(File& file, std::uint64_t bytes, const std::atomic<bool>& stop);
 
-/// The first bytes of a file, whose space is reserved, so that no write finds the file system full. While it is there
-/// the pages that are written count as the process's memory; a process that truncates the file meanwhile ends this one
-/// by SIGBUS, as with any mapping. memory() is the mapping; all other calls are the file's.
+/// Maps the first bytes of a file. Their space is reserved, so that no write finds the file system full. While the
+/// mapping exists, written pages count as the process's memory; if another process truncates the file, this one ends by
+/// SIGBUS, as with any mapping. memory() is the mapping; all other calls go to the file.
 class MappedWrites final : public File {
  public:
-  /// `file` must outlive the object. Null where it cannot be mapped.
+  /// `file` must outlive the object. Returns null if the file cannot be mapped.
   static std::unique_ptr<MappedWrites> of(File& file, std::uint64_t bytes);
   ~MappedWrites() override;
 

@@ -17,8 +17,8 @@
 
 namespace weir {
 
-// A mapping that grows. Reads and writes of several threads go on together; only growing excludes them, for it may move
-// the bytes.
+// A mapping that grows. Several threads read and write at the same time; only growing excludes them, because it may
+// move the bytes.
 class MemoryFileSystem::Pages {
  public:
   explicit Pages(PagesOf pages) : pages_(pages) {}
@@ -46,7 +46,8 @@ class MemoryFileSystem::Pages {
     if (!bytes.empty()) std::memcpy(bytes.data(), begin_ + offset, bytes.size());
   }
 
-  /// At least `bytes`; with `ahead` room for more, so that a file written piece by piece is not moved for each.
+  /// Grows the file to at least `bytes`. With `ahead` it reserves room for more, so that a file written piece by piece
+  /// is not moved for each piece.
   void grow(const std::string& path, std::uint64_t bytes, bool ahead) {
     const std::scoped_lock lock(mutex_);
     if (bytes > capacity_) {
@@ -63,7 +64,7 @@ class MemoryFileSystem::Pages {
       if (moved == MAP_FAILED) throw io_error(path, cat("get ", capacity, " bytes of memory for it"), errno);
       begin_ = static_cast<std::byte*>(moved);
       capacity_ = capacity;
-      // Fewer faults, where a page more does not count.
+      // Large pages cause fewer page faults. They are used only for files so large that a page more does not count.
       constexpr std::uint64_t kLarge = std::uint64_t{16} << 20U;
       if (capacity >= kLarge) ::madvise(begin_, capacity, MADV_HUGEPAGE);
     }

@@ -1,4 +1,4 @@
-// Files in the memory of this process, for a conversion whose result is to stay in memory and not go to a disk.
+// Files in the memory of this process, for a conversion with a result that stays in memory.
 #pragma once
 
 #include <cstddef>
@@ -12,21 +12,22 @@
 
 namespace weir {
 
-/// The bytes of a file are contiguous and page-aligned. It grows by moving pages, not bytes, and what was not written
-/// costs no memory; nor is it reserved by preallocate, so that memory may still run out later, which the system tells
-/// by ending the process. The only directory is ".", and it is not said to be memory: this is for callers that want
-/// just that. Thread-safe.
+/// A file's bytes are contiguous and page-aligned. A file grows by moving pages, not bytes, and pages that are not
+/// written cost no memory. preallocate() reserves no memory, so memory may still run out later; the system then ends
+/// the process. The only directory is "."; is_memory() denies that it is memory, because callers of this class want
+/// their files in memory. Thread-safe.
 class MemoryFileSystem final : public FileSystem {
  public:
-  /// What files are made of: pages that read zero where nothing was written, or those of earlier files of this kind,
-  /// which read anything there and need not be made (ReusedPages).
+  /// The source of a file's pages. the_system: new pages, which read as zero where nothing was written. earlier_files:
+  /// pages of earlier files of this kind (ReusedPages), which need not be made and hold arbitrary bytes until they are
+  /// written.
   enum class PagesOf { the_system, earlier_files };
 
   explicit MemoryFileSystem(PagesOf pages = PagesOf::the_system);
   ~MemoryFileSystem() override;
 
-  /// The bytes of a file, until it is written to, removed or replaced, or the file system ends. Throws Error(io) where
-  /// there is none.
+  /// Returns the bytes of a file, valid until the file is written to, removed or replaced, or the file system ends.
+  /// Throws Error(io) if there is no such file.
   std::span<const std::byte> content(const std::string& path) const;
 
   std::unique_ptr<File> create(const std::string& path) override;
@@ -42,7 +43,7 @@ class MemoryFileSystem final : public FileSystem {
   void sync_directory(const std::string&) override {}
   bool exists(const std::string& path) override;
   bool is_memory(const std::string&) override { return false; }
-  /// What the process can still take (available_bytes).
+  /// Returns the bytes that the process can still take (available_bytes()).
   std::uint64_t free_bytes(const std::string& directory) override;
 
  private:

@@ -24,7 +24,7 @@ class PosixFile final : public File {
  public:
   PosixFile(int descriptor, std::string path, bool exclusive)
       : descriptor_(descriptor), path_(std::move(path)), place_(path_), exclusive_(exclusive) {}
-  /// One without a name, in `directory`, which is the path that its errors carry for programs.
+  /// Returns a file without a name in `directory`, the path that its errors carry for programs.
   static std::unique_ptr<PosixFile> unnamed(int descriptor, const std::string& directory) {
     auto file = std::make_unique<PosixFile>(descriptor, directory + " (temporary file)", true);
     file->place_ = directory;
@@ -59,7 +59,7 @@ class PosixFile final : public File {
   }
 
   bool preallocate(std::uint64_t bytes) override {
-    // fallocate and not posix_fallocate: the latter writes zeros where the file system cannot reserve.
+    // fallocate() instead of posix_fallocate(): the latter writes zeros if the file system cannot reserve.
     int status = 0;
     do {
       status = bytes == 0 ? 0 : ::fallocate(descriptor_, 0, 0, static_cast<off_t>(bytes));
@@ -110,8 +110,8 @@ class PosixFile final : public File {
   }
 
   int descriptor_;
-  std::string path_;   ///< as messages call it
-  std::string place_;  ///< of its file system: the path, or the directory of a file without a name
+  std::string path_;   ///< the path as messages name it
+  std::string place_;  ///< the path on its file system: `path_`, or the directory of a file without a name
   bool exclusive_;
 };
 
@@ -124,7 +124,7 @@ bool is_link(const std::string& path) {
   return ::lstat(path.c_str(), &status) == 0 && S_ISLNK(status.st_mode);
 }
 
-// Of a new file or directory, whose own directory was there when it was looked for.
+// The error of a new file or directory that cannot be created although its own directory was there at the check.
 Error not_created(const std::string& path, const char* action, int errno_value) {
   const Error error = io_error(path, action, errno_value);
   if (errno_value != ENOENT) return error;
@@ -140,7 +140,7 @@ class PosixFileSystem final : public FileSystem {
     std::unique_ptr<File> file = open(path);
     struct stat status {};
     if (::fstat(file->descriptor(), &status) != 0) throw io_error(path, "look at", errno);
-    // Emptied by this name, it would be empty by the other one.
+    // Emptying the file under this name would also empty it under its other name.
     if (status.st_nlink > 1) refuse_foreign(path, "has a second name (a hard link)");
     file->clear();
     return file;
@@ -155,7 +155,7 @@ class PosixFileSystem final : public FileSystem {
       if (!made && errno == EEXIST) descriptor = ::open(path.c_str(), kFlags, 0666);
       if (descriptor < 0) {
         const int reason = errno;
-        // The links of its directory may be at fault as well.
+        // ELOOP may also come from a symbolic link among its directories.
         if (reason == ELOOP && is_link(path)) refuse_foreign(path, "is a symbolic link");
         throw not_created(path, "create", reason);
       }
@@ -170,8 +170,8 @@ class PosixFileSystem final : public FileSystem {
       } else {
         warn_once_unlockable(path, errno);
       }
-      // Between open and lock the writer before us may have renamed this very file to its result:
-      // writing to it then would destroy that.
+      // Between open and lock, the previous writer may have renamed this very file to its result: writing to it would
+      // then destroy that result.
       if (!file->has_its_name()) continue;
       struct stat mine {};
       if (::fstat(descriptor, &mine) != 0) throw io_error(path, "look at", errno);
@@ -215,7 +215,7 @@ class PosixFileSystem final : public FileSystem {
 
   bool link(const std::string& from, const std::string& to) override {
     if (::link(from.c_str(), to.c_str()) == 0) return true;
-    // EPERM is also of a file that is another user's, which the system may protect from links.
+    // EPERM also occurs for a file of another user, because the system may protect such files from links.
     if (errno == EPERM || errno == EOPNOTSUPP || errno == ENOSYS || errno == EMLINK) return false;
     throw io_error(from, "link to " + to, errno);
   }

@@ -1,4 +1,4 @@
-// A file that the system does not open for reading.
+// The error for a file that the system does not open for reading.
 #pragma once
 
 #include <string>
@@ -7,11 +7,11 @@
 
 namespace weir {
 
-/// Whether a call of the system failed at the name that it was given, as of a file that is missing. Rights, devices,
-/// servers, descriptors and memory may come back, and say nothing of what the file holds.
+/// Returns whether a call of the system failed because of the name it was given, for instance a missing file. Failures
+/// of permissions, devices, servers, descriptors or memory may go away, and tell nothing about the file.
 bool is_fault_of_name(int errno_value);
 
-/// "PATH: cannot ACTION: ...", with the remedy: Error(input) where the name is at fault, else Error(io).
+/// Returns "PATH: cannot ACTION: ..." with the remedy: Error(input) if the name is at fault, otherwise Error(io).
 Error refused_open(const std::string& path, const char* action, int errno_value);
 
 }  // namespace weir

@@ -7,7 +7,7 @@
 namespace weir {
 
 ReusedPages& ReusedPages::of_process() {
-  static auto* const pages = new ReusedPages;  // files that are static objects may outlive it otherwise
+  static auto* const pages = new ReusedPages;  // never destroyed: static objects that are files may outlive it
   return *pages;
 }
 
@@ -48,7 +48,7 @@ void ReusedPages::unmap_down_to(std::size_t bytes) noexcept {
     const std::lock_guard lock(mutex_);
     return held_.bytes() > bytes ? held_.take_oldest() : std::nullopt;
   };
-  // Which takes long, and not under the lock.
+  // munmap takes long, so it runs without the lock.
   while (const auto oldest = take_oldest()) ::munmap(oldest->data(), oldest->size());
 }
 

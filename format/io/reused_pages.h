@@ -1,5 +1,5 @@
-// Memory of files that are gone, for the next ones: a system makes 2 GB of pages a second and core, and a simulation
-// saves one step after the other.
+// Keeps the memory of removed files for the next ones. A system makes only 2 GB of pages a second and core, and a
+// simulation saves one step after the other.
 #pragma once
 
 #include <cstddef>
@@ -10,13 +10,13 @@
 
 namespace weir {
 
-/// Anonymous mappings that the system may take the pages of wherever it needs memory (MADV_FREE); until then they count
-/// as the process's. Thread-safe.
+/// Holds anonymous mappings. The system may take their pages when it needs memory (MADV_FREE); until then they count as
+/// the process's. Thread-safe.
 class ReusedPages {
  public:
-  /// What it holds at most: what came back first is unmapped.
+  /// The most bytes held; beyond that, the mapping that came back first is unmapped.
   static constexpr std::size_t kMostHeld = std::size_t{1} << 30U;
-  /// Of a mapping: smaller ones are soon made.
+  /// The smallest mapping that is held; smaller ones are made quickly.
   static constexpr std::size_t kLeast = std::size_t{16} << 20U;
 
   ReusedPages() = default;
@@ -24,15 +24,15 @@ class ReusedPages {
   ReusedPages(const ReusedPages&) = delete;
   ReusedPages& operator=(const ReusedPages&) = delete;
 
-  /// The process's. It stays until the process ends, and with it what it holds.
+  /// Returns the object of the process, which keeps its mappings until the process ends.
   static ReusedPages& of_process();
 
-  /// The smallest mapping held that has so many bytes, and at most twice as many; empty where there is none. Its bytes
-  /// are any.
+  /// Returns the smallest held mapping of at least `bytes` and at most twice as many; empty if there is none. It holds
+  /// arbitrary bytes.
   std::span<std::byte> take(std::size_t bytes);
-  /// `mapping`, whole pages, is no longer used by the caller.
+  /// Takes back `mapping` (whole pages), which the caller no longer uses.
   void give_back(std::span<std::byte> mapping) noexcept;
-  /// Unmaps what it holds.
+  /// Unmaps all held mappings.
   void clear();
   std::size_t held_bytes() const;
 

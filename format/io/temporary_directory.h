@@ -1,11 +1,11 @@
-// Where temporary files go.
+// The directory for temporary files.
 #pragma once
 
 #include <string>
 
 namespace weir {
 
-/// TMPDIR, or /tmp. Throws Error(io), with the remedy, where that is no directory.
+/// Returns TMPDIR, or /tmp. Throws Error(io), with the remedy, if that is not a directory.
 std::string temporary_directory();
 
 }  // namespace weir

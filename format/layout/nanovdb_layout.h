@@ -1,5 +1,5 @@
-// NanoVDB on disk, ABI 32: sizes and field offsets in bytes, little endian.
-// Names follow NanoVDB.h of 10.0.1 (stamp 32.4.2); FORMAT.md has the pictures.
+// NanoVDB on disk, ABI 32: sizes and field offsets in bytes, little endian. Names follow NanoVDB.h of 10.0.1 (stamp
+// 32.4.2); FORMAT.md has diagrams.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@ inline constexpr std::uint64_t kMagic = 0x304244566f6e614eULL;          ///< "Na
 inline constexpr std::uint32_t kVersion = 32U << 21U | 4U << 10U | 2U;  ///< 32.4.2
 inline constexpr std::uint32_t kMajorVersion = 32;
 inline constexpr std::uint64_t kNoChecksum = ~std::uint64_t{0};
-inline constexpr std::uint64_t kAlignment = 32;  ///< of every node
-inline constexpr std::uint64_t kPage = 4096;     ///< the grid's offset in the file is a multiple
+inline constexpr std::uint64_t kAlignment = 32;  ///< alignment of every node
+inline constexpr std::uint64_t kPage = 4096;     ///< the grid's offset in the file is a multiple of it
 
 inline constexpr std::uint64_t kFileHeaderBytes = 16;
 inline constexpr std::uint64_t kFileMetaBytes = 176;

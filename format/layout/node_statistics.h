@@ -28,7 +28,7 @@ struct NodeStatistics {
     m2 += delta * (static_cast<double>(value) - mean);
   }
 
-  /// A tile: `n` active voxels of one value.
+  /// Adds a tile: `n` active voxels of one value.
   void add_tile(float value, std::uint64_t n, const Box& box) {
     const double denominator = 1.0 / static_cast<double>(count + n);
     const double delta = static_cast<double>(value) - mean;
@@ -39,7 +39,7 @@ struct NodeStatistics {
     add_box(box);
   }
 
-  /// A child node.
+  /// Adds a child node.
   void add(const NodeStatistics& other) {
     if (other.count == 0) return;
     const double denominator = 1.0 / static_cast<double>(count + other.count);
@@ -62,7 +62,7 @@ struct NodeStatistics {
  private:
   static constexpr std::int64_t kNone = std::numeric_limits<std::int32_t>::max();
 
-  // NaN compares false and leaves the extrema alone, as in the stock code.
+  // NaN compares false and so leaves the extrema as they are, as in the stock code.
   void extend(float low, float high) {
     if (low < min) min = low;
     if (high > max) max = high;

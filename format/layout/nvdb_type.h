@@ -8,11 +8,11 @@ namespace weir {
 /// NanoVDB's grid types that hold scalars a renderer can use; values as on disk.
 enum class GridType : std::uint32_t { float32 = 1, fp4 = 13, fp8 = 14, fp16 = 15, fpn = 16 };
 
-/// NanoVDB's grid classes that a grid of scalars can have; values as on disk. Its validators take them for all of
-/// GridType, and a staggered one, 3, for vectors alone.
+/// NanoVDB's grid classes that a grid of scalars can have; values as on disk. NanoVDB's validators accept them for all
+/// of GridType; they accept a staggered grid, 3, for vectors only.
 enum class GridClass : std::uint32_t { unknown = 0, level_set = 1, fog_volume = 2 };
 
-/// "float32", "fp4", "fp8", "fp16" or "fpn".
+/// Returns "float32", "fp4", "fp8", "fp16" or "fpn".
 constexpr const char* grid_type_name(GridType type) {
   switch (type) {
     case GridType::float32:

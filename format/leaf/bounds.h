@@ -10,7 +10,7 @@ struct MinMax {
   float max;
 };
 
-/// Bounds of nothing: any value widens them.
+/// The bounds of no values: any value widens them.
 inline constexpr MinMax kNoBounds{std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()};
 
 inline void widen(MinMax& bounds, const MinMax& by) {

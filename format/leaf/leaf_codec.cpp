@@ -15,7 +15,7 @@ namespace {
 using Floats4 = float __attribute__((vector_size(16)));
 using Doubles4 = double __attribute__((vector_size(32)));
 
-// NodeStatistics::add for kLeafBatch leaves side by side, four to a vector, which most machines have.
+// NodeStatistics::add() for kLeafBatch leaves side by side, four to a vector, a width that most machines have.
 constexpr std::size_t kFours = kLeafBatch / 4;
 
 struct BatchStatistics {
@@ -56,7 +56,8 @@ WEIR_SIMD void add_side_by_side(const float* values, BatchStatistics& batch) {
   batch = s;
 }
 
-// Transposes 8 x 8 values: row i of `from`, `stride` apart, becomes column i of `to`, whose rows are 64 apart.
+// Transposes 8 x 8 values. Rows of `from` are `stride` apart, rows of `to` 64; row i of `from` becomes column i of
+// `to`.
 WEIR_SIMD void transpose(const float* from, std::int64_t stride, float* to) {
   Floats8 rows[8];
   for (std::size_t i = 0; i < 8; ++i) {
@@ -131,7 +132,7 @@ void full_leaf_statistics(std::span<const LeafValues> leaves, std::span<const Bo
     const std::size_t lane = l % 4;
     statistics[l] = NodeStatistics{batch.min[v][lane], batch.max[v][lane], batch.mean[v][lane],
                                    batch.m2[v][lane],  kLeafVoxels,        nodes[l]};
-    // Of a sum of two NaN machines take the first, which lanes have in another order.
+    // Machines return the first of two NaN that are added; the lanes add them in another order.
     if (!std::isfinite(batch.mean[v][lane])) statistics[l] = leaf_statistics(leaves[l], nodes[l], nodes[l]);
   }
 }

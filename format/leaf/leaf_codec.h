@@ -12,31 +12,31 @@
 
 namespace weir {
 
-/// Values of a leaf in its own order: index x<<6 | y<<3 | z, z fastest.
+/// The values of a leaf in the leaf's order: index x<<6 | y<<3 | z, z fastest.
 using LeafValues = std::array<float, kLeafVoxels>;
 
-/// Copies in-domain values of one leaf out of a dense block into leaf order; the rest becomes `outside`.
-/// `values` holds `box` (index space, x fastest); `node` is the leaf's 8^3 box; `inside` = node & domain,
-/// not empty, inside `box`.
+/// Copies the in-domain values of one leaf from a dense block into leaf order; the other voxels become `outside`.
+/// `values` holds `box` (index space, x fastest); `node` is the leaf's 8^3 box; `inside` = node & domain, not empty,
+/// inside `box`.
 void gather_leaf(std::span<const float> values, const Box& box, const Box& node, const Box& inside, float outside,
                  LeafValues& leaf);
 
-/// Statistics of the active values (those in `inside`) in mask order.
+/// Returns the statistics of the active values (those in `inside`), computed in mask order.
 NodeStatistics leaf_statistics(const LeafValues& values, const Box& node, const Box& inside);
 
-/// The same of the voxels of `mask`, which has some.
+/// Returns the statistics of the voxels of `mask`, which is not empty.
 NodeStatistics leaf_statistics(const LeafValues& values, const Box& node, const LeafMask& mask);
 
-/// Leaves whose statistics are computed together: each one's arithmetic is a chain of divisions that
-/// wait for each other, sixteen chains at a time keep the machine busy.
+/// The number of leaves for which statistics are computed together. The arithmetic of one leaf is a chain of divisions
+/// that wait for each other; sixteen chains at a time keep the machine busy.
 inline constexpr std::size_t kLeafBatch = 16;
 
-/// The same for up to kLeafBatch leaves that lie wholly inside the domain, in one go: bit for bit what
-/// leaf_statistics gives for each. `nodes` and `statistics` are as long as `leaves`.
+/// Computes the statistics of up to kLeafBatch leaves that lie wholly inside the domain, bit for bit as
+/// leaf_statistics() does for each. `nodes` and `statistics` are as long as `leaves`.
 void full_leaf_statistics(std::span<const LeafValues> leaves, std::span<const Box> nodes,
                           std::span<NodeStatistics> statistics);
 
-/// Writes the 2144 bytes of a float leaf whose active voxels are those of `inside`.
+/// Writes the 2144 bytes of a float leaf with the voxels of `inside` active.
 void encode_float_leaf(const LeafValues& values, const Box& node, const Box& inside, const NodeStatistics& statistics,
                        std::span<std::byte, nvdb::kFloatLeafBytes> image);
 

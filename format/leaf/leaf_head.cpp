@@ -9,7 +9,7 @@
 namespace weir {
 namespace {
 
-// Active mask of a leaf, one byte per (x, y) row of eight z.
+// Returns the active mask of a leaf, one byte per (x, y) row of eight z.
 std::array<std::uint8_t, 64> active_rows(const Box& node, const Box& inside) {
   std::array<std::uint8_t, 64> rows{};
   const Index3 lo = inside.lo - node.lo;

@@ -1,4 +1,4 @@
-// What all leaves begin with: the box and the mask of their active voxels.
+// The beginning of every leaf: the box and the mask of its active voxels.
 #pragma once
 
 #include <bitset>
@@ -11,17 +11,17 @@
 
 namespace weir {
 
-/// Zeroes the 96 bytes of a leaf's head and writes bounding box, flags and value mask of the active voxels
-/// `inside` (not empty) the leaf at `node`. `flags` are added to "has a bounding box".
+/// Zeroes the 96 bytes of a leaf's head and writes bounding box, flags and value mask. `inside` (not empty) holds the
+/// active voxels of the leaf at `node`. `flags` are added to "has a bounding box".
 void write_leaf_head(const Box& node, const Box& inside, std::uint8_t flags, std::span<std::byte> image);
 
-/// Active voxels of a leaf: bit x<<6 | y<<3 | z.
+/// The active voxels of a leaf: bit x<<6 | y<<3 | z.
 using LeafMask = std::bitset<kLeafVoxels>;
 
-/// The box of the voxels of `mask`, which has some, of the leaf at `node`.
+/// Returns the box of the voxels of `mask`, which is not empty, for the leaf at `node`.
 Box box_of(const LeafMask& mask, const Box& node);
 
-/// Replaces mask and bounding box in the head of a leaf by those of `mask`, which has voxels.
+/// Replaces mask and bounding box in the head of a leaf by those of `mask`, which is not empty.
 void set_active_voxels(const Box& node, const LeafMask& mask, std::span<std::byte> image);
 
 }  // namespace weir

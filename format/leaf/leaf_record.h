@@ -1,5 +1,5 @@
-// What encoding records of each kept leaf for the nodes above it: its statistics in double, and the bounds of its outer
-// layers, which reach into the aprons of neighbouring macrocells; and what decoding it has changed.
+// The record that encoding keeps of each kept leaf for the nodes above it: its statistics in double, the bounds of its
+// outer layers, which reach into the aprons of neighbouring macrocells, and what decoding changes.
 #pragma once
 
 #include <array>
@@ -9,14 +9,15 @@
 
 namespace weir {
 
-/// What decoding keeps of voxels, bit for bit. Of several the least counts.
+/// How much decoding keeps of voxels, bit for bit. For several voxels the smallest value counts.
 enum class Kept : std::uint32_t {
-  lossy,   ///< a value reads another one
-  values,  ///< every value, but not what is to take the place of voxels without one
+  lossy,   ///< a value decodes to another value
+  values,  ///< every value, but not the replacement of voxels without a value
   all
 };
 
-/// By whether every value is kept, and whether all bits are, those in place of voxels without a value among them.
+/// Returns the Kept for whether every value is kept and whether every bit is kept. The bits include those that stand
+/// for voxels without a value.
 constexpr Kept kept_of(bool every_value, bool every_bit) {
   return every_bit ? Kept::all : every_value ? Kept::values : Kept::lossy;
 }
@@ -24,20 +25,20 @@ constexpr Kept kept_of(bool every_value, bool every_bit) {
 struct LeafRecord {
   double mean = 0;
   double m2 = 0;
-  MinMax bounds = kNoBounds;  ///< of the in-domain values, NaN left out
-  /// Bounds of the layer that faces out of the leaf's macrocell: entry d - 1, bit 0 of d for the x side,
-  /// bit 1 for y, bit 2 for z. A leaf of an even coordinate faces down, of an odd one up.
+  MinMax bounds = kNoBounds;  ///< of the in-domain values, without NaN
+  /// Bounds of the layers that face out of the leaf's macrocell: entry d - 1, with bit 0 of d for the x side, bit 1 for
+  /// y, bit 2 for z. A leaf at an even coordinate faces down, at an odd coordinate up.
   std::array<MinMax, 7> outward{kNoBounds, kNoBounds, kNoBounds, kNoBounds, kNoBounds, kNoBounds, kNoBounds};
-  // Of a quantised leaf, decoded, over the finite in-domain values.
+  // For a quantised leaf: errors of the decoded values, over the finite in-domain values.
   double squared_error = 0;
   double max_abs = 0;
   Kept kept = Kept::all;
-  std::uint32_t zeros_lost = 0;  ///< zeros that read another value
-  // Where not all in-domain voxels are active: mean and m2 are those of the active ones, bounds those of all.
+  std::uint32_t zeros_lost = 0;  ///< zeros that decode to another value
+  // For a leaf with inactive in-domain voxels: `mean` and `m2` are over the active voxels, `bounds` over all.
   MinMax active = kNoBounds;                 ///< bounds of the active values
-  std::uint16_t inactive = 0;                ///< how many in-domain voxels are not
-  std::array<std::uint8_t, 3> active_lo{};   ///< of the box of active voxels, from the leaf's corner
-  std::array<std::uint8_t, 3> active_end{};  ///< the same, one beyond the last
+  std::uint16_t inactive = 0;                ///< number of inactive in-domain voxels
+  std::array<std::uint8_t, 3> active_lo{};   ///< lowest corner of the box of active voxels, from the leaf's corner
+  std::array<std::uint8_t, 3> active_end{};  ///< the box's end: one beyond its last voxel
 };
 static_assert(sizeof(LeafRecord) == 120, "records are spilled as they are");
 

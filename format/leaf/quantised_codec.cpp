@@ -9,7 +9,7 @@
 namespace weir {
 namespace {
 
-// Codes of `Bits` bits, 8 / Bits to a byte, from the lowest bit up.
+// Packs codes of `Bits` bits, 8 / Bits to a byte, from the lowest bit up.
 template <unsigned Bits>
 void pack(std::span<const std::uint16_t, kLeafVoxels> codes, std::byte* out) {
   constexpr std::size_t kPerByte = 8 / Bits;
@@ -36,7 +36,7 @@ void pack_codes(std::span<const std::uint16_t, kLeafVoxels> codes, unsigned bits
   }
 }
 
-// A statistic in units of the quantum, as the stock code rounds it; zero where all values are one.
+// Returns a statistic in units of the quantum, rounded as in the stock code; zero if all values are equal.
 std::uint16_t in_quanta(float value, float quantum) {
   if (!(quantum > 0)) return 0;
   return static_cast<std::uint16_t>(std::clamp(value / quantum + 0.5F, 0.0F, 65535.0F));

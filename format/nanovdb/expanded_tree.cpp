@@ -25,7 +25,7 @@ std::uint64_t ExpandedTree::leaf_bytes(GridType type) {
 ExpandedTree::ExpandedTree(const NvdbGrid& grid, GridType type)
     : grid_(grid), packed_(*grid.packed()), type_(type), domain_(grid.index_bbox()) {
   const NodeLattice roots = make_lattice(domain_, kUpperDim);
-  // Sorted by x, y and z, as the root's table is.
+  // Sorted by x, y and z, like the root's table.
   for (std::int64_t x = 0; x < roots.count.x; ++x) {
     for (std::int64_t y = 0; y < roots.count.y; ++y) {
       for (std::int64_t z = 0; z < roots.count.z; ++z) {
@@ -47,8 +47,8 @@ ExpandedTree::ExpandedTree(const NvdbGrid& grid, GridType type)
   layout_ = make_layout(counts);
 }
 
-// visit(entry, linear index of its region, whether it has a lower node) for each entry with voxels of the domain, in
-// the order of the table.
+// Calls visit(entry, linear index of its region, whether it has a lower node) for each entry that has voxels of the
+// domain, in the order of the table.
 template <class Visit>
 void ExpandedTree::for_each_entry(const Upper& upper, const Visit& visit) const {
   const NodeLattice& regions = packed_.regions();

@@ -1,6 +1,6 @@
-// A packed grid as a grid that every NanoVDB reader knows: all of its bytes but the leaves, which are made elsewhere.
-// There is a leaf for each block that has a stream or overhangs the domain, and tiles of 8^3 and 128^3 voxels for the
-// others; voxels outside the domain are inactive. Macrocells are the packed grid's.
+// Makes a packed grid into a grid that every NanoVDB reader knows: all of its bytes but the leaves, which are made
+// elsewhere. The tree has a leaf for each block that has a stream or overhangs the domain, and tiles of 8^3 and 128^3
+// voxels for the others. Voxels outside the domain are inactive. The macrocells are those of the packed grid.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@
 
 namespace weir {
 
-/// Of a leaf's active voxels, as NodeStatistics counts them.
+/// Statistics of a leaf's active voxels, as NodeStatistics computes them.
 struct LeafStatistics {
   float min;
   float max;
@@ -27,31 +27,31 @@ struct LeafStatistics {
 
 class ExpandedTree {
  public:
-  /// `grid`, which is packed, must outlive the object; `type` is float32 or fp16, the leaves'. Throws as
-  /// PackedData::for_each_stream, and Error(budget) where NanoVDB cannot count the nodes.
+  /// `grid`, which is packed, must outlive the object; `type` is the type of the leaves, float32 or fp16. Throws as
+  /// PackedData::for_each_stream(), and Error(budget) if NanoVDB cannot count the nodes.
   ExpandedTree(const NvdbGrid& grid, GridType type);
 
-  std::uint64_t bytes() const { return layout_.grid_bytes(); }                 ///< of the grid
+  std::uint64_t bytes() const { return layout_.grid_bytes(); }                 ///< bytes of the grid
   std::uint64_t leaf_offset() const { return layout_.leaves - layout_.grid; }  ///< from the grid's start
-  static std::uint64_t leaf_bytes(GridType type);                              ///< of one
-  /// The leaves' blocks in the order of the leaves: 4096 * linear index of the region (x fastest) + position there
-  /// (packed_position()).
+  static std::uint64_t leaf_bytes(GridType type);                              ///< bytes of one leaf
+  /// Returns the blocks of the leaves, in the order of the leaves. A block is 4096 * linear index of its region (x
+  /// fastest) + its position there (packed_position()).
   std::span<const std::uint64_t> blocks() const { return blocks_; }
 
-  /// Takes bytes of the grid, `offset` from its start.
+  /// Receives bytes of the grid, at `offset` from the grid's start.
   using Sink = std::function<void(std::uint64_t offset, std::span<const std::byte> bytes)>;
-  /// Everything but the leaves, whose statistics are given in their order. Throws Error(input) where 16 bits do not
-  /// hold one.
+  /// Writes everything but the leaves. `leaves` holds their statistics, in their order. Throws Error(input) if a leaf
+  /// does not fit 16-bit codes.
   void write(std::span<const LeafStatistics> leaves, const Sink& sink) const;
 
  private:
   struct Lower {
     std::int64_t region;      // linear index
-    std::uint64_t first = 0;  // of its leaves
+    std::uint64_t first = 0;  // index of its first leaf
   };
   struct Upper {
     Index3 origin;
-    std::uint64_t first = 0;  // of its lower nodes
+    std::uint64_t first = 0;  // index of its first lower node
   };
 
   template <class Visit>

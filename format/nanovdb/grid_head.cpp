@@ -16,7 +16,7 @@ namespace {
 
 using Image = std::span<std::byte>;
 
-// NanoVDB's string hash, for look-up by name.
+// Returns NanoVDB's hash of a grid name, for look-up by name.
 std::uint64_t name_key(const std::string& name) {
   std::uint64_t key = 0;
   for (const char c : name) {
@@ -42,7 +42,7 @@ void store_index_box(Image image, std::size_t offset, const Box& box) {
   for (std::size_t i = 0; i < 6; ++i) store(image, offset + 4 * i, static_cast<std::int32_t>(corners[i]));
 }
 
-// The image of [lo, hi) under index * voxel_size + origin, rounded once as in NanoVDB's Map::applyMap.
+// Stores the image of [lo, hi) under index * voxel_size + origin, rounded once as in NanoVDB's Map::applyMap.
 void store_world_box(Image image, std::size_t offset, const GridHead& head) {
   const Box& box = head.statistics.bbox;
   const std::array<std::int64_t, 6> corners{box.lo.x, box.lo.y, box.lo.z, box.hi.x, box.hi.y, box.hi.z};
@@ -64,10 +64,10 @@ void store_map(Image image, std::size_t offset, const GridHead& head) {
   store(image, offset, matrix);
   store(image, offset + 9 * sizeof(T), inverse);
   store(image, offset + 18 * sizeof(T), translation);
-  store(image, offset + 21 * sizeof(T), T{1});  // taper, for the frustums weir never writes
+  store(image, offset + 21 * sizeof(T), T{1});  // taper, for frustums, which weir never writes
 }
 
-// What NanoVDB counts in 32 bits; plans hold no more.
+// Stores a count that NanoVDB keeps in 32 bits; plans never exceed 32 bits.
 void store_count(Image image, std::size_t offset, std::uint64_t count) {
   if (count > 0xFFFFFFFFULL) throw Error(ErrorKind::internal, cat("a count of ", count, " is more than 32 bits hold"));
   store(image, offset, static_cast<std::uint32_t>(count));
@@ -161,7 +161,7 @@ void store_file_meta(Image file, const GridHead& head, const TreeLayout& layout)
   std::memcpy(file.data() + nvdb::kNameOffset, head.name.data(), head.name.size());
 }
 
-// Of an array of floats that begins `offset` bytes after the record.
+// Stores the record of an array of floats that begins `offset` bytes after the record.
 void store_blind_record(Image record, std::uint64_t offset, std::uint64_t count, const std::string& name) {
   using namespace nvdb::blind;
   store(record, kDataOffset, offset);
@@ -176,7 +176,7 @@ void store_blind_record(Image record, std::uint64_t offset, std::uint64_t count,
 
 std::uint32_t head_checksum(std::span<const std::byte> grid_head) {
   const auto covered = grid_head.subspan(nvdb::grid::kVersion);
-  // Root tables are far below 4 GiB, but zlib counts in 32 bits: go in pieces.
+  // Root tables are far below 4 GiB, but zlib counts in 32 bits, so the checksum goes piece by piece.
   uLong crc = ::crc32(0, nullptr, 0);
   for (std::size_t done = 0; done < covered.size();) {
     const std::size_t piece = std::min<std::size_t>(covered.size() - done, std::size_t{1} << 30U);

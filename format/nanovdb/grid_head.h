@@ -24,7 +24,7 @@ struct RootTile {
   float value = 0;          ///< value tiles only
 };
 
-/// Most bytes of a grid's name in a NanoVDB file.
+/// The most bytes of a grid's name in a NanoVDB file.
 inline constexpr std::size_t kMaxGridNameBytes = 255;
 
 struct GridHead {
@@ -40,13 +40,13 @@ struct GridHead {
   bool breadth_first = true;                    ///< leaves lie in traversal order and have one size
 };
 
-/// The bytes [0, layout.uppers) of the file.
+/// Returns the bytes [0, layout.uppers) of the file.
 std::vector<std::byte> encode_head(const GridHead& head, const TreeLayout& layout);
 
-/// The blind-data records, 288 bytes each: that of the macrocells, and that of packed data where there is any.
+/// Returns the blind data records, 288 bytes each: one for the macrocells, and one for packed data if there is any.
 std::vector<std::byte> encode_blind_records(const TreeLayout& layout);
 
-/// CRC-32 (0xEDB88320) over the head of a 32.4.2 grid: bytes [16, end of the root tiles) of the grid.
+/// Returns the CRC-32 (0xEDB88320) of the head of a 32.4.2 grid: bytes [16, end of the root tiles) of the grid.
 std::uint32_t head_checksum(std::span<const std::byte> grid_head);
 
 }  // namespace weir

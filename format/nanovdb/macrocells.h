@@ -1,9 +1,8 @@
-// Macrocells: bounds of the decoded values over cells of kMacrocell^3 voxels and
-// an apron of one voxel around each, so that a majorant taken from a cell holds
-// for every filtered lookup in it. Stored as the grid's blind data:
+// Macrocells: bounds of the decoded values over cells of kMacrocell^3 voxels and an apron of one voxel around each, so
+// that a majorant taken from a cell holds for every filtered lookup in it. Stored as the grid's blind data:
 //   name  "weir_macrocells:CELL:APRON" (NUL padded), type float, 2 values (min, max) a cell
 //   order x fastest, cells of the lattice make_lattice(index bounding box, CELL)
-// Voxels outside the domain count with the background.
+// Voxels outside the domain count as the background.
 #pragma once
 
 #include <cstdint>
@@ -25,14 +24,14 @@ struct MacrocellName {
   std::int64_t apron = kMacrocellApron;
 };
 
-/// "weir_macrocells:16:1".
+/// Returns "weir_macrocells:16:1".
 std::string macrocell_name(const MacrocellName& shape);
-/// Inverse; nullopt where the text is not such a name, cell is no multiple of 8 in [8, 4096] or
-/// apron is not in [0, 8].
+/// Parses a name of macrocell_name(). Returns nullopt if the text is not such a name, if cell is not a multiple of 8 in
+/// [8, 4096], or if apron is not in [0, 8].
 std::optional<MacrocellName> parse_macrocell_name(std::string_view text);
 
-/// Macrocells of the decoded values, see FORMAT.md: min and max over each cell and `apron` voxels
-/// around it. Empty `cells` where the file has none (or not aligned to 4 bytes).
+/// Macrocells of the decoded values, see FORMAT.md: min and max over each cell and `apron` voxels around it. `cells` is
+/// empty if the file has none, or has them not aligned to 4 bytes.
 struct MacrocellView {
   std::int64_t cell = 0;          ///< voxels along an edge
   std::int64_t apron = 0;         ///< voxels

@@ -1,4 +1,4 @@
-// An internal node (lower 16^3 or upper 32^3 entries) as it stands on disk.
+// An internal node (16^3 entries in a lower node, 32^3 in an upper one) as it stands on disk.
 #pragma once
 
 #include <cstddef>
@@ -16,16 +16,16 @@ class NodeImage {
  public:
   enum class Level { lower, upper };
 
-  /// All entries are `background`, off.
+  /// All entries are inactive tiles of value `background`.
   NodeImage(Level level, float background);
 
-  /// Back to all background, for reuse.
+  /// Makes all entries background again, for reuse.
   void reset();
 
-  /// Entry at (x, y, z) of the node's table; the child lies `bytes_from_node` bytes after the node.
+  /// Sets the entry at (x, y, z) of the node's table to a child that lies `bytes_from_node` bytes after the node.
   void set_child(const Index3& entry, std::uint64_t bytes_from_node);
   void set_tile(const Index3& entry, float value, bool active);
-  /// Statistics and box of the active content; call once, after all entries.
+  /// Sets statistics and box of the active content; call it once, after all entries.
   void set_statistics(const NodeStatistics& statistics);
 
   std::span<const std::byte> bytes() const { return image_; }

@@ -15,12 +15,12 @@ constexpr std::uint32_t kFloatType = 1;
 constexpr std::uint64_t kFloatBytes = 4;
 constexpr std::string_view kPackedPrefix = "weir_packed:";
 
-// By grid type as on disk; 0 where NanoVDB defines no fixed size.
+// Bytes of an element by grid type as on disk; 0 if NanoVDB defines no fixed size.
 constexpr std::array<std::uint64_t, 19> kElementBytes{0, 4, 8, 2, 4, 8, 12, 24, 0, 2, 4, 1, 4, 0, 0, 0, 0, 16, 32};
 
 struct Record {
-  std::uint64_t offset;  // of the record, from the grid's start
-  std::uint64_t data;    // of its data
+  std::uint64_t offset;  // offset of the record from the grid's start
+  std::uint64_t data;    // offset of its data from the grid's start
   std::uint64_t count;
   std::uint32_t type;
   std::string_view name;
@@ -40,7 +40,7 @@ Record read_record(const NvdbBytes& grid, std::uint64_t offset) {
           grid.get<std::uint32_t>(offset + nvdb::blind::kType), name.substr(0, name.find('\0'))};
 }
 
-// Past the data's last byte.
+// Returns the end of the record's data.
 std::uint64_t data_end(const NvdbBytes& grid, const Record& record) {
   const std::uint64_t bytes = record.type < kElementBytes.size() ? kElementBytes[record.type] : 0;
   if (bytes == 0) return grid.size();

@@ -1,5 +1,5 @@
-// Part of a file under validation: loads by offset, and the one form of message
-// for what is wrong in it. Used by the nvdb_* readers and those of packed data only.
+// A part of a file under validation: loads by offset, and gives all messages about its faults one form. Only the nvdb_*
+// readers and the readers of packed data use it.
 #pragma once
 
 #include <bit>
@@ -26,12 +26,12 @@ class NvdbBytes {
   const std::byte* at(std::uint64_t offset) const { return bytes_.data() + offset; }
   const std::string& path() const { return *path_; }
 
-  /// Little-endian T; the caller has checked that offset + sizeof(T) <= size().
+  /// Returns the little-endian T at `offset`; the caller has checked that offset + sizeof(T) <= size().
   template <typename T>
   T get(std::uint64_t offset) const {
     return load<T>(at(offset));
   }
-  /// True where [offset, offset + bytes) lies inside; never wraps.
+  /// Returns whether [offset, offset + bytes) lies inside; never wraps.
   bool holds(std::uint64_t offset, std::uint64_t bytes) const {
     return offset <= bytes_.size() && bytes <= bytes_.size() - offset;
   }

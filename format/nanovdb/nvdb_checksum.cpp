@@ -6,7 +6,7 @@
 namespace weir {
 namespace {
 
-// Up to this version the root table belongs to the head of the checksum.
+// Up to this version the checksum of the head covers the root table.
 constexpr std::uint32_t kLastVersionWithRootTable = 32U << 21U | 6U << 10U;
 
 }  // namespace

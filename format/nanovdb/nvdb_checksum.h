@@ -1,4 +1,5 @@
-// The head checksum of a grid, computed from its bytes. Apart from NvdbGrid, so that reading a file needs no zlib.
+// Computes the head checksum of a grid from its bytes. It is separate from NvdbGrid, so that reading a file needs no
+// zlib.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +8,8 @@
 
 namespace weir {
 
-/// CRC-32 of the head (as the grid's version defines it, FORMAT.md) as it stands in the file; equals
-/// grid.head_checksum() in an intact one.
+/// Returns the CRC-32 of the head (as the grid's version defines it, FORMAT.md) of the bytes in the file. In an intact
+/// file it equals grid.head_checksum().
 std::uint32_t computed_head_checksum(const NvdbGrid& grid);
 
 }  // namespace weir

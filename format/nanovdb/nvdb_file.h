@@ -13,9 +13,10 @@ namespace weir {
 
 class NvdbFile {
  public:
-  /// Maps and validates. Throws Error(input) for a missing, empty or invalid file, Error(io) where it cannot be read.
+  /// Maps and validates `path`. Throws Error(input) for a missing, empty or invalid file, Error(io) if it cannot be
+  /// read.
   explicit NvdbFile(const std::string& path) : NvdbFile(FileMapping(path, ".nvdb")) {}
-  /// The same of what is mapped.
+  /// Validates the file that `mapping` has mapped.
   explicit NvdbFile(FileMapping mapping)
       : path_(mapping.path()),
         mapping_(std::move(mapping)),

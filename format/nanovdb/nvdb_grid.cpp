@@ -19,8 +19,8 @@ bool mask_on(const std::byte* mask, unsigned n) {
   return ((static_cast<unsigned>(mask[n >> 3U]) >> (n & 7U)) & 1U) != 0;
 }
 
-// Position of voxel `i` in the table of an internal node whose entries have an edge of
-// `dim` voxels, `side` to an edge: x-major, z fastest.
+// Returns the position of voxel `i` in the table of an internal node with `side` entries along an edge, each `dim`
+// voxels long: x-major, z fastest.
 unsigned entry_index(const Index3& i, std::int64_t dim, std::int64_t side) {
   const auto axis = [dim, side](std::int64_t v) { return floor_div(v, dim) & (side - 1); };
   return static_cast<unsigned>((axis(i.x) * side + axis(i.y)) * side + axis(i.z));

@@ -1,8 +1,7 @@
-// A read-only view of one grid of a NanoVDB file held in memory (mapped
-// or not). `open` validates everything before any offset is trusted: after it
-// returned, no call reads outside the span, whatever the bytes are. It walks the
-// internal nodes only (some 8 MB of a 1 GB float file), so a file of any size
-// opens without reading its values. All calls are const and thread-safe.
+// A read-only view of one grid of a NanoVDB file held in memory (mapped or not). open() validates everything before any
+// offset is trusted: after it has returned, no call reads outside the span, whatever the bytes are. It walks the
+// internal nodes only (some 8 MB of a 1 GB float file), so a file of any size opens without reading its values. All
+// calls are const and thread-safe.
 #pragma once
 
 #include <array>
@@ -34,74 +33,75 @@ struct RootEntry {
 
 class NvdbGrid {
  public:
-  /// `file` must stay valid and unchanged while the view is used. `path` is for messages only.
-  /// Throws Error(input) naming the offset and the value where the file is not a valid, uncompressed
-  /// NanoVDB file of a supported type. `release`, where given, is called each time that some 8 MiB of nodes have been
-  /// looked at: a mapped file lets them go.
+  /// Opens the first grid of `file`, which must stay valid and unchanged while the view is used. `path` is for messages
+  /// only. If `release` is given, it is called each time some 8 MiB of nodes have been read, so that a mapped file can
+  /// release their pages. Throws Error(input) that names the offset and the value if the file is not a valid,
+  /// uncompressed NanoVDB file of a supported type.
   static NvdbGrid open(std::span<const std::byte> file, const std::string& path,
                        const std::function<void()>& release = {});
-  /// The same for a grid that all_nvdb_segments found, where the above opens the first.
+  /// Opens the grid `record`, which all_nvdb_segments() found.
   static NvdbGrid open(std::span<const std::byte> file, const std::string& path, const NvdbRecord& record,
                        const std::function<void()>& release = {});
-  /// The grid of heads that were read and checked. Where no more than they and its packed data's are in `file`, as of
-  /// a remote one, its tree must not be looked at. Throws Error(input) where the head of the packed data is damaged.
+  /// Returns the grid of heads that were read and checked. If `file` holds only them and the head of the packed data,
+  /// as for a remote grid, the tree must not be read. Throws Error(input) if the head of the packed data is damaged.
   static NvdbGrid of_heads(std::span<const std::byte> file, const std::string& path, const NvdbHeader& header,
                            const NvdbTree& tree, const NvdbBlindData& blind);
 
   GridType type() const { return type_; }
   const std::string& name() const { return name_; }
-  /// Of active voxels, half open; the domain in weir's files. {} without active voxels, else less than
-  /// 2^62 voxels within the root tiles: look at the volume before allocating by it.
+  /// Returns the half-open box of the active voxels; in weir's files, the domain. Empty ({}) without active voxels,
+  /// otherwise less than 2^62 voxels within the root tiles: check the volume before you allocate memory for it.
   Box index_bbox() const { return bbox_; }
   float background() const { return background_; }
-  float value_min() const { return value_min_; }  ///< of the decoded active values, as stored in the root; NaN where
-  float value_max() const { return value_max_; }  ///< its writer left the statistics out, and where none is finite
+  float value_min() const { return value_min_; }  ///< of the decoded active values, as stored in the root; NaN if its
+  float value_max() const { return value_max_; }  ///< writer left the statistics out, and if no value is finite
   std::array<double, 3> voxel_size() const { return voxel_size_; }
   std::array<double, 9> matrix() const { return matrix_; }  ///< row-major: world = matrix * index + world_origin
-  std::array<double, 3> world_origin() const { return world_origin_; }  ///< of index (0, 0, 0)
+  std::array<double, 3> world_origin() const { return world_origin_; }  ///< world position of index (0, 0, 0)
   std::uint64_t grid_offset() const { return grid_offset_; }            ///< bytes from the file's start
   std::uint64_t grid_bytes() const { return grid_bytes_; }              ///< gridSize
-  /// grid_bytes() less the padding at the tail: the end of the last node, blind data record or blind
-  /// data, whichever is last; grid_bytes() where blind data has elements of unknown size.
+  /// Returns grid_bytes() without the padding at the end: the end of the last node, blind data record or blind data,
+  /// whichever is last. Returns grid_bytes() if blind data has elements of unknown size.
   std::uint64_t data_bytes() const { return data_bytes_; }
   std::uint32_t version() const { return version_; }                         ///< see nvdb_version_text
   std::uint64_t active_voxels() const { return active_voxels_; }             ///< as stored in the tree
   std::array<std::uint32_t, 3> node_counts() const { return node_counts_; }  ///< leaf, lower, upper
   std::array<std::uint32_t, 3> tile_counts() const { return tile_counts_; }  ///< active: lower, upper, root; as stored
   std::uint32_t root_tiles() const { return root_tiles_; }                   ///< entries of the root table
-  std::uint32_t head_checksum() const { return head_checksum_; }             ///< all bits set where absent
+  std::uint32_t head_checksum() const { return head_checksum_; }             ///< all bits set if absent
   MacrocellView macrocells() const { return macrocells_; }
 
-  /// The packed data, or null. Where there is some, it holds the volume; the tree is what readers see that do not
-  /// know it. Then value_min, value_max and the macrocells are of the decoded values, node and tile counts and
-  /// active_voxels those of the tree, and all voxels inside index_bbox() are active.
+  /// Returns the packed data, or null. If there is packed data, it holds the volume, and the tree is only what readers
+  /// see that do not know packed data. Then value_min(), value_max() and the macrocells describe the decoded values,
+  /// and node_counts(), tile_counts() and active_voxels() describe the tree; all voxels inside index_bbox() are active.
   const PackedData* packed() const { return packed_.get(); }
 
-  /// What covers voxel `i` (any coordinates). Of the packed data where there is some; throws as PackedData::stream.
+  /// Returns what covers voxel `i` (any coordinates), in the packed data if there is any. Throws as
+  /// PackedData::stream().
   GridBlock block_at(const Index3& i) const;
-  /// Decoded value of voxel `i`: what a stock accessor returns, of a packed grid the background outside index_bbox().
-  /// Decodes the whole block where it is packed: right, and slow. Throws as decode_block.
+  /// Returns the decoded value of voxel `i`, the same as a stock accessor; for a packed grid, the background outside
+  /// index_bbox(). Slow for a packed grid, because it decodes the whole block. Throws as decode_block().
   float value(const Index3& i) const;
-  /// The 512 values of a block of dim 8, index x<<6 | y<<3 | z (z fastest), or of any 8^3 voxels of a larger one: of
-  /// its leaf or stream, or its one value. Those of a packed grid outside index_bbox() mean nothing. Throws
-  /// as decode_leaf and PackedData::decode.
+  /// Decodes the 512 values of a block of dim 8, or of any 8^3 voxels of a larger block, index x<<6 | y<<3 | z (z
+  /// fastest): from its leaf or stream, or its one value. Values of a packed grid outside index_bbox() have no meaning.
+  /// Throws as decode_leaf() and PackedData::decode().
   void decode_block(const GridBlock& block, std::span<float, 512> values) const;
-  /// Decodes leaf `block.leaf` into 512 values in that order. Throws Error(input)
-  /// where the width of an FpN leaf is invalid, which open leaves unread.
+  /// Decodes leaf `block.leaf` into 512 values in the order of decode_block(). Throws Error(input) if the width of an
+  /// FpN leaf is invalid, because open() does not read it.
   void decode_leaf(const std::byte* leaf, std::span<float, 512> values) const;
-  /// Bits a voxel of a leaf: 1, 2, 4, 8, 16 or 32. Throws as decode_leaf.
+  /// Returns the bits a voxel of a leaf: 1, 2, 4, 8, 16 or 32. Throws as decode_leaf().
   unsigned leaf_bits(const std::byte* leaf) const;
-  /// Calls `visit` for every entry of the root's table, in file order; of the tree also where the grid is packed.
+  /// Calls `visit` for every entry of the root's table, in file order; for a packed grid, too, of its tree.
   void for_each_root_entry(const std::function<void(const RootEntry&)>& visit) const;
-  /// Calls `visit` for every leaf and every value tile in file order: root tiles, then per upper
-  /// node its tiles and children. Tiles of background value that are inactive are visited too. Of a packed grid: for
-  /// the blocks of its packed data that touch index_bbox(); throws as PackedData::stream.
+  /// Calls `visit` for every leaf and every value tile in file order: root tiles, then per upper node its tiles and
+  /// children. Inactive tiles of background value are visited too. For a packed grid: visits the blocks of its packed
+  /// data that touch index_bbox(), and throws as PackedData::stream().
   void for_each_block(const std::function<void(const GridBlock&)>& visit) const;
-  /// The same, of the tree also where the grid is packed: what other readers see.
+  /// Like for_each_block(), but always visits the tree, which other readers see, even if the grid is packed.
   void for_each_tree_block(const std::function<void(const GridBlock&)>& visit) const;
 
   std::span<const std::byte> bytes() const { return file_; }  ///< the whole file
-  /// The grid less its padding: what a copy of the grid needs.
+  /// Returns the grid without its padding: the bytes that a copy of the grid needs.
   std::span<const std::byte> data() const { return file_.subspan(grid_offset_, data_bytes_); }
 
  private:

@@ -13,10 +13,10 @@ namespace {
 // Newer files have "NanoVDB2" for the file and "NanoVDB1" for the grid.
 constexpr std::uint64_t kMagicGridNew = nvdb::kMagic + (std::uint64_t{1} << 56U);
 constexpr std::uint64_t kMagicFileNew = nvdb::kMagic + (std::uint64_t{2} << 56U);
-// The file's constants count from the file's start, the meta data of a grid from its record.
+// The offsets in nvdb::meta count from the file's start; this returns the offset from the grid's meta record.
 constexpr std::uint64_t in_record(std::uint64_t field) { return field - nvdb::kFileHeaderBytes; }
 
-// So that the list of a hostile file stays small.
+// The most grids in a file, so that the list of a hostile file stays small.
 constexpr std::size_t kMaxGrids = 4096;
 
 constexpr std::array<const char*, 23> kTypeNames{"unknown", "float", "double",  "int16",     "int32",      "int64",
@@ -52,7 +52,7 @@ std::uint64_t stored_bytes(const NvdbBytes& file, const NvdbRecord& record) {
   return file.get<std::uint64_t>(record.meta + in_record(nvdb::meta::kFileSize));
 }
 
-// The meta records of the segment at `segment`, and behind them its grids.
+// Returns the meta records of the segment at `segment`, with the offsets of the grids behind them.
 std::vector<NvdbRecord> read_segment(const NvdbBytes& file, std::uint64_t segment) {
   if (!file.holds(segment, nvdb::kFileHeaderBytes)) {
     file.fail(file.size(), "the file ends after ", file.size() - segment, " bytes, inside the NanoVDB header of ",
@@ -111,7 +111,7 @@ std::vector<NvdbRecord> all_nvdb_segments(std::span<const std::byte> bytes, cons
     all.insert(all.end(), records.begin(), records.end());
     if (all.size() > kMaxGrids) file.fail(end, "the file holds more than ", kMaxGrids, " grids; it is damaged");
     const std::uint64_t last = stored_bytes(file, records.back());
-    // A grid that is cut is the last one; whoever opens it says so.
+    // Only the last grid can be truncated; opening it reports the error.
     if (!file.holds(records.back().grid, last)) break;
     end = records.back().grid + last;
   }

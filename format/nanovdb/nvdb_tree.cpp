@@ -15,11 +15,11 @@ using nvdb::InternalLayout;
 
 constexpr std::uint64_t kMaxLeafBytes = nvdb::kLeafHeadBytes + (std::uint64_t{64} << kMaxLeafBitsLog2);
 constexpr std::uint64_t kMinFpnLeafBytes = nvdb::kLeafHeadBytes + 64;
-constexpr std::uint64_t kNodesToRelease = 256;                      // lower nodes, of 34 KB
+constexpr std::uint64_t kNodesToRelease = 256;                      // lower nodes, of 34 KB each
 constexpr std::uint64_t kKeyField = (std::uint64_t{1} << 20U) - 1;  // 20 bits of a coordinate, in fields of 21
 constexpr std::uint64_t kKeyBits = kKeyField | kKeyField << 21U | kKeyField << 42U;
 
-// An array of nodes of one level; `stride` 0 where sizes vary.
+// An array of the nodes of one level; `stride` is 0 if sizes vary.
 struct Level {
   const char* name;
   std::uint64_t begin;
@@ -81,7 +81,7 @@ class TreeReader {
     leaf_ = read_level("leaf", nvdb::tree::kLeafOffset, tree_.node_counts[0], fixed_leaf_bytes(type_));
   }
 
-  // The offset of a level without nodes means nothing.
+  // The stored offset of a level without nodes has no meaning.
   Level read_level(const char* name, std::uint64_t field, std::uint32_t count, std::uint64_t stride) {
     if (count == 0) return {name, tree_.end, 0, stride};
     const auto offset = tree_field<std::uint64_t>(field);
@@ -100,7 +100,7 @@ class TreeReader {
     return level;
   }
 
-  // Calls visit(offset of the table entry, the child's offset in it) for every child.
+  // Calls visit(offset of the table entry, the entry's child offset) for every child.
   template <typename Visit>
   void read_root_table(const Visit& visit) {
     std::vector<std::uint64_t> keys(tree_.root_tiles);
@@ -138,7 +138,7 @@ class TreeReader {
     }
   }
 
-  // Both arguments are inside a file, so only the sum with an arbitrary child can leave it.
+  // `entry` and `node` are inside a file, so only the sum with an arbitrary `child` can leave it.
   std::uint64_t child_offset(std::uint64_t entry, std::uint64_t node, std::int64_t child) const {
     std::int64_t offset = 0;
     if (__builtin_add_overflow(static_cast<std::int64_t>(node), child, &offset) || offset < 0) {
@@ -169,8 +169,8 @@ class TreeReader {
                " nodes from grid offset ", level.begin);
   }
 
-  // One pass checks the offsets and finds the last leaf. Where sizes vary, only leaves that begin
-  // less than the largest leaf before the end can reach beyond it: a second pass reads their widths.
+  // One pass checks the offsets and finds the last leaf. If sizes vary, only leaves that begin less than the largest
+  // leaf before the end can reach beyond it: a second pass reads their widths.
   void read_leaves() {
     const std::uint64_t smallest = leaf_.stride != 0 ? leaf_.stride : kMinFpnLeafBytes;
     const std::uint64_t stride = leaf_.stride != 0 ? leaf_.stride : nvdb::kAlignment;

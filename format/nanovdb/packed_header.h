@@ -1,5 +1,5 @@
-// The fixed part of packed data (FORMAT.md, "Packed data"): header and tables, checked, and the region table's
-// entries. Copied out of the file, so that they outlive it.
+// The fixed part of packed data (FORMAT.md, "Packed data"): header and tables, checked, and the entries of the region
+// table. They are copied out of the file, so that they outlive it.
 #pragma once
 
 #include <array>
@@ -12,13 +12,13 @@
 namespace weir {
 
 struct PackedHeader {
-  std::uint64_t bytes = 0;  ///< of all packed data
+  std::uint64_t bytes = 0;  ///< bytes of all packed data
   bool preview = false;     ///< the tree holds the blocks' means as tiles
-  NodeLattice regions;      ///< of 128^3 voxels, over the grid's index box
+  NodeLattice regions;      ///< regions of 128^3 voxels over the grid's index box
   std::uint64_t table = 0;  ///< offset of the region table from the packed data's first byte
   std::array<std::uint16_t, std::size_t{kPackedTables} * kPackedSymbols> frequencies{};
 
-  /// Points into this object.
+  /// Returns the constants with the tables; they point into this object.
   BlockConstants constants() const {
     BlockConstants all = values;
     all.tables = frequencies.data();
@@ -31,14 +31,14 @@ struct PackedHeader {
 struct PackedRegion {
   std::uint64_t chunk = 0;  ///< offset of the streams and their directory from the packed data; 0: none
   std::uint32_t bytes = 0;  ///< of the chunk
-  float value = 0;          ///< of all voxels of the region's blocks without a stream
+  float value = 0;          ///< value of all voxels of the region's blocks without a stream
 };
 
-/// Checks the header, tables and region table of `data`, which holds the packed data of a grid of index box `bbox` and
-/// nothing else. Throws Error(input) naming offset and value.
+/// Checks the header, tables and region table of `data`, which holds exactly the packed data of a grid with the index
+/// box `bbox`. Throws Error(input) that names offset and value.
 PackedHeader read_packed_header(const NvdbBytes& data, const Box& bbox);
 
-/// The entry of the region at lattice position `position`, as read_packed_header has checked it.
+/// Returns the entry of the region at lattice position `position`; read_packed_header() has checked it.
 PackedRegion packed_region(const NvdbBytes& data, const PackedHeader& header, const Index3& position);
 
 }  // namespace weir

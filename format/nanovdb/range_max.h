@@ -1,5 +1,5 @@
-// The largest of any stretch of a fixed sequence in constant time: a sparse table
-// of the maxima of all stretches of 2^k entries.
+// Returns the largest value of any stretch of a fixed sequence in constant time, from a sparse table of the maxima of
+// all stretches of 2^k entries.
 #pragma once
 
 #include <algorithm>
@@ -11,12 +11,12 @@
 
 namespace weir {
 
-/// What a kernel needs of a RangeMax.
+/// The part of a RangeMax that a kernel needs.
 struct RangeMaxView {
   const float* levels = nullptr;  ///< [k * size + i]: largest of entries i .. i + 2^k - 1
   std::uint32_t size = 0;
 
-  /// Of the entries first to last, both included.
+  /// Returns the largest of the entries first to last, both included.
   WEIR_HOST_DEVICE float between(std::uint32_t first, std::uint32_t last) const {
     std::uint32_t width = 1;
     const float* level = levels;
@@ -29,7 +29,7 @@ struct RangeMaxView {
 
 class RangeMax {
  public:
-  /// At least one value, fewer than 2^31.
+  /// `values` has at least one value and fewer than 2^31.
   explicit RangeMax(std::vector<float> values) : size_(values.size()), levels_(std::move(values)) {
     for (std::size_t half = 1, below = 0; 2 * half <= size_; half *= 2, below += size_) {
       levels_.resize(below + 2 * size_);

@@ -8,7 +8,7 @@ namespace weir {
 
 namespace {
 
-// One value in the part of `box` that `part` is.
+// Fills the part `part` of `box` with one value.
 void fill_part(const Box& box, const Box& part, float value, std::span<float> values) {
   const auto run = static_cast<std::size_t>(part.extent().x);
   for (std::int64_t z = part.lo.z; z < part.hi.z; ++z) {
@@ -19,7 +19,7 @@ void fill_part(const Box& box, const Box& part, float value, std::span<float> va
   }
 }
 
-// The voxels `part` of the block at `corner`, whose values are `decoded`.
+// Copies the voxels `part` from the block at `corner`, which has the values `decoded`.
 void copy_part(const Box& box, const Box& part, const Index3& corner, const std::array<float, kLeafVoxels>& decoded,
                std::span<float> values) {
   const auto run = static_cast<std::size_t>(part.extent().x);

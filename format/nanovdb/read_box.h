@@ -1,4 +1,4 @@
-// Decoded values of a box of voxels, out of the tree they are stored in.
+// Reads the decoded values of a box of voxels from the grid's tree or packed data.
 #pragma once
 
 #include <span>
@@ -8,11 +8,12 @@
 
 namespace weir {
 
-/// What NvdbGrid::value gives for every voxel of `box`, in and outside the domain, x fastest, into `values`, which has
-/// box.voxels() floats. A block is decoded once. Throws as NvdbGrid::block_at and decode_block.
+/// Writes NvdbGrid::value() of every voxel of `box`, in and outside the domain, x fastest, into `values`, which has
+/// box.voxels() floats. Decodes each block once. Throws as NvdbGrid::block_at() and decode_block().
 void read_box(const NvdbGrid& grid, const Box& box, std::span<float> values);
 
-/// The same of the voxels of `part`, which lies in `box`: the others of `values`, those of `box`, are left as they are.
+/// Like read_box(), but writes only the voxels of `part`, which lies in `box`. `values` holds `box`; its other values
+/// stay as they are.
 void read_box_part(const NvdbGrid& grid, const Box& part, const Box& box, std::span<float> values);
 
 }  // namespace weir

@@ -16,8 +16,8 @@
 namespace weir {
 namespace {
 
-// Of `check`, which reads files: false where one of them is missing or none of weir's. Where one is there and cannot be
-// read, that is no answer, and the Error(io) goes on.
+// Returns check(), which reads files; false if one of them is missing or not weir's. If a file exists but cannot be
+// read, the question has no answer, and the Error(io) is passed on.
 template <typename Check>
 bool unless_foreign(const Check& check) {
   try {
@@ -29,7 +29,8 @@ bool unless_foreign(const Check& check) {
   }
 }
 
-// What `sidecar` records of its file, if that has the length and the head checksum of `volume`: so may another one.
+// Returns the file record of `sidecar` if it has the length and head checksum of `volume`. Another volume may have the
+// same.
 std::optional<Sidecar::File> head_described(FileSystem& files, const std::string& sidecar, File& volume) {
   Sidecar::File record;
   const bool agrees = unless_foreign([&] {
@@ -68,7 +69,8 @@ OwnSidecar find_own_sidecar(FileSystem& files, const std::string& previous, cons
       } else if (before && digest == before->digest) {
         own = OwnSidecar::previous;
       }
-    } else if (before) {  // no need to read it: also a damaged volume gets back the sidecar that tells so
+    } else if (before) {  // no need to read the volume: a damaged volume, too, gets back the sidecar that shows the
+                          // damage
       own = OwnSidecar::previous;
     }
     return true;
@@ -99,7 +101,7 @@ bool is_committed(FileSystem& files, const std::string& output) {
   if (!files.exists(output)) return false;
   try {
     const std::string record = commit_record(short_text(files, sidecar));
-    // Read before it is locked, which would make it where it is missing.
+    // Reads `partial` before files.open() locks it, because open() would create a missing file.
     if (short_text(files, partial) != record) return false;
     return short_text(*files.open(partial)) == record && describes(files, sidecar, output);
   } catch (const Error&) {

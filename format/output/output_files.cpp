@@ -34,7 +34,7 @@ OutputFiles::OutputFiles(FileSystem& files, const std::string& path, bool overwr
     refuse_existing(files_, path_);
     if (!left_over) refuse_existing(files_, sidecar_);
   }
-  // What a process that was killed has left says whose the sidecar is, until create empties it.
+  // The content that a killed process left tells which volume the sidecar belongs to, until create() empties the file.
   partial_ = left_over ? files_.open(partial) : files_.create(partial);
   require_alone(*partial_);
   try {
@@ -49,11 +49,11 @@ OutputFiles::OutputFiles(FileSystem& files, const std::string& path, bool overwr
   }
 }
 
-// A commit that was killed between its steps 4 and 5. Under the lock nobody is between them; who was may have come to
-// its end meanwhile.
+// Repairs what a commit that was killed between its steps 4 and 5 left. Under the lock no other process is between
+// them, but one that was may have finished before this process got the lock.
 void OutputFiles::undo_killed_commit(bool left_over) {
   if (const std::string partial = partial_path(sidecar_); files_.exists(partial)) {
-    files_.create(partial);  // refuses what is somebody's, now and not when the work is done
+    files_.create(partial);  // refuses somebody else's file now, not when the work is done
     files_.remove(partial);
   }
   if (overwrite_) return restore_previous(left_over);
@@ -63,8 +63,8 @@ void OutputFiles::undo_killed_commit(bool left_over) {
   files_.remove(sidecar_);
 }
 
-// The old volume's own sidecar, or none where it had none: the one that lies beside it would be taken for it by the
-// next commit.
+// Gives the old volume its own sidecar back, or none if it had none. Otherwise the next commit would take the sidecar
+// beside it for its own.
 void OutputFiles::restore_previous(bool left_over) {
   if (!files_.exists(path_)) return;
   if (const std::string previous = previous_path(sidecar_); files_.exists(previous)) {
@@ -74,9 +74,9 @@ void OutputFiles::restore_previous(bool left_over) {
   }
 }
 
-// By a second name, which takes nothing; where there are none, by a copy.
+// Keeps the old sidecar by a second name, which takes no space; if the file system has no links, by a copy.
 void OutputFiles::keep_previous(const std::string& previous) {
-  files_.remove(previous);  // of an earlier crash
+  files_.remove(previous);  // left by an earlier crash
   if (files_.link(sidecar_, previous)) return;
   try {
     const std::unique_ptr<File> from = files_.open_to_read(sidecar_);
@@ -113,7 +113,7 @@ void OutputFiles::reserve_ahead(std::uint64_t bytes, Pages pages) {
   try {
     ahead_ = std::async(std::launch::async, preallocate);
   } catch (const std::system_error&) {
-    // No thread for it.
+    // No thread is available: nothing is reserved ahead.
   }
 }
 
@@ -129,15 +129,15 @@ void OutputFiles::clear_for(std::uint64_t bytes) {
 
 OutputFiles::~OutputFiles() {
   if (owner_ != ::getpid()) {
-    // Not destroyed: that would wait for a thread of the parent.
+    // The future is leaked, because destroying it would wait for a thread of the parent.
     static_cast<void>(std::make_unique<std::future<bool>>(std::move(ahead_)).release());
     return;
   }
   enough_ahead_ = true;
   if (ahead_.valid()) ahead_.wait();
   if (committed_ && !volume_) return;
-  if (!holds_lock()) return;  // what has these names is another process's
-  // Of a volume in another place: gone only now that what the volume was made from is.
+  if (!holds_lock()) return;  // another process has these names now
+  // A volume written to another file: its lock goes only now, after the data that the volume was made from.
   remove_quietly(partial_path(path_));
   if (!committed_) remove_quietly(partial_path(sidecar_));
 }
@@ -154,26 +154,26 @@ void OutputFiles::remove_quietly(const std::string& path) noexcept {
   try {
     files_.remove(path);
   } catch (const Error&) {
-    // The failure that led here is the one to report.
+    // The earlier failure is the one to report.
   }
 }
 
 // What each step leaves if the machine stops after it:
-//   1. volume.partial flushed           both names as before (nothing, or the old pair); where it is a lock alone, it
-//                                       holds the digest of the sidecar to be
+//   1. volume.partial flushed           both names as before (nothing, or the old pair); if it is only a lock, it
+//                                       holds the digest of the future sidecar
 //   2. sidecar.partial written, flushed the same
 //   3. old sidecar linked to .previous  the same, and a second name of the old sidecar, or a copy of it
-//   4. sidecar renamed into place       new sidecar beside no volume or the old one, whose size and head checksum may
-//                                       be the same: beside .previous or OUT.nvdb.partial all readers compare the
-//                                       digest of the volume's bytes, and see "not done"; no volume beside
-//                                       OUT.nvdb.partial, which agrees with the sidecar: the next conversion
-//                                       replaces it. The next --overwrite of the old volume puts its own sidecar
-//                                       back first
+//   4. sidecar renamed into place       new sidecar beside no volume, or beside the old one, which may have the same
+//                                       size and head checksum. Beside .previous or OUT.nvdb.partial all readers
+//                                       compare the digest of the volume's bytes and see "not done". No volume,
+//                                       and OUT.nvdb.partial agrees with the sidecar: the next conversion
+//                                       replaces the sidecar. The next --overwrite of the old volume first puts
+//                                       the volume's own sidecar back
 //   5. volume renamed into place        the new pair
 //   6. .previous removed                the new pair alone
 //   7. directory flushed                the new pair, durable
-// A failure before step 5 has done its work puts the old sidecar back, or removes the new one. Steps 2 and 4 begin with
-// a look at whether the lock and the volume have their names still.
+// A failure before the end of step 5 puts the old sidecar back, or removes the new one. Steps 2 and 4 first check
+// whether the lock and the volume still have their names.
 void OutputFiles::commit(const std::string& sidecar_text) {
   const std::string volume_partial = volume().path();
   const std::string sidecar_partial = partial_path(sidecar_);
@@ -208,7 +208,7 @@ void OutputFiles::commit(const std::string& sidecar_text) {
     if (replaces) {
       try {
         files_.rename(previous, sidecar_);
-        files_.remove(previous);  // still there where both were names of one file
+        files_.remove(previous);  // still there if both were names of one file
       } catch (const Error&) {
         // The old sidecar stays under .previous; the volume's name was not touched.
       }

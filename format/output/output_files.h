@@ -1,6 +1,6 @@
-// The two files of a conversion, OUT.nvdb and OUT.nvdb.json, from their first
-// byte to their names: a reader never sees half of one, a crash loses nothing
-// that was there before, and a failure leaves the directory as it was.
+// The two files of a conversion, OUT.nvdb and OUT.nvdb.json, from their first byte until they have their names. A
+// reader never sees half of a file, a crash loses nothing that was there before, and a failure leaves the directory as
+// it was.
 #pragma once
 
 #include <sys/types.h>
@@ -19,44 +19,46 @@ namespace weir {
 
 class OutputFiles {
  public:
-  /// Checks the place and takes the lock on OUT.nvdb.partial. Throws Error(io) where the directory is
-  /// missing or not writable or another process writes the output, Error(usage) where it exists and `overwrite` is
-  /// false, where its name is too long for the names beside it, or where something else than a regular file would be
-  /// replaced, Error(io) where what a killed commit left cannot be read, and so not be told from the output's own. A
-  /// sidecar that a killed commit left without its volume is no output, and is removed; one that it put
-  /// beside the previous volume is replaced by that volume's own.
+  /// Checks the place and takes the lock on OUT.nvdb.partial.
+  /// Throws Error(io) if the directory is missing or not writable, if another process writes the output, or if what a
+  /// killed commit left cannot be read and so not be told from the output's own files.
+  /// Throws Error(usage) if the output exists and `overwrite` is false, if its name is too long for the names beside
+  /// it, or if something that is not a regular file would be replaced.
+  /// A sidecar that a killed commit left without its volume is no output, and is removed. A sidecar that a killed
+  /// commit put beside the previous volume is replaced by that volume's own.
   OutputFiles(FileSystem& files, const std::string& path, bool overwrite);
-  /// Removes what was not committed; nothing where OUT.nvdb.partial is another file by now, or in a process that was
-  /// forked since: the output is its parent's.
+  /// Removes what was not committed. Removes nothing if OUT.nvdb.partial is another file by now, or in a process that
+  /// was forked since, because the output belongs to the parent.
   ~OutputFiles();
   OutputFiles(const OutputFiles&) = delete;
   OutputFiles& operator=(const OutputFiles&) = delete;
 
-  /// Directory of the output, "." where the path has none.
+  /// Returns the directory of the output, "." if the path has none.
   const std::string& directory() const { return directory_; }
 
-  /// Takes the volume's bytes from `file`, on the same file system, and not from OUT.nvdb.partial, which stays the lock
-  /// until this object ends. A failure leaves `file`, which its owner must remove.
+  /// Takes the volume's bytes from `file`, on the same file system, instead of OUT.nvdb.partial, which stays the lock
+  /// until this object ends. After a failure `file` remains, and its owner must remove it.
   void write_to(std::shared_ptr<File> file);
 
-  /// Whether pages of a memory file system are cleared once they are reserved, for who will write by a mapping.
+  /// Whether the pages of a memory file system are cleared once they are reserved, for a caller that writes through a
+  /// mapping.
   enum class Pages { as_they_are, cleared };
-  /// Begins to reserve blocks of the volume, nothing of which is written yet, beside what its caller goes on with:
-  /// in a memory file system that takes as long as writing them. What goes wrong is left to reserve().
+  /// Begins to reserve blocks of the volume on another thread, before anything is written: in a memory file system that
+  /// takes as long as writing. reserve() handles errors.
   void reserve_ahead(std::uint64_t bytes, Pages pages = Pages::as_they_are);
-  /// Makes the volume empty, so that it can be reserve()d and written. `bytes` is what it will be.
+  /// Empties the volume, so that it can be reserved and written. `bytes` is its future size.
   void clear_for(std::uint64_t bytes);
-  /// Sets the volume's size and reserves its blocks, unless they are; false where the file system cannot reserve.
+  /// Sets the volume's size and reserves its blocks, unless they are reserved; false if the file system cannot reserve.
   bool reserve(std::uint64_t bytes) { return reserved_ == bytes || volume().preallocate(bytes); }
   File& volume() { return volume_ ? *volume_ : *partial_; }
-  /// Whether the volume lies in a memory file system.
+  /// Returns whether the volume lies in a memory file system.
   bool in_memory() const { return files_.is_memory(directory_); }
 
-  /// The protocol's end, see the numbered steps in the source. After it returned, both files are
-  /// durable under their names. Where committed() it has failed to make them durable alone. Throws Error(io), besides,
-  /// where OUT.nvdb.partial, or the file of write_to, was removed or replaced while it was written.
+  /// Ends the protocol; see the numbered steps in the source. When it returns, both files are durable under their
+  /// names. If it throws and committed() is true, only making them durable has failed. Also throws Error(io) if
+  /// OUT.nvdb.partial, or the file of write_to(), was removed or replaced while it was written.
   void commit(const std::string& sidecar_text);
-  /// Whether both files have their names.
+  /// Returns whether both files have their names.
   bool committed() const { return committed_; }
 
  private:
@@ -75,11 +77,11 @@ class OutputFiles {
   bool overwrite_;
   bool committed_ = false;
   std::unique_ptr<File> partial_;
-  std::shared_ptr<File> volume_;            // where not partial_
-  std::atomic<bool> enough_ahead_ = false;  // no further pages are to be cleared
-  std::future<bool> ahead_;                 // whether ahead_bytes_ of the volume are reserved, and nothing is written
+  std::shared_ptr<File> volume_;            // the file of write_to(); null: the volume is partial_
+  std::atomic<bool> enough_ahead_ = false;  // tells reserve_ahead() to clear no further pages
+  std::future<bool> ahead_;                 // whether ahead_bytes_ of the volume are reserved; nothing is written yet
   std::uint64_t ahead_bytes_ = 0;
-  std::optional<std::uint64_t> reserved_;  // of the volume that clear_for() has left as it was
+  std::optional<std::uint64_t> reserved_;  // bytes reserved, if clear_for() has kept the reservation
 };
 
 }  // namespace weir

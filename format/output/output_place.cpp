@@ -13,7 +13,7 @@
 namespace weir {
 namespace {
 
-// Of formats that weir reads or writes, and of others that a volume or a picture may be meant to be.
+// Extensions of formats that weir reads or writes, and of others that a volume or a picture may be meant to have.
 constexpr std::array<std::string_view, 37> kOthersExtensions{
     ".cdf", ".csv", ".exr",  ".gz",   ".h5",  ".hdf", ".hdf5", ".he5",    ".jpeg", ".jpg",  ".json", ".mha", ".mhd",
     ".mp4", ".nc",  ".nc4",  ".nhdr", ".nii", ".npy", ".npz",  ".nrrd",   ".ozx",  ".pdf",  ".png",  ".ppm", ".raw",

@@ -24,7 +24,7 @@ PartialFile::~PartialFile() {
   try {
     if (file_->has_its_name()) files_.remove(partial_path(path_));
   } catch (const Error&) {
-    // The failure that led here is the one to report.
+    // The earlier failure is the one to report.
   }
 }
 

@@ -19,7 +19,7 @@ FileMapping mapping_of(const File& file) {
 
 }  // namespace
 
-// What a reader calls a bad file is here a device that does not hold what was written.
+// A file that a reader calls bad means here that the device does not hold what was written.
 WrittenVolume::WrittenVolume(const File& file) {
   try {
     if (const auto bytes = file.memory(); !bytes.empty()) {

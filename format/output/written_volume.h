@@ -1,4 +1,4 @@
-// The volume of a conversion that is written, but has no name of its own yet, as a reader sees it.
+// Reads the volume of a conversion that is written but has no name of its own yet.
 #pragma once
 
 #include <optional>
@@ -11,13 +11,13 @@ namespace weir {
 
 class WrittenVolume {
  public:
-  /// Maps `file`, which is complete and must not be written to while this object is used: by its descriptor, whatever
-  /// has its path, and by its path where it has none. Uses its bytes where they are where it lies in memory. Throws
-  /// Error(io) where it cannot be read back.
+  /// Opens `file`, which is complete and must not be written to while this object is used. Uses the file's bytes in
+  /// place if they lie in memory. Otherwise maps it by its descriptor, whatever file has its path, or by its path if it
+  /// has no descriptor. Throws Error(io) if it cannot be read back.
   explicit WrittenVolume(const File& file);
 
   const NvdbGrid& grid() const { return mapped_ ? mapped_->grid() : *held_; }
-  /// See FileMapping::release_pages; nothing where the file lies in memory.
+  /// Calls FileMapping::release_pages(); does nothing if the file lies in memory.
   void release_pages() const;
 
  private:

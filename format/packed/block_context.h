@@ -1,5 +1,5 @@
-// The context of a coefficient of a packed block, from the magnitudes around it (FORMAT.md, "Coded values"). For host
-// and device.
+// Computes the context of a coefficient of a packed block from the magnitudes around it (FORMAT.md, "Coded values").
+// For host and device.
 #pragma once
 
 #include <cstdint>
@@ -9,14 +9,15 @@
 
 namespace weir {
 
-/// Largest magnitude that counts in a sum of neighbours.
+/// Larger magnitudes count as this one in a sum of neighbours.
 inline constexpr std::uint32_t kMostOfNeighbour = 1U << 20U;
-/// Sums of neighbours (six times their mean) with a level of their own; larger ones have the last.
+/// The number of sums of neighbours (six times their mean) that have an entry; larger sums have the last level.
 inline constexpr std::uint32_t kLevelSums = 321;
 
 namespace packed_detail {
 
-// floor(3 log2(1 + 4 t / 6)), at most 23: the largest n with 2^n <= (1 + 2 t / 3)^3, in whole numbers.
+// Level of the sum t: floor(3 log2(1 + 4 t / 6)), at most 23. In whole numbers: the largest n with 2^n <= (1 + 2 t /
+// 3)^3.
 constexpr void make_levels(std::uint8_t (&levels)[kLevelSums]) {
   for (std::uint64_t t = 0; t < kLevelSums; ++t) {
     const std::uint64_t cube = (3 + 2 * t) * (3 + 2 * t) * (3 + 2 * t);
@@ -28,7 +29,7 @@ constexpr void make_levels(std::uint8_t (&levels)[kLevelSums]) {
 
 }  // namespace packed_detail
 
-/// How many low bits of a magnitude are coded as they are, where `t` is the sum of its neighbours times their weight.
+/// Returns how many low bits of a magnitude are stored uncoded. `t` is the weighted sum of its neighbours.
 WEIR_HOST_DEVICE inline unsigned extra_bits(std::uint32_t t) {
   if (t <= 36) return 0;
   const unsigned bits = 31U - static_cast<unsigned>(__builtin_clz(t / 18));

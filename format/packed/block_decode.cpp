@@ -11,7 +11,7 @@
 namespace weir {
 namespace {
 
-// Planes of x from `planes` on hold +0 alone: every sum and difference of their transforms along z and y is +0 too.
+// Planes of x from `planes` on hold only +0: every sum and difference of their transforms along z and y is +0 too.
 WEIR_SIMD void transform_in_lanes(float* values, unsigned planes, float mean, float minimum, float maximum) {
   const Floats8 none{};
   for (unsigned x = 0; x < planes; ++x) {
@@ -36,12 +36,12 @@ WEIR_SIMD void transform_in_lanes(float* values, unsigned planes, float mean, fl
   }
 }
 
-// The signs of a block's nonzero values, in their order: 64 to a word.
+// The signs of a block's nonzero values, in the order of the values: 64 to a word.
 class Signs {
  public:
   std::uint32_t of(std::uint32_t n) const { return static_cast<std::uint32_t>(words_[n >> 6U] >> (n & 63U)) & 1U; }
 
-  // Bits of the front, `early` of them from `at` on, which it must have; then `late` bits of the payload.
+  // Takes `early` bits of the front, from bit `at` on, which the front must have; then `late` bits of the payload.
   void set(const std::byte* front, std::uint32_t at, std::uint32_t early, std::uint32_t late, std::uint32_t payload) {
     std::byte bytes[80] = {};
     const std::uint32_t first = at >> 3U;
@@ -63,7 +63,7 @@ class Signs {
   std::uint64_t words_[9] = {};
 };
 
-// Coefficients of magnitudes, as coefficient() of block_decode.h makes them.
+// Computes coefficients from magnitudes, with the result of coefficient() of block_decode.h.
 class Sizes {
  public:
   Sizes(const BlockConstants& constants, float step) : constants_(constants), step_(step) {
@@ -83,8 +83,8 @@ class Sizes {
   float small_[kSmall] = {};
 };
 
-// What decode_values() of tests/format/packed/plain_decode.h gives, the nonzero values as a list with their signs
-// apart.
+// Decodes the same values as decode_values() of tests/format/packed/plain_decode.h, but keeps the nonzero values as a
+// list and their signs apart.
 class ListedValues {
  public:
   bool decode(const CoderContexts& contexts, const std::byte* front, const std::byte* stream_end, unsigned end,
@@ -142,7 +142,7 @@ bool decode_transform(const BlockConstants& constants, const MeanRange& range, c
   return true;
 }
 
-// undo_prediction() of a predictor known when it is compiled.
+// Calls undo_prediction() with a predictor that is known at compile time.
 template <bool kOrdered>
 void undo(unsigned predictor, std::uint32_t* codes) {
   switch (predictor) {

@@ -1,5 +1,5 @@
-// Decodes the stream of a packed block into its 512 values (FORMAT.md, "Packed data"): the one definition of a decoded
-// value, and its parts, which the device has, too.
+// Decodes the stream of a packed block into its 512 values (FORMAT.md, "Packed data"). This is the only definition of a
+// decoded value; the device shares its parts.
 #pragma once
 
 #include <cstddef>
@@ -25,20 +25,20 @@ WEIR_HOST_DEVICE inline T load_bytes(const std::byte* at) {
   return value;
 }
 
-// NaN, which damaged constants can lead to, becomes the minimum.
+// NaN, which damaged constants can produce, becomes the minimum.
 WEIR_HOST_DEVICE inline float clamp_to(const BlockConstants& constants, float v) {
   return v >= constants.minimum ? (v <= constants.maximum ? v : constants.maximum) : constants.minimum;
 }
 
-/// What is known once all magnitudes are decoded.
+/// The values that are known once all magnitudes are decoded.
 struct CodedNumber {
-  std::uint32_t code = 0;     ///< of the mean, or the base
-  std::uint32_t payload = 0;  ///< what the coders' states end with: signs, then low bits of the code
-  std::uint32_t early = 0;    ///< signs that lie in front; the others are the payload's
+  std::uint32_t code = 0;     ///< the code of the mean, or the base
+  std::uint32_t payload = 0;  ///< the payload in the coders' final states: signs, then low bits of the code
+  std::uint32_t early = 0;    ///< number of signs in front; the others are in the payload
 };
 
-/// Reads the code but for its low bits; `first` and `second` are the states that `states` coders end with, `nonzero` of
-/// the magnitudes are not zero.
+/// Reads the code except its low bits. `first` and `second` are the final states of the `states` coders; `nonzero`
+/// magnitudes are not zero.
 WEIR_HOST_DEVICE inline CodedNumber read_number(BitReader& bits, unsigned states, std::uint32_t first,
                                                 std::uint32_t second, std::uint32_t nonzero, unsigned number_bits) {
   const unsigned capacity = 16 * states;
@@ -64,7 +64,7 @@ WEIR_HOST_DEVICE inline float coefficient(std::uint32_t signed_magnitude, const 
   return negative ? -size : size;
 }
 
-/// The fixed part of a transformed block's stream: its step, and bits of its mean's code. False where it is invalid.
+/// Reads the fixed part of a transformed block's stream: its step, and the bits of its mean's code. False if invalid.
 WEIR_HOST_DEVICE inline bool read_step(const BlockConstants& constants, const MeanRange& range, const std::byte* stream,
                                        std::int32_t& step, unsigned& number_bits) {
   step = constants.coarsest + static_cast<std::int32_t>(static_cast<unsigned>(stream[0]) >> 2U);
@@ -80,10 +80,10 @@ struct LatticeHead {
   float minimum = 0;
   float quantum = 0;
   unsigned base_bits = 0;
-  const std::byte* front = nullptr;  ///< what follows
+  const std::byte* front = nullptr;  ///< the bytes that follow
 };
 
-/// False where the stream is invalid.
+/// Returns false if the stream is invalid.
 WEIR_HOST_DEVICE inline bool read_lattice_head(const BlockConstants& constants, const std::byte* stream,
                                                std::uint32_t bytes, LatticeHead& read) {
   const auto head = static_cast<unsigned>(stream[0]);
@@ -107,14 +107,14 @@ WEIR_HOST_DEVICE inline bool read_lattice_head(const BlockConstants& constants, 
   return true;
 }
 
-/// Of a lattice's code.
+/// Returns the value of a code on a lattice.
 WEIR_HOST_DEVICE inline float lattice_value(const BlockConstants& constants, float minimum, float quantum,
                                             std::uint32_t code) {
   const float product = static_cast<float>(code) * quantum;
   return clamp_to(constants, product + minimum);
 }
 
-/// False where a code is too large.
+/// Returns false if a code is too large.
 WEIR_HOST_DEVICE inline bool values_of_codes(const BlockConstants& constants, const LatticeHead& head,
                                              const std::uint32_t* codes, float* values) {
   std::uint32_t all = 0;
@@ -133,7 +133,7 @@ WEIR_HOST_DEVICE inline CoderContexts residual_contexts(const BlockConstants& co
   return {constants.tables + std::size_t{kPackedSymbols} * kPackedLevels * kPackedBands, false};
 }
 
-/// The one value of a block that is coded by its mean. False where the stream is invalid.
+/// Reads the one value of a block that is coded by its mean. Returns false if the stream is invalid.
 WEIR_HOST_DEVICE inline bool read_mean(const BlockConstants& constants, const MeanRange& range, const std::byte* stream,
                                        std::uint32_t bytes, float& value) {
   std::int32_t step;
@@ -152,7 +152,7 @@ WEIR_HOST_DEVICE inline bool decode_mean_alone(const BlockConstants& constants, 
   return true;
 }
 
-/// Sets `uniform` to whether a raw block has one value. Returns false where the stream is invalid.
+/// Sets `uniform` to whether a raw block has one value. Returns false if the stream is invalid.
 WEIR_HOST_DEVICE inline bool read_raw_head(const std::byte* stream, std::uint32_t bytes, bool& uniform) {
   const auto head = static_cast<unsigned>(stream[0]);
   uniform = (head >> 2U & 1U) != 0;
@@ -168,7 +168,7 @@ WEIR_HOST_DEVICE inline bool decode_raw(const std::byte* stream, std::uint32_t b
 
 }  // namespace packed_detail
 
-/// Decodes a stream into 512 values (x << 6 | y << 3 | z). False where the stream is invalid; `values` are then
+/// Decodes a stream into 512 values (x << 6 | y << 3 | z). Returns false if the stream is invalid; `values` then hold
 /// anything. Never reads outside the `bytes` bytes of the stream.
 bool decode_block(const BlockConstants& constants, const MeanRange& range, const std::byte* stream, std::uint32_t bytes,
                   float* values);

@@ -42,7 +42,7 @@ WEIR_SIMD BlockRange range_of(const float* values) {
   return range;
 }
 
-// Lanes of a vector: those of one slab of a block, or of two that follow each other.
+// The lanes of a vector: one slab of a block, or two consecutive slabs.
 struct OneSlab {
   using Lanes = Floats8;
 };
@@ -50,7 +50,7 @@ struct TwoSlabs {
   using Lanes = Floats16;
 };
 
-// Slabs from `at` on, as eight vectors of their rows, and back.
+// Load slabs from `at` on as eight vectors of their rows, or store them.
 [[gnu::always_inline]] inline void load_slabs(const float* at, Floats8 (&rows)[8]) {
   for (unsigned i = 0; i < 8; ++i) load_lanes(at + 8 * i, rows[i]);
 }
@@ -77,8 +77,8 @@ struct TwoSlabs {
 }
 #endif
 
-// The coefficients of the differences from the mean; that of the mean, coefficient 0, becomes 0. Also the largest
-// magnitude and the sum of squares of each row; returns the largest of all.
+// Computes the coefficients of the differences from the mean; coefficient 0, the mean's, becomes 0. Also computes the
+// largest magnitude and the sum of squares of each row. Returns the largest magnitude of all.
 template <typename Slabs>
 [[gnu::always_inline]] inline float transform_slabs(const float* values, float mean, float* coefficients,
                                                     float* row_largest, double* row_energy) {
@@ -145,13 +145,13 @@ float transform(const float* values, float mean, float* coefficients, float* row
 }
 #endif
 
-// What quantise_rows has found.
+// The result of quantise_rows().
 struct Quantised {
   double squared_error;
-  unsigned last_place;  // that is not zero; 0 where all are
+  unsigned last_place;  // the last place that is not zero; 0 if all are zero
 };
 
-// Bit i set: the largest of row i is not below `least`.
+// Returns a word with bit i set if the largest magnitude of row i is not below `least`.
 [[gnu::always_inline]] inline std::uint64_t live_rows(const float* largest, float least) {
   using Bytes8 = std::uint8_t __attribute__((vector_size(8)));
   Ints8 columns{};  // bit i of lane l is of row 8 i + l
@@ -163,7 +163,7 @@ struct Quantised {
   const Bytes8 bytes = __builtin_convertvector(columns, Bytes8);
   std::uint64_t bits;
   std::memcpy(&bits, &bytes, sizeof bits);
-  // Eight by eight bits, transposed: single ones, then squares of two, then of four.
+  // Transposes eight by eight bits: first single bits, then squares of two, then squares of four.
   std::uint64_t swapped = (bits ^ bits >> 7U) & 0x00AA00AA00AA00AAU;
   bits ^= swapped ^ swapped << 7U;
   swapped = (bits ^ bits >> 14U) & 0x0000CCCC0000CCCCU;
@@ -172,7 +172,7 @@ struct Quantised {
   return bits ^ swapped ^ swapped << 28U;
 }
 
-// Magnitudes at a step by index; rows whose largest coefficient is below the dead zone are zero.
+// Quantises at a step, by index. Rows are zero if their largest coefficient is below the dead zone.
 WEIR_SIMD Quantised quantise_rows(const float* coefficients, const float* largest, const double* energy, float step,
                                   const std::int32_t* places, MagnitudeRows& magnitudes) {
   const float scale = 1.0F / step;
@@ -183,7 +183,7 @@ WEIR_SIMD Quantised quantise_rows(const float* coefficients, const float* larges
   const Ints8 zero{};
   const std::uint64_t live = live_rows(largest, least);
   magnitudes.live = live;
-  // First the ones, then the others: where they take turns, a branch is seldom foreseen.
+  // Live rows first, then the others: taking turns would make the branch hard to predict.
   for (std::uint64_t rows = live; rows != 0; rows &= rows - 1) {
     const auto row = static_cast<unsigned>(std::countr_zero(rows));
     Floats8 c;
@@ -220,7 +220,7 @@ WEIR_SIMD Quantised quantise_rows(const float* coefficients, const float* larges
   return {dropped + total * static_cast<double>(step) * static_cast<double>(step), static_cast<unsigned>(last_place)};
 }
 
-// The coefficients that magnitudes decode to, with those signs.
+// Computes the coefficients that magnitudes decode to, with the signs of `signs`.
 WEIR_SIMD void decode_rows(const float* signs, const MagnitudeRows& magnitudes, float below_one, float below_more,
                            float step, float* values) {
   const Floats8 none{};
@@ -239,7 +239,7 @@ WEIR_SIMD void decode_rows(const float* signs, const MagnitudeRows& magnitudes, 
   }
 }
 
-// The last of the places with the least magnitude that is not zero: what to leave out where a stream is too long.
+// Returns the last of the places with the least nonzero magnitude: the one to drop if a stream is too long.
 unsigned cheapest_place(const MagnitudeRows& magnitudes) {
   unsigned cheapest = 0;
   std::uint32_t least = ~0U;

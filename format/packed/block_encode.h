@@ -1,4 +1,4 @@
-// Encodes a block by transform: what each step of the quantiser takes and loses, and the stream. No dependency on the
+// Encodes a block by transform: what each step of the quantiser costs and loses, and the stream. No dependency on the
 // rest of weir.
 #pragma once
 
@@ -14,41 +14,42 @@
 
 namespace weir {
 
-/// The tables that weir writes: kPackedTables x kPackedSymbols cumulative frequencies, of the volumes and steps that
-/// docs/internals.md names.
+/// Returns the tables that weir writes: kPackedTables x kPackedSymbols cumulative frequencies, measured over the
+/// volumes and steps that docs/internals.md names.
 const std::uint16_t* built_in_tables();
 
-/// Bytes of a stream of so many bits besides the code of its mean.
+/// Returns the bytes of a stream that has `bits` bits besides the code of its mean.
 inline std::uint32_t stream_bytes(std::uint32_t bits, unsigned mean_bits) { return (bits + mean_bits + 7) / 8; }
 
-/// One per thread.
+/// Encodes one block at a time. Use one object per thread.
 class TransformBlock {
  public:
-  /// `tables`, as built_in_tables(), must outlive the object.
+  /// `tables`, with the shape of built_in_tables(), must outlive the object.
   explicit TransformBlock(const std::uint16_t* tables = built_in_tables());
 
-  /// Transforms 512 finite values (x << 6 | y << 3 | z). False where they are too large or too small for that.
+  /// Transforms 512 finite values (x << 6 | y << 3 | z). Returns false if they are too large or too small for a
+  /// transform.
   bool set(std::span<const float, 512> values);
   float mean() const { return mean_; }
-  /// Of the coefficients but the mean's: the largest magnitude, and the sum of squares, which is the squared error of
-  /// the mean alone.
+  /// Over all coefficients except the mean's: the largest magnitude, and the sum of squares, which is the squared error
+  /// of a stream of the mean alone.
   double largest() const { return largest_; }
   double energy() const { return energy_; }
 
   struct Cost {
-    std::uint32_t bits = 0;    ///< of the stream but for the mean's code; 8: a mean alone
-    double squared_error = 0;  ///< of the 512 values by Parseval's theorem, but for the mean's own
+    std::uint32_t bits = 0;    ///< bits of the stream without the mean's code; 8: a mean alone
+    double squared_error = 0;  ///< of the 512 values, by Parseval's theorem, without the mean's own error
   };
-  /// At a step number. The bits are what encode() takes, to a fraction of a bit.
+  /// Returns the cost at a step number. The bits are what encode() writes, to a fraction of a bit.
   Cost cost(std::int32_t step);
 
-  /// Writes the stream to all of `out`. Where that is shorter than the stream, the smallest coefficients
-  /// go until it fits, where longer it has zeros in its middle. `constants` has what the file has.
+  /// Writes the stream to all of `out`. If `out` is too short, drops the smallest coefficients until the stream fits;
+  /// if it is longer, puts zeros in the stream's middle. `constants` are the file's.
   void encode(const BlockConstants& constants, const MeanRange& range, std::int32_t step, std::span<std::byte> out);
-  /// Whether some went in the last encode().
+  /// Returns whether the last encode() has dropped coefficients.
   bool dropped() const { return dropped_; }
-  /// The values that the stream of the last encode(), of those arguments, decodes to: decode_block()'s bits, without
-  /// decoding it. False where it is a mean alone.
+  /// Computes the values that the stream of the last encode() decodes to, with the bits of decode_block() but without
+  /// decoding. The arguments are those of that encode(). Returns false if the stream is a mean alone.
   bool decoded(const BlockConstants& constants, const MeanRange& range, std::int32_t step,
                std::span<float, 512> values) const;
 
@@ -58,11 +59,11 @@ class TransformBlock {
   float mean_ = 0;
   double largest_ = 0;
   double energy_ = 0;
-  std::array<float, 512> coefficients_{};  // by index; that of the mean is 0
+  std::array<float, 512> coefficients_{};  // by index; the mean's entry is 0
   std::array<float, 64> row_largest_{};
   std::array<double, 64> row_energy_{};
   MagnitudeRows magnitudes_;
-  StreamFront front_;  // of the last encode()
+  StreamFront front_;  // front of the last encode()'s stream
   bool dropped_ = false;
 };
 

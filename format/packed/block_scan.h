@@ -1,5 +1,5 @@
-// The order in which the coefficients of a packed block are coded, and the neighbours that each one's context is taken
-// from (FORMAT.md, "Coded values"). Made at compile time; a kernel gets a copy.
+// The order in which the coefficients of a packed block are coded, and the neighbours that give each one its context
+// (FORMAT.md, "Coded values"). Computed at compile time; a kernel gets a copy.
 #pragma once
 
 #include <cstdint>
@@ -9,13 +9,13 @@
 namespace weir {
 
 struct BlockScan {
-  std::uint16_t index[512] = {};  ///< of a place: i << 6 | j << 3 | k
-  std::uint16_t place[512] = {};  ///< of an index
-  std::uint8_t band[512] = {};    ///< of a place
-  /// Of a place: indices of its neighbours, 512 where there is none, and what their sum is multiplied by.
+  std::uint16_t index[512] = {};  ///< index by place: i << 6 | j << 3 | k
+  std::uint16_t place[512] = {};  ///< place by index
+  std::uint8_t band[512] = {};    ///< band by place
+  /// By place: indices of its neighbours (512: no neighbour), and the weight that their sum is multiplied by.
   std::uint16_t neighbour[512][3] = {};
   std::uint8_t weight[512] = {};
-  std::uint8_t level[kLevelSums] = {};  ///< by the sum of the neighbours, so multiplied
+  std::uint8_t level[kLevelSums] = {};  ///< level by the weighted sum of the neighbours
 };
 
 namespace packed_detail {

@@ -1,4 +1,4 @@
-// Steps of the quantiser, and the code of a block's mean (FORMAT.md, "Steps"). For host and device.
+// The steps of the quantiser, and the code of a block's mean (FORMAT.md, "Steps"). For host and device.
 #pragma once
 
 #include <cmath>
@@ -11,10 +11,10 @@ namespace weir {
 
 inline constexpr std::int32_t kLeastStep = -250;
 inline constexpr std::int32_t kMostStep = 250;
-/// What mean_bits gives where the range is too wide for the step.
+/// The result of mean_bits() if the range is too wide for the step.
 inline constexpr unsigned kNoMeanBits = 0xFF;
 
-/// 2^(-step / 2), for steps of -250 to 250; odd ones rounded once.
+/// Returns 2^(-step / 2), for steps of -250 to 250; odd steps are rounded once.
 WEIR_HOST_DEVICE inline float step_size(std::int32_t step) {
   const std::int32_t half = step >> 1;  // floor
   const auto exponent = static_cast<std::uint32_t>(127 - half) << 23U;
@@ -23,7 +23,7 @@ WEIR_HOST_DEVICE inline float step_size(std::int32_t step) {
   return (step & 1) != 0 ? 0.7071067811865476F * power : power;
 }
 
-/// The coarsest step whose size is at most `size` > 0, or the finest.
+/// Returns the coarsest step with a size of at most `size` > 0, or the finest step.
 WEIR_HOST_DEVICE inline std::int32_t coarsest_step_within(double size) {
   std::uint64_t bits;
   __builtin_memcpy(&bits, &size, sizeof bits);
@@ -34,27 +34,29 @@ WEIR_HOST_DEVICE inline std::int32_t coarsest_step_within(double size) {
   return step;
 }
 
-/// Rungs of a block's ladder, from coarse to fine; the first ones have no coefficient.
+/// Number of rungs of a block's ladder, from coarse to fine; the first kLadderMeanRungs have no coefficient.
 inline constexpr std::int32_t kLadderRungs = 22;
 inline constexpr std::int32_t kLadderMeanRungs = 2;
 
-/// Step number of a rung, of a ladder whose first one has `first`: by whole octaves to where the first coefficient
-/// counts, then by half ones, by whole ones again, and at last, for what is nearly lossless, by two.
+/// Returns the step number of a rung, for a ladder with the first step `first`. Rungs go by whole octaves until the
+/// first coefficient counts, then by half octaves, by whole ones again, and at last, for nearly lossless steps, by two
+/// octaves.
 WEIR_HOST_DEVICE inline std::int32_t rung_step(std::int32_t first, std::int32_t rung) {
   const std::int32_t r = rung;
   return first + (r <= 2 ? 2 * r : r <= 10 ? r + 2 : r <= 16 ? 2 * r - 8 : 4 * r - 40);
 }
 
-/// Step number of the first rung where the largest coefficient is so large: four steps before it counts.
+/// Returns the step number of the first rung for a block with the given largest coefficient: four steps before that
+/// coefficient counts.
 WEIR_HOST_DEVICE inline std::int32_t first_rung_step(double largest) {
   constexpr std::int32_t kMeanSteps = 4;
   constexpr double kCounts = 0.6;  // steps
   return coarsest_step_within(largest / kCounts) - kMeanSteps;
 }
 
-/// The rung that a search about the step `wanted` begins at.
+/// Returns the rung at which a search around the step `wanted` begins.
 WEIR_HOST_DEVICE inline std::int32_t rung_about(std::int32_t first, std::int32_t wanted) {
-  // The first one of a step as fine: rung_step() the other way round.
+  // The first rung with a step as fine as `wanted`: the inverse of rung_step().
   const std::int32_t finer = wanted - first;
   const std::int32_t rung = finer <= 4    ? kLadderMeanRungs
                             : finer <= 12 ? finer - 2
@@ -63,10 +65,10 @@ WEIR_HOST_DEVICE inline std::int32_t rung_about(std::int32_t first, std::int32_t
   return rung < kLadderRungs ? rung : kLadderRungs - 1;
 }
 
-/// Distance of two means whose codes follow each other.
+/// Returns the distance of two means with consecutive codes.
 WEIR_HOST_DEVICE inline float mean_quantum(std::int32_t step) { return step_size(step) * 0.04419417382415922F; }
 
-/// Bits of a mean's code; kNoMeanBits where it would have more than 24.
+/// Returns the bits of a mean's code; kNoMeanBits if it would have more than 24.
 WEIR_HOST_DEVICE inline unsigned mean_bits(const MeanRange& range, std::int32_t step) {
   const float width = range.high - range.low;
   const float codes = width / mean_quantum(step);
@@ -74,13 +76,13 @@ WEIR_HOST_DEVICE inline unsigned mean_bits(const MeanRange& range, std::int32_t 
   return 32U - static_cast<unsigned>(__builtin_clz(static_cast<std::uint32_t>(codes) + 1));
 }
 
-/// The mean of a code.
+/// Returns the mean of a code.
 WEIR_HOST_DEVICE inline float decode_mean(const MeanRange& range, std::int32_t step, std::uint32_t code) {
   const float offset = static_cast<float>(code) * mean_quantum(step);
   return range.low + offset;
 }
 
-/// The code, of those of a step, that is nearest to a mean in the range.
+/// Returns the code at a step that is nearest to a mean in the range.
 WEIR_HOST_DEVICE inline std::uint32_t mean_code(const MeanRange& range, std::int32_t step, float mean) {
   const float width = range.high - range.low;
   const float quantum = mean_quantum(step);

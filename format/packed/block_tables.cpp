@@ -5,7 +5,7 @@ namespace weir {
 namespace {
 
 // Counted over float and integer volumes of simulations, scans and synthetic fields, each at steps from its range to
-// 1/4096 of it, each volume and step with the same weight (docs/internals.md).
+// 1/4096 of its range. Each volume and step has the same weight (docs/internals.md).
 constexpr std::uint16_t kTables[] = {
     0,    1141, 2448, 2912, 3148, 3290, 3385, 3452, 3502, 3542, 3574, 3601, 3624, 3643, 3660, 3675, 0,    1141, 2448,
     2912, 3148, 3290, 3385, 3452, 3502, 3542, 3574, 3601, 3624, 3643, 3660, 3675, 0,    256,  512,  768,  1024, 1280,

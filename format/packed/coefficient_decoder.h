@@ -1,5 +1,5 @@
-// What the decoders of the coded values of a packed block share: interleaved rANS over contexts of decoded neighbours
-// (FORMAT.md, "Coded values"; Duda 2013, Giesen 2014). For host and device.
+// The parts that the decoders of a packed block's coded values share: interleaved rANS over contexts of decoded
+// neighbours (FORMAT.md, "Coded values"; Duda 2013, Giesen 2014). For host and device.
 #pragma once
 
 #include <cstddef>
@@ -13,16 +13,16 @@
 namespace weir {
 
 inline constexpr std::uint32_t kLeastState = 65536;
-/// Coefficients that `end` counts by.
+/// The number of coefficients per unit of `end`.
 inline constexpr unsigned kEndUnit = 16;
-/// Streams of at most this `end` have one state, others two.
+/// Streams with at most this `end` have one state, others two.
 inline constexpr unsigned kOneStateEnd = 8;
 inline constexpr unsigned kEscape = kPackedSymbols - 1;
 
 WEIR_HOST_DEVICE inline unsigned states_of(unsigned end) { return end <= kOneStateEnd ? 1 : 2; }
 
-/// Reads bits of a stream, the lowest of each byte first. Beyond its end they are zeros: bytes_used() is then more than
-/// it has.
+/// Reads bits of a stream, the lowest of each byte first. Bits beyond the stream's end are zeros; bytes_used() then
+/// exceeds the stream's bytes.
 class BitReader {
  public:
   WEIR_HOST_DEVICE BitReader(const std::byte* bytes, std::uint32_t count) : bytes_(bytes), count_(count) {}
@@ -43,7 +43,7 @@ class BitReader {
     }
     return value;
   }
-  /// Bits, and whole bytes, read from.
+  /// The bits, and the whole bytes, that have been read.
   WEIR_HOST_DEVICE std::uint32_t bits_used() const { return at_; }
   WEIR_HOST_DEVICE std::uint32_t bytes_used() const { return (at_ + 7) >> 3U; }
 
@@ -53,10 +53,10 @@ class BitReader {
   std::uint32_t at_ = 0;
 };
 
-/// The states of a stream before its first value, and its words.
+/// The states of a stream before its first value, and the position of its words.
 class StreamStates {
  public:
-  /// False where the stream is too short.
+  /// Reads the states. Returns false if the stream is too short.
   WEIR_HOST_DEVICE bool start(const std::byte* front, const std::byte* end, unsigned states, unsigned short_flags) {
     const std::byte* at = end;
     for (unsigned s = 0; s < states; ++s) {
@@ -72,7 +72,7 @@ class StreamStates {
   }
 
   WEIR_HOST_DEVICE std::uint32_t state(unsigned s) const { return state_[s]; }
-  /// Behind the words, which are read from the last one on.
+  /// Returns the end of the words, which are read from the last one on.
   WEIR_HOST_DEVICE const std::byte* at() const { return at_; }
 
  private:
@@ -80,9 +80,9 @@ class StreamStates {
   const std::byte* at_ = nullptr;
 };
 
-/// What coded values are decoded by.
+/// The tables that coded values are decoded with.
 struct CoderContexts {
-  const std::uint16_t* tables = nullptr;  ///< of the first context
+  const std::uint16_t* tables = nullptr;  ///< tables of the first context
   bool bands = false;                     ///< a set of levels for each band
 };
 

@@ -1,5 +1,5 @@
-// The host's decoder of coded values: gives what decode_magnitudes() of tests/format/packed/plain_decode.h gives, and
-// refuses what it refuses, but faster. States and the position in the stream stay in registers, words are read without
+// The host's fast decoder of coded values: it returns and refuses the same as decode_magnitudes() of
+// tests/format/packed/plain_decode.h. States and the position in the stream stay in registers, words are read without
 // branches, and the nonzero magnitudes come as a list. For little-endian hosts.
 #pragma once
 
@@ -16,14 +16,14 @@
 
 namespace weir {
 
-/// The magnitudes of a block that are not zero, in the order of the scan; entries behind them are anything.
+/// The nonzero magnitudes of a block, in the order of the scan; entries from `count` on hold anything.
 struct NonzeroList {
   std::uint32_t count = 0;
   std::uint16_t index[512];
   std::uint32_t magnitude[512];
 };
 
-/// A stream's states and where its next word ends.
+/// The states of a stream, and the end of its next word.
 struct CoderPosition {
   std::uint32_t state[2];
   const std::byte* at;
@@ -31,16 +31,16 @@ struct CoderPosition {
 
 namespace packed_detail {
 
-// Magnitudes lie in 9 x 9 x 9 entries, with zeros before each axis, so that a neighbour is always there.
+// Magnitudes lie in 9 x 9 x 9 entries, with a layer of zeros before each axis, so that every neighbour exists.
 inline constexpr unsigned kPaddedX = 81;
 inline constexpr unsigned kPaddedY = 9;
 inline constexpr unsigned kPaddedEntries = 9 * kPaddedX;
 
-/// Weighed sums of neighbours up to this one need no extra bits.
+/// Weighted sums of neighbours up to this one need no extra bits.
 inline constexpr std::uint32_t kPlainSums = 36;
 
-/// Where the tables of sums of neighbours stand, as offsets of entries from the first table: a row of sums for each
-/// weight (2, 3 and 6) and band.
+/// Offsets of the tables by sum of neighbours, in entries from the first table: a row of sums for each weight (2, 3 and
+/// 6) and band.
 struct TableRows {
   static constexpr unsigned kSums = kPlainSums / 2 + 1;
   std::array<std::uint16_t, 3 * kPackedBands * kSums> offset{};
@@ -60,13 +60,13 @@ constexpr TableRows make_table_rows(bool bands) {
   return rows;
 }
 
-/// What the context of a place is made from.
+/// The data for the context of a place.
 struct PaddedPlace {
-  std::uint16_t at = 0;     ///< in the padded magnitudes
-  std::uint16_t row = 0;    ///< of the tables
-  std::uint8_t weight = 0;  ///< of the sum of its neighbours
-  std::uint8_t most = 0;    ///< that the sum may be without extra bits
-  std::uint16_t index = 0;  ///< as BlockScan
+  std::uint16_t at = 0;     ///< position in the padded magnitudes
+  std::uint16_t row = 0;    ///< row of TableRows
+  std::uint8_t weight = 0;  ///< weight of the sum of its neighbours
+  std::uint8_t most = 0;    ///< largest sum without extra bits
+  std::uint16_t index = 0;  ///< index as in BlockScan
 };
 
 constexpr std::array<PaddedPlace, 512> make_padded_places() {
@@ -88,11 +88,11 @@ inline constexpr std::array<PaddedPlace, 512> kPaddedPlaces = make_padded_places
 inline constexpr TableRows kBandRows = make_table_rows(true);
 inline constexpr TableRows kResidualRows = make_table_rows(false);
 
-/// Decodes one stream by tables that begin with 0 and rise, as readers test.
+/// Decodes one stream with tables that begin with 0 and rise; readers check that.
 class FastCoder {
  public:
-  /// Decodes the places below kEndUnit * end, end >= 1. `front`: where words may begin; the two bytes before it are the
-  /// stream's too. False where the stream is invalid.
+  /// Decodes the places below kEndUnit * end, end >= 1. Words begin at `front` or later; the two bytes before `front`
+  /// belong to the stream too. Returns false if the stream is invalid.
   bool decode(const CoderContexts& contexts, const std::byte* front, unsigned end, CoderPosition& position) {
     tables_ = contexts.tables;
     front_ = front;
@@ -105,20 +105,20 @@ class FastCoder {
     return whole && position.state[0] >> 16U == 1 && position.state[1] >> 16U == 1;
   }
 
-  /// None before decode().
+  /// Returns the decoded list; empty before decode().
   const NonzeroList& list() const { return list_; }
 
  private:
   static constexpr std::uint32_t kSlots = 1U << kFrequencyBits;
 
-  // The low bits of a state are kept apart: they are there two operations before the state.
+  // The low bits of a state are kept apart, because they are known two operations before the state.
   struct State {
     std::uint32_t x;
     std::uint32_t slot;
   };
 
-  // `x` becomes the state, with a word after it where it needs one. The position may come to lie before the front: the
-  // caller tests that.
+  // Sets the state to `x`, followed by a word if it needs one. The position may move before the front: the caller
+  // checks it.
   [[gnu::always_inline]] static void renormalise(State& state, std::uint32_t x, const std::byte*& at) {
     std::uint16_t word;
     std::memcpy(&word, at - 2, sizeof word);
@@ -127,7 +127,7 @@ class FastCoder {
     const std::byte* const next = at - 2;
     std::uint32_t slot = x & (kSlots - 1U);
 #if defined(__x86_64__) && defined(__GNUC__)
-    // Compilers make a branch of these choices, which is often mispredicted.
+    // Compilers turn these choices into a branch, which is often mispredicted.
     __asm__("cmpl %[least], %[x]\n\tcmovb %[more_slot], %[slot]\n\tcmovb %[more], %[x]\n\tcmovb %[next], %[at]"
             : [x] "+&r"(x), [at] "+&r"(at), [slot] "+&r"(slot)
             : [more] "r"(more), [more_slot] "r"(more_slot), [next] "r"(next), [least] "i"(kLeastState)
@@ -145,7 +145,8 @@ class FastCoder {
     renormalise(state, (high - low) * (state.x >> kFrequencyBits) + (state.slot - low), at);
   }
 
-  // A bit for each entry of a table above `slot`: ones from the lowest on that is; 0 where none is.
+  // Returns one bit for each entry of a table: set for the entries above `slot`, which are the last ones; 0 if there is
+  // none.
   [[gnu::always_inline]] static std::uint32_t entries_above(const std::uint16_t* table, std::uint32_t slot) {
 #if defined(__SSE2__)
     const __m128i wanted = _mm_set1_epi16(static_cast<short>(slot));
@@ -160,10 +161,10 @@ class FastCoder {
 #endif
   }
 
-  // The place of the lowest one.
+  // Returns the position of the lowest bit that is set.
   [[gnu::always_inline]] static std::size_t lowest_bit(std::uint32_t bits) {
 #if defined(__x86_64__) && defined(__GNUC__)
-    std::uint64_t place;  // compilers extend the 32 bits of theirs once more
+    std::uint64_t place;  // compilers extend the 32-bit result of their own instruction once more
     __asm__("rep bsfq %[bits], %[place]" : [place] "=r"(place) : [bits] "r"(std::uint64_t{bits}) : "cc");
     return place;
 #else
@@ -171,7 +172,7 @@ class FastCoder {
 #endif
   }
 
-  // The magnitude but for its extra bits.
+  // Decodes a magnitude without its extra bits.
   [[gnu::always_inline]] bool symbol(State& state, const std::byte*& at, const std::uint16_t* table,
                                      std::uint32_t& m) const {
     const std::uint32_t above = entries_above(table, state.slot);
@@ -183,14 +184,14 @@ class FastCoder {
     return at >= front_;
   }
 
-  // False where a word is missing.
+  // Returns false if a word is missing.
   [[gnu::always_inline]] bool bypass(State& state, const std::byte*& at, unsigned bits, std::uint32_t& value) const {
     value = state.x & ((1U << bits) - 1U);
     renormalise(state, state.x >> bits, at);
     return at >= front_;
   }
 
-  // The magnitude of an escape, whose symbol is still to be taken.
+  // Decodes the magnitude of an escape; also takes the escape's symbol.
   [[gnu::always_inline]] bool escape(State& state, const std::byte*& at, const std::uint16_t* table,
                                      std::uint32_t& m) const {
     take(state, at, table[kEscape], kSlots);
@@ -204,7 +205,7 @@ class FastCoder {
     return true;
   }
 
-  // The magnitude where those around are so large that it has extra bits.
+  // Decodes a magnitude with extra bits, which it has because its neighbours are large.
   [[gnu::always_inline]] bool large(State& state, const std::byte*& at, const PaddedPlace& where, std::uint32_t sum,
                                     const std::uint16_t* set, std::uint32_t& m) const {
     const std::uint32_t t = where.weight * sum;
@@ -223,7 +224,7 @@ class FastCoder {
     const TableRows& rows = kBands ? kBandRows : kResidualRows;
     std::uint32_t m;
     if (sum > where.most) [[unlikely]] {
-      // The first table of the place's band.
+      // The offset of the row's first entry is the first table of the place's band.
       if (!large(state, at, where, sum, tables_ + rows.offset[where.row], m)) return false;
     } else if (!symbol(state, at, tables_ + rows.offset[where.row + sum], m)) {
       return false;
@@ -248,7 +249,7 @@ class FastCoder {
     std::uint32_t count = 0;
     State& odd = kStates == 2 ? s1 : s0;
     const PaddedPlace* place = kPaddedPlaces.data();
-    // Places 1 to 3 see those before them.
+    // Places 1 to 3 have the places before them as neighbours.
     if (!one<kBands>(odd, at, count, place[1], 0)) return false;
     std::uint32_t sum = padded_[place[1].at];
     if (!one<kBands>(s0, at, count, place[2], sum)) return false;

@@ -1,11 +1,11 @@
 // The orthonormal DCT-II of a block, operation by operation: the transpose of inverse_transform.h. T is float, or a
-// vector of floats that stands for as many transforms side by side: the bits are the same. For host and device.
+// vector of floats for several transforms side by side, with the same bits. For host and device.
 #pragma once
 
 #include "format/base/host_device.h"
 #include "format/packed/inverse_transform.h"
 
-// Vectors are put into what is compiled for their width.
+// Vector code must be inlined into functions that are compiled for its width.
 #if defined(__CUDACC__)
 #define WEIR_ALWAYS_INLINE
 #else
@@ -14,7 +14,7 @@
 
 namespace weir {
 
-/// x[0..7] become the coefficients of the values x[0..7]. Nothing is fused: compile with -ffp-contract=off,
+/// Turns the values x[0..7] into their coefficients. Operations must not be fused: compile with -ffp-contract=off,
 /// -fmad=false.
 template <typename T>
 WEIR_ALWAYS_INLINE WEIR_HOST_DEVICE inline void forward_transform_8(T (&x)[8]) {

@@ -1,12 +1,12 @@
 // The inverse of the orthonormal DCT-II of a block, operation by operation (FORMAT.md, "Values of transformed blocks").
-// T is float, or a vector of floats that stands for as many transforms side by side: the bits are the same.
+// T is float, or a vector of floats for several transforms side by side, with the same bits.
 #pragma once
 
 #include "format/base/host_device.h"
 
 namespace weir {
 
-/// cos(n pi / 16) / 2, to the nearest float.
+/// cos(n pi / 16) / 2, rounded to the nearest float.
 inline constexpr float kCosine[8] = {0.5F,
                                      0.4903926402016152F,
                                      0.46193976625564337F,
@@ -16,7 +16,7 @@ inline constexpr float kCosine[8] = {0.5F,
                                      0.1913417161825449F,
                                      0.0975451610080641F};
 
-/// x[0..7] become the values of the coefficients x[0..7]. Nothing is fused: compile with -ffp-contract=off,
+/// Turns the coefficients x[0..7] into their values. Operations must not be fused: compile with -ffp-contract=off,
 /// -fmad=false.
 template <typename T>
 WEIR_HOST_DEVICE inline void inverse_transform_8(T (&x)[8]) {

@@ -28,7 +28,7 @@ std::optional<BlockCodes> codes_on(const Lattice& lattice, std::span<const float
   return codes;
 }
 
-// Writes the stream of kind 2 over those codes where it is shorter than raw values. Returns its bytes, else 0.
+// Writes the stream of kind 2 for `codes` if it is shorter than raw values. Returns its bytes, otherwise 0.
 std::uint32_t write_codes(const ValueEncoder& coder, LatticeKind kind, const Lattice& lattice, const BlockCodes& codes,
                           std::span<std::byte> out) {
   const bool ordered = kind == LatticeKind::ordered;

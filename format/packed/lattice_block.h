@@ -1,4 +1,4 @@
-// Exact streams of a block: predicted codes of a lattice or of the floats' own order, or the values as they are.
+// Exact streams of a block: predicted codes on a lattice or in the floats' own order, or the raw values.
 #pragma once
 
 #include <cstddef>
@@ -12,28 +12,28 @@
 
 namespace weir {
 
-/// Values fl(fl(code * quantum) + minimum).
+/// A lattice of the values fl(fl(code * quantum) + minimum).
 struct Lattice {
   float minimum = 0;
   float quantum = 0;
-  std::uint32_t bits = 0;  ///< of a code, at most kMostLatticeBits
+  std::uint32_t bits = 0;  ///< bits of a code, at most kMostLatticeBits
 };
 
-/// Whether values on no lattice are predicted as whole numbers in the floats' order; else they are raw.
+/// Whether values on no lattice are predicted as whole numbers in the order of floats (used), or stored raw (unused).
 enum class FloatOrder { used, unused };
 
-/// Writes the shortest stream that gives every bit of 512 values (x << 6 | y << 3 | z) back: on the file's lattice,
-/// that of `constants`, or where they do not lie on it on `own`, or on floats in order; or raw, or one value. Returns
-/// its bytes, at most kRawStreamBytes; `out` has room for as many. `coder` is of lattice blocks, by the tables of
-/// `constants`.
+/// Writes the shortest stream that reproduces every bit of 512 values (x << 6 | y << 3 | z). It codes them on the
+/// lattice of `constants`, the file's, or if they do not lie on it, on `own`, or otherwise as floats in order; or it
+/// stores them raw, or as one value. Returns its bytes, at most kRawStreamBytes; `out` has room for them. `coder` is a
+/// coder of lattice blocks with the tables of `constants`.
 std::uint32_t encode_exact(const ValueEncoder& coder, const BlockConstants& constants,
                            const std::optional<Lattice>& own, std::span<const float, 512> values,
                            std::span<std::byte> out, FloatOrder order = FloatOrder::used);
 
-/// Whether a stream that encode_exact wrote is of floats predicted in their own order.
+/// Returns whether a stream of encode_exact() holds floats predicted in their own order.
 bool is_ordered(std::span<const std::byte> stream);
 
-/// The values as they are.
+/// Writes the values uncompressed. Returns the bytes of the stream.
 std::uint32_t encode_raw(std::span<const float, 512> values, std::span<std::byte> out);
 
 }  // namespace weir

@@ -1,4 +1,4 @@
-// Codes of exact blocks: prediction inside the block, and floats in the order of their bits (FORMAT.md, "Values of
+// The codes of exact blocks: prediction inside the block, and floats in the order of their bits (FORMAT.md, "Values of
 // lattice blocks"). For host and device.
 #pragma once
 
@@ -8,15 +8,15 @@
 
 namespace weir {
 
-/// Where a lattice block's codes come from; as in its first byte.
+/// The source of a lattice block's codes, as in its first byte.
 enum class LatticeKind : std::uint8_t { file = 0, own = 1, ordered = 2 };
 
-/// Predictors: 3-D Lorenzo, the neighbours' mean, their minimum, the median of three planes.
+/// The number of predictors: 3-D Lorenzo, the neighbours' mean, their minimum, the median of three planes.
 inline constexpr unsigned kPredictors = 4;
 
-/// Predicts the code of the voxel at `at` from the codes of its neighbours before it, which lie kX, kY and 1 back along
-/// x, y and z, and of those at the corners between them. `has_x`, `has_y` and `has_z` say which neighbours there are,
-/// one at least. `ordered`: codes are signed. A Sum must hold what three codes add up to.
+/// Predicts the code of the voxel at `at` from the codes of the neighbours before it. They lie kX, kY and 1 back along
+/// x, y and z; the corners between them count too. `has_x`, `has_y` and `has_z` tell which neighbours exist; at least
+/// one does. `ordered`: codes are signed. Sum must hold the sum of three codes.
 template <class Sum, unsigned kX, unsigned kY>
 WEIR_HOST_DEVICE inline Sum predict_at(unsigned predictor, bool ordered, const std::uint32_t* at, bool has_x,
                                        bool has_y, bool has_z) {
@@ -65,7 +65,7 @@ WEIR_HOST_DEVICE inline std::int64_t predict(unsigned predictor, bool ordered, c
   return predict_at<std::int64_t, 64, 8>(predictor, ordered, codes + (x << 6U | y << 3U | z), x > 0, y > 0, z > 0);
 }
 
-/// Residuals become codes; codes[0] is the base.
+/// Turns residuals into codes, in place; codes[0] is the base.
 WEIR_HOST_DEVICE inline void undo_prediction(unsigned predictor, bool ordered, std::uint32_t* codes) {
   for (unsigned i = 1; i < 512; ++i) {
     codes[i] += static_cast<std::uint32_t>(predict(predictor, ordered, codes, i >> 6U, i >> 3U & 7U, i & 7U));

@@ -11,29 +11,29 @@ namespace weir {
 /// Which blocks have near rungs, besides the sampled ones.
 enum class NearBlocks : std::uint8_t {
   none,
-  sparse,  ///< those most of whose values are zero, which near rungs suit at any budget
-  all      ///< where nearly everything is kept
+  sparse,  ///< blocks with mostly zero values, which near rungs suit at any budget
+  all      ///< all blocks, if nearly everything is kept
 };
 
-/// So many, from coarse to fine; each one's quantum is half of the one before.
+/// Number of near rungs, from coarse to fine; each quantum is half of the one before.
 inline constexpr std::int32_t kNearRungs = 12;
 
-/// Values below 2^23 quanta are rounded exactly: no quantum is finer.
+/// Values below 2^23 quanta are rounded exactly, so no quantum is finer than that.
 inline constexpr std::int32_t kMostRoundedBits = 23;
-/// The predictor of all rungs is the best one where values have that many bits.
+/// The predictor of all rungs is the one that is best when values have this many bits.
 inline constexpr std::int32_t kUsualRoundedBits = 18;
-/// Exponents of quanta: these are normal numbers, and the lattice's end is finite.
+/// Bounds of the quanta's exponents: the quanta are normal numbers, and the lattice's end is finite.
 inline constexpr std::int32_t kLeastQuantumExponent = -125;
 inline constexpr std::int32_t kMostQuantumExponent = 127 - 26;
 
-/// Magnitudes of residuals that are coded are below that.
+/// The magnitudes of coded residuals are below this.
 inline constexpr std::uint32_t kMostRoundedResidual = 1U << 23U;
-/// A stream begins with its kind, minimum and quantum, which take so many bytes. Its first code takes so many bits.
+/// The bytes at the beginning of a stream (its kind, minimum and quantum), and the bits of its first code.
 inline constexpr std::uint32_t kRoundedFrontBytes = 9;
 inline constexpr unsigned kRoundedNumberBits = 24;
 
-/// The least exponent with `largest` < 2^exponent, of the largest |value| of a block; the least one of all quanta where
-/// that is 0.
+/// Returns the least exponent with `largest` < 2^exponent, for the largest |value| of a block; the least exponent of
+/// quanta if `largest` is 0.
 WEIR_HOST_DEVICE inline std::int32_t rounded_exponent(float largest) {
   if (!(largest > 0)) return kLeastQuantumExponent;
   std::uint32_t bits;
@@ -43,18 +43,18 @@ WEIR_HOST_DEVICE inline std::int32_t rounded_exponent(float largest) {
   return 32 - __builtin_clz(bits) - 149;
 }
 
-/// The exponent of the coarsest near rung's quantum.
+/// Returns the exponent of the coarsest near rung's quantum.
 WEIR_HOST_DEVICE inline std::int32_t coarsest_near_exponent(std::int32_t exponent) {
   return exponent - kMostRoundedBits + kNearRungs - 1;
 }
 
-/// The near rung that a search about a quantum of exponent `wanted` begins at.
+/// Returns the near rung at which a search around a quantum of exponent `wanted` begins.
 WEIR_HOST_DEVICE inline std::int32_t near_rung_about(std::int32_t coarsest, std::int32_t wanted) {
   const std::int32_t rung = coarsest - wanted;
   return rung < 0 ? 0 : rung < kNearRungs ? rung : kNearRungs - 1;
 }
 
-/// Whether the quantum may be one of a block of that exponent.
+/// Returns whether a block of the exponent `exponent` can have a quantum of the exponent `quantum`.
 WEIR_HOST_DEVICE inline bool is_quantum_exponent(std::int32_t quantum, std::int32_t exponent) {
   return quantum >= kLeastQuantumExponent && quantum >= exponent - kMostRoundedBits && quantum <= kMostQuantumExponent;
 }

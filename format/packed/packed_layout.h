@@ -1,4 +1,4 @@
-// Packed data on disk, version 1: sizes and field offsets in bytes, little endian. FORMAT.md has the whole of it.
+// Packed data on disk, version 1: sizes and field offsets in bytes, little endian. FORMAT.md describes it in full.
 #pragma once
 
 #include <cstdint>
@@ -31,14 +31,14 @@ inline constexpr std::uint64_t kChunk = 0, kValue = 8, kChunkBytes = 12;
 inline constexpr std::uint64_t kEntryBytes = 16;
 }  // namespace region
 
-/// Of the first chunk, behind the table of so many regions.
+/// Returns the offset of the first chunk, behind the table of `regions` regions.
 constexpr std::uint64_t chunks_offset(std::uint64_t regions) { return kRegionsOffset + regions * region::kEntryBytes; }
 
 /// A region's chunk, offsets from the chunk.
 namespace chunk {
 inline constexpr std::uint64_t kMeanLow = 0, kMeanHigh = 4, kBases = 8, kMasks = 1036, kGroups = 1548;
 inline constexpr std::uint64_t kGroupCount = 256, kGroupBlocks = 16;
-inline constexpr std::uint64_t kEndBytes = 2;  ///< of the directory for each stream
+inline constexpr std::uint64_t kEndBytes = 2;  ///< bytes of the directory for each stream
 inline constexpr std::uint64_t kAlignment = 4;
 }  // namespace chunk
 

@@ -8,7 +8,7 @@
 namespace weir {
 namespace {
 
-// The 3-D Lorenzo predictor's: what is left of the codes after differences along each axis in turn.
+// The residuals of the 3-D Lorenzo predictor: the codes after differences along each axis in turn.
 WEIR_SIMD void difference_all(const std::uint32_t* codes, std::uint32_t* residuals) {
   for (unsigned x = 0; x < 512; x += 64) {
     Words8 beside{};
@@ -29,13 +29,12 @@ WEIR_SIMD void difference_all(const std::uint32_t* codes, std::uint32_t* residua
   residuals[0] = 0;
 }
 
-// A row of codes, and those beside it. Of codes below 2^24 sums fit 32 bits; those of codes in order are exact as
-// doubles.
+// The rows of codes beside a row. Sums of codes below 2^24 fit 32 bits; sums of ordered codes are exact as doubles.
 template <typename Lanes>
 struct CodeRow {
-  Lanes left{};     // of x - 1
-  Lanes up{};       // of y - 1
-  Lanes left_up{};  // of both
+  Lanes left{};     // the row at x - 1
+  Lanes up{};       // the row at y - 1
+  Lanes left_up{};  // the row at x - 1, y - 1
   bool has_left;
   bool has_up;
 };
@@ -50,7 +49,7 @@ struct CodeRow {
   row = Doubles8(codes);
 }
 
-// Lane z has what lane z - 1 had, lane 0 keeps its own.
+// Moves lane z - 1 to lane z; lane 0 keeps its value.
 [[gnu::always_inline]] inline void shift_up(const Ints8& row, Ints8& shifted) {
   shifted = __builtin_shufflevector(row, row, 0, 0, 1, 2, 3, 4, 5, 6);
 }
@@ -59,7 +58,7 @@ struct CodeRow {
   shifted.low = __builtin_shufflevector(row.low, row.low, 0, 0, 1, 2);
 }
 
-// Lane 0 of another row in place of its own.
+// Replaces lane 0 of `row` by lane 0 of `other`.
 [[gnu::always_inline]] inline void set_first(const Ints8& other, Ints8& row) {
   row = __builtin_shufflevector(other, row, 0, 9, 10, 11, 12, 13, 14, 15);
 }
@@ -67,7 +66,7 @@ struct CodeRow {
   row.low = __builtin_shufflevector(other.low, row.low, 0, 5, 6, 7);
 }
 
-// The lesser, or the greater, of each lane and another.
+// Replaces each lane by the lesser, or the greater, of itself and the other row's.
 [[gnu::always_inline]] inline void lower_to(const Ints8& other, Ints8& row) { row = other < row ? other : row; }
 [[gnu::always_inline]] inline void lower_to(const Doubles8& other, Doubles8& row) {
   row = select(other < row, other, row);
@@ -77,20 +76,20 @@ struct CodeRow {
   row = select(row < other, other, row);
 }
 
-// floor(sum / count) of 2 or 3 codes.
+// Computes floor(sum / count) of 2 or 3 codes.
 [[gnu::always_inline]] inline void floor_mean(const Ints8& sum, int count, Ints8& mean) {
   mean = count == 3 ? sum / 3 : sum >> 1;
 }
 
 [[gnu::always_inline]] inline void floor_mean(const Doubles8& sum, int count, Doubles8& mean) {
-  const Doubles8 within = (sum + 0.5) * (1.0 / count);  // a sixth at least from whole numbers
+  const Doubles8 within = (sum + 0.5) * (1.0 / count);  // at least a sixth away from whole numbers
   Ints8 whole;
   narrow(within, whole);
   mean = Doubles8(whole);
   mean = select(mean > within, mean - 1.0, mean);
 }
 
-// What is left of codes, modulo 2^32.
+// Subtracts the predictions from codes, modulo 2^32.
 [[gnu::always_inline]] inline void take_away(const Ints8& predicted, Words8& row) {
   row -= reinterpret_cast<const Words8&>(predicted);
 }
@@ -106,7 +105,7 @@ struct CodeRow {
 }
 
 struct PredictMean {
-  // Of neighbours where there is one at z - 1, else without it.
+  // The mean of the neighbours; `has_back` tells whether there is one at z - 1.
   template <typename Lanes>
   [[gnu::always_inline]] static void predict(const CodeRow<Lanes>& beside, const Lanes& back, bool has_back,
                                              Lanes& mean) {
@@ -158,7 +157,7 @@ struct PredictMedian {
   }
 };
 
-// A row of codes at once.
+// Computes the residuals of one predictor, a row of codes at a time.
 template <typename Predictor, typename Lanes>
 [[gnu::always_inline]] inline void predict_rows(const std::uint32_t* codes, std::uint32_t* residuals) {
   for (unsigned i = 0; i < 512; i += 8) {
@@ -199,10 +198,10 @@ WEIR_SIMD void predict_ordered_medians(const std::uint32_t* codes, std::uint32_t
   predict_rows<PredictMedian, Doubles8>(codes, residuals);
 }
 
-// What residuals take about: the bits of three times each magnitude. That is 0, of no bits, or 2 or more, with two bits
-// more than its half's exponent.
+// Estimates the bits of residuals: sums the bit lengths of three times each magnitude. Three times a magnitude is 0,
+// with no bits, or at least 2, with two bits more than the exponent of its half.
 WEIR_SIMD std::uint32_t rough_bits(const std::uint32_t* residuals) {
-  constexpr std::int32_t kNone = 127 - 2;  // the biased exponent less the bits
+  constexpr std::int32_t kNone = 127 - 2;  // the biased exponent minus the bits
   const Ints8 none = Ints8{} + kNone;
   Ints8 sum{};
   for (unsigned i = 0; i < 512; i += 8) {
@@ -211,7 +210,7 @@ WEIR_SIMD std::uint32_t rough_bits(const std::uint32_t* residuals) {
     const Words8 size = r >> 31 != 0 ? 0U - r : r;
     const Words8 m = 3U * size;
     Words8 half = m >> 1;
-    half &= ~(half >> 1);  // so that it is not rounded up to the next power of two
+    half &= ~(half >> 1);  // keeps it from being rounded up to the next power of two
     const auto f = __builtin_convertvector(reinterpret_cast<Ints8&>(half), Floats8);
     Ints8 exponent;
     __builtin_memcpy(&exponent, &f, sizeof exponent);

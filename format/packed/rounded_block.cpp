@@ -34,13 +34,14 @@ WEIR_SIMD float largest_of(const float* values) {
   return found;
 }
 
-// Values lie above that many quanta: codes that count from there have the residuals that codes from the lowest on have.
+// All values lie above this many quanta. Codes counted from here have the same residuals as codes counted from the
+// lowest value.
 constexpr std::int32_t kLeastMultiple = -(1 << kMostRoundedBits);
 
-// Whole multiples of the quantum nearest to the values, halves away from zero. `scale` is the quantum's inverse: the
-// products are exact, besides those too small for a float, whose errors are too small to count.
+// Rounds the values to the nearest whole multiples of the quantum, halves away from zero. `scale` is the quantum's
+// inverse. The products are exact, except those too small for a float, with errors too small to count.
 WEIR_SIMD Rounded round_all(const float* values, float scale, std::uint32_t* codes) {
-  constexpr float kBelowHalf = 0x1.FFFFFEp-2F;  // the float below 0.5, which would round itself up to 1
+  constexpr float kBelowHalf = 0x1.FFFFFEp-2F;  // the float below 0.5; adding 0.5 would round this float itself up to 1
   Doubles8 errors{};
   Ints8 low{};
   Ints8 high{};
@@ -67,7 +68,7 @@ WEIR_SIMD Rounded round_all(const float* values, float scale, std::uint32_t* cod
   return rounded;
 }
 
-// lattice_value() of codes below 2^24.
+// lattice_value() for codes below 2^24.
 WEIR_SIMD void values_at(const std::uint32_t* codes, const BlockConstants& constants, float minimum, float quantum,
                          float* values) {
   const Floats8 none{};

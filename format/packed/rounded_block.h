@@ -1,5 +1,5 @@
-// Streams of a block whose values are rounded to a lattice of their own: what a nearly lossless one takes fewer bytes
-// for than a transformed one, whose error ends at what float32 resolves.
+// Streams of a block with values rounded to a lattice of the block's own. For a nearly lossless block they take fewer
+// bytes than a transform, because the error of a transform ends at the resolution of float32.
 #pragma once
 
 #include <cstdint>
@@ -12,31 +12,32 @@
 
 namespace weir {
 
-/// One per thread.
+/// Encodes one block at a time. Use one object per thread.
 class RoundedBlock {
  public:
-  /// `tables`, as built_in_tables(), must outlive the object.
+  /// `tables`, with the shape of built_in_tables(), must outlive the object.
   explicit RoundedBlock(const std::uint16_t* tables = built_in_tables());
 
   /// Takes 512 finite values (x << 6 | y << 3 | z).
   void set(std::span<const float, 512> values);
-  /// The least with every |value| below 2^exponent.
+  /// Returns the least exponent with every |value| below 2^exponent.
   int exponent() const { return exponent_; }
 
   struct Cost {
-    std::uint32_t bytes = 0;  ///< a little more than the stream takes
+    std::uint32_t bytes = 0;  ///< slightly more than the stream takes
     double squared_error = 0;
   };
-  /// Rounded to multiples of 2^quantum_exponent; nullopt where the lattice or the coder has no room for them.
+  /// Returns the cost of the values rounded to multiples of 2^quantum_exponent; nullopt if the lattice or the coder has
+  /// no room for them.
   std::optional<Cost> cost(int quantum_exponent);
 
-  /// Writes the stream to all of `out`. Where that is too short the quantum is doubled until it is not; false where
-  /// no quantum does.
+  /// Writes the stream to all of `out`. If `out` is too short, doubles the quantum until the stream fits. Returns false
+  /// if no quantum fits.
   bool encode(int quantum_exponent, std::span<std::byte> out);
-  /// Whether it was in the last encode(), which gave true.
+  /// Returns whether the last successful encode() doubled the quantum.
   bool coarser() const { return coarser_; }
-  /// The values that the stream of the last encode(), which gave true, decodes to: decode_block()'s bits, without
-  /// decoding it. `constants` has what the file has.
+  /// Computes the values that the stream of the last successful encode() decodes to, with the bits of decode_block()
+  /// but without decoding. `constants` are the file's.
   void decoded(const BlockConstants& constants, std::span<float, 512> values) const;
 
  private:
@@ -47,13 +48,13 @@ class RoundedBlock {
   RowCosts rows_;
   std::array<float, 512> values_{};
   int exponent_ = 0;
-  unsigned predictor_ = 0;   // the best one at a quantum in the middle, the same for cost() and encode()
-  BlockCodes codes_{};       // above the least that there may be; once written, above the lowest
-  std::int32_t lowest_ = 0;  // of the values in quanta
+  unsigned predictor_ = 0;   // the best predictor at a medium quantum, used by cost() and encode()
+  BlockCodes codes_{};       // codes, counted from the least possible multiple; after write(), from lowest_
+  std::int32_t lowest_ = 0;  // the lowest value, in quanta
   double squared_error_ = 0;
   BlockCodes residuals_{};
   MagnitudeRows magnitudes_;
-  float minimum_ = 0;  // of the stream that was written
+  float minimum_ = 0;  // of the stream that was written last
   float quantum_ = 0;
   bool coarser_ = false;
 };

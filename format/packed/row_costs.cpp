@@ -32,16 +32,16 @@ struct Sums {
   std::int32_t nonzero = 0;
 };
 
-// Bit i set: row i has one that is not zero, or its neighbours have.
+// Returns a word with bit i set if row i or one of its neighbours is not zero.
 std::uint64_t busy_rows(std::uint64_t live) {
   constexpr std::uint64_t kFirstOfEight = 0x0101010101010101U;
   return live | live << 8U | (live << 1U & ~kFirstOfEight);
 }
 
-// The sum of the costs that the first `count` pairs of entries name.
+// Returns the sum of the costs at the first `count` pairs of entries.
 [[gnu::always_inline]] inline std::int32_t costs_of(const RowCosts::Tables& tables,
                                                     const std::array<std::uint64_t, 512 / 2>& entries, unsigned count) {
-  // Else each lane is taken out of its register, which takes longer.
+  // Without this barrier each lane is extracted from its register, which takes longer.
   asm volatile("" : : "r"(entries.data()) : "memory");
   std::int32_t even = 0;
   std::int32_t odd = 0;
@@ -54,8 +54,8 @@ std::uint64_t busy_rows(std::uint64_t live) {
   return even + odd;
 }
 
-// All places but the first four, and only those below `limit`; what is looked up at the end, so that no lookup waits
-// for its lane.
+// Adds the costs of all places except the first four, and only of those below `limit`. Looks the costs up at the end,
+// so that no look-up waits for its lane.
 template <typename Lanes>
 [[gnu::always_inline]] inline void add_lanes(const RowCosts::Tables& tables, const std::int32_t* padded,
                                              std::uint64_t busy, std::int32_t limit, Sums& sums) {
@@ -81,7 +81,7 @@ template <typename Lanes>
     if (places.first_place[row] >= limit && places.first_place[row + kRows - 1] >= limit) continue;
     Ints place;
     load_lanes(places.place + 8 * row, place);
-    const Ints coded = (place - limits) >> 31;  // all bits where it is
+    const Ints coded = (place - limits) >> 31;  // all bits set if the place is coded
     if ((busy >> row & ((1U << kRows) - 1U)) == 0) {
       Ints cost;
       load_lanes(tables.zero_cost + 8 * row, cost);
@@ -118,7 +118,7 @@ template <typename Lanes>
 }
 
 #ifdef WEIR_SIMD_PATHS
-// The same number in all lanes of a register, in which it stays.
+// Returns the same number in all lanes of a register, and keeps it in that register.
 [[gnu::target("avx512f")]] __m512i in_lanes(int value) {
   __m512i lanes = _mm512_set1_epi32(value);
   asm("" : "+v"(lanes));
@@ -130,13 +130,13 @@ template <typename Lanes>
   return lanes;
 }
 
-// add_lanes() of two rows at a time, by masks.
+// add_lanes() for two rows at a time, with AVX-512 masks.
 [[gnu::target("avx512f")]] void add_rows_512(const RowCosts::Tables& tables, const std::int32_t* padded,
                                              std::uint64_t busy, std::int32_t limit, Sums& sums) {
-  constexpr int kBias = 127;                 // of a float's exponent
+  constexpr int kBias = 127;                 // bias of a float's exponent
   constexpr int kSymbolMask = kFirstEscape;  // the low bits of an entry
   static_assert(kPackedSymbols == 16 && (kSymbolMask & (kSymbolMask + 1)) == 0);
-  constexpr int kToLevel = 23 - 4;  // puts an exponent above the symbol
+  constexpr int kToLevel = 23 - 4;  // moves an exponent above the symbol
   constexpr int kLevelBias = kBias * static_cast<int>(kPackedSymbols);
   const __m512i limits = in_lanes(limit);
   const __m512i level_bias = in_lanes(kLevelBias);
@@ -170,12 +170,12 @@ template <typename Lanes>
     const std::int32_t* at = padded + 8 * (row + 8);
     const __m512i m = _mm512_load_si512(at);
     const __m512i up = _mm512_load_si512(at - 64);
-    // Of j = 0 the row before is of another i.
+    // For j = 0 the row before belongs to another i.
     const __m512i left = _mm512_maskz_loadu_epi32(static_cast<__mmask16>(row % 8 == 0 ? 0xFF00 : 0xFFFF), at - 8);
     const __m512i back = _mm512_maskz_loadu_epi32(0xFEFE, at - 1);
     const __m512i sum = _mm512_add_epi32(_mm512_add_epi32(up, left), back);
     const __m512i t = _mm512_mullo_epi32(sum, _mm512_load_si512(places.weight + 8 * row));
-    // As Contexts::find() does.
+    // Computes the same as Contexts::find().
     const __m512 real = _mm512_cvtepi32_ps(t);
     const __m512 base = _mm512_add_ps(_mm512_mul_ps(real, two_thirds), whole);
     const __m512i cube = _mm512_castps_si512(_mm512_mul_ps(_mm512_mul_ps(base, base), base));

@@ -1,5 +1,5 @@
-// The contexts of a block's coded values by rows of eight: what counting them (row_costs.h) and coding them
-// (value_encoder.h) have in common.
+// The contexts of a block's coded values by rows of eight, which counting them (row_costs.h) and coding them
+// (value_encoder.h) share.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace weir {
 
-/// Rows of eight magnitudes by index, after eight rows of zeros. Those of floats in order may have all 32 bits.
+/// Rows of eight magnitudes by index, after eight rows of zeros. Magnitudes of floats in order may use all 32 bits.
 struct MagnitudeRows {
   alignas(64) std::int32_t padded[8 * 72] = {};
   std::uint64_t live = ~std::uint64_t{0};  ///< bit i not set: row i is zero
@@ -20,16 +20,16 @@ struct MagnitudeRows {
   std::uint32_t at(unsigned index) const { return static_cast<std::uint32_t>(padded[64 + index]); }
 };
 
-/// What contexts are made from, by index. The first four places are not in it: place 0 is not coded, and the others
-/// look at each other.
+/// The data for contexts, by index. The first four places are not in it: place 0 is not coded, and places 1 to 3 have
+/// each other as neighbours.
 struct RowPlaces {
   alignas(64) std::int32_t weight[512] = {};
-  alignas(64) std::int32_t place[512] = {};         ///< 512 for the first four
-  alignas(64) std::int32_t first_symbol[512] = {};  ///< of level 0, counted from the first table's
-  std::int32_t first_place[64] = {};                ///< the least of each row
+  alignas(64) std::int32_t place[512] = {};         ///< 512 for the first four places
+  alignas(64) std::int32_t first_symbol[512] = {};  ///< first symbol of level 0, counted from the first table's
+  std::int32_t first_place[64] = {};                ///< the least place of each row
 };
 
-/// `bands`: of transformed blocks, which have a set of levels for each band.
+/// `bands`: for transformed blocks, which have a set of levels for each band.
 constexpr RowPlaces make_row_places(bool bands) {
   RowPlaces rows;
   for (std::int32_t& least : rows.first_place) least = 512;
@@ -49,7 +49,7 @@ inline constexpr RowPlaces kTransformPlaces = make_row_places(true);
 inline constexpr RowPlaces kLatticePlaces = make_row_places(false);
 inline const RowPlaces& row_places(bool bands) { return bands ? kTransformPlaces : kLatticePlaces; }
 
-/// Places by index, as lanes take them.
+/// Places by index, as vector lanes load them.
 struct PlacesByIndex {
   alignas(64) std::int32_t place[512] = {};
 };
@@ -68,8 +68,8 @@ inline constexpr auto kFirstEscape = static_cast<std::int32_t>(kPackedSymbols) -
 inline bool has_avx512() { return __builtin_cpu_supports("avx512f") != 0; }
 #endif
 
-// Lanes of one row, or of two that follow each other. Each path has the width that its instructions have: compilers
-// take wider lanes apart.
+// The lanes of one row, or of two consecutive rows. Each path uses vectors as wide as its instructions, because
+// compilers split wider vectors.
 struct OneRow {
   using Ints = Ints8;
   using Floats = Floats8;
@@ -79,23 +79,24 @@ struct TwoRows {
   using Floats = Floats16;
 };
 
-// A difference shifted by 31 has all bits where it is negative; comparisons of that many lanes are slow.
+// A difference shifted right by 31 has all bits set if it is negative; comparisons of this many lanes are slow.
 
-// The same number in all lanes, as a compiler cannot tell: made once before a loop, not in each turn of it.
+// Sets all lanes to `value`, hidden from the compiler: so it is made once before a loop, not in each iteration.
 template <typename Lanes, typename T>
 [[gnu::always_inline]] inline void set_lanes(T value, Lanes& lanes) {
   lanes = Lanes{} + value;
 #ifdef WEIR_SIMD_PATHS
   if constexpr (sizeof lanes == 64) {
-    asm("" : "+v"(lanes));  // stays in its register
+    asm("" : "+v"(lanes));  // it stays in its register
     return;
   }
 #endif
   asm("" : "+m"(lanes));
 }
 
-// Of sums of a value's neighbours, by floats, whose exponents are whole parts of logarithms. Rounding does not change
-// them: what is below a threshold is below it by a part in 18 * 2^16 or more.
+// Finds contexts from the weighted sums of a value's neighbours, with floats: a float's exponent is the whole part of
+// its logarithm. Rounding does not change the result, because a sum below a threshold is below it by at least one part
+// in 18 * 2^16.
 template <typename Lanes>
 class Contexts {
  public:
@@ -110,12 +111,12 @@ class Contexts {
     set_lanes(36, no_extra_);
     set_lanes(127, exponent_bias_);
   }
-  // Rounded down, of at least 1.
+  // Computes log2 of `v`, which is at least 1, rounded down.
   [[gnu::always_inline]] inline void log2_of(const Ints& v, Ints& log2) const {
     exponent_of(__builtin_convertvector(v, Floats), log2);
   }
-  // BlockScan::level: floor(log2((1 + 2 t / 3)^3)), at most the last; extra_bits(): floor(log2(t / 18)) of more than
-  // 36, at most 16.
+  // Computes BlockScan::level, floor(log2((1 + 2 t / 3)^3)), at most the last level; and extra_bits(), floor(log2(t /
+  // 18)) for t above 36, at most 16.
   [[gnu::always_inline]] inline void find(const Ints& t, Ints& level, Ints& extra) const {
     const auto sum = __builtin_convertvector(t, Floats);
     const Floats base = sum * two_thirds_ + one_;
@@ -136,11 +137,11 @@ class Contexts {
   Ints last_level_, most_extra_, no_extra_, exponent_bias_;
 };
 
-// Which lanes have a neighbour before them.
+// Masks of the lanes that have a neighbour before them.
 template <typename Lanes>
 struct Before {
-  typename Lanes::Ints in_row{};      // all bits but at the first of each row
-  typename Lanes::Ints second_row{};  // all bits in the second row
+  typename Lanes::Ints in_row{};      // all bits set except in the first lane of each row
+  typename Lanes::Ints second_row{};  // all bits set in the second row
   [[gnu::always_inline]] inline Before() {
     constexpr unsigned kLanes = sizeof(typename Lanes::Ints) / sizeof(std::int32_t);
     for (unsigned l = 0; l < kLanes; ++l) {
@@ -150,14 +151,14 @@ struct Before {
   }
 };
 
-// The magnitudes before those of row `row` along each axis, 0 where there is none.
+// Loads the magnitudes before those of row `row` along each axis; 0 if there are none.
 template <typename Lanes>
 [[gnu::always_inline]] inline void load_neighbours(const std::int32_t* at, unsigned row, const Before<Lanes>& before,
                                                    typename Lanes::Ints& up, typename Lanes::Ints& left,
                                                    typename Lanes::Ints& back) {
   load_lanes(at - 64, up);
   load_lanes(at - 8, left);
-  if (row % 8 == 0) left &= before.second_row;  // of j = 0 the row before is of another i
+  if (row % 8 == 0) left &= before.second_row;  // for j = 0 the row before belongs to another i
   load_lanes(at - 1, back);
   back &= before.in_row;
 }

@@ -1,4 +1,4 @@
-// How long the stream of coded values will be, from what its parts take. For host and device.
+// Computes the length of the stream of coded values from the costs of its parts. For host and device.
 #pragma once
 
 #include <cstddef>
@@ -9,27 +9,28 @@
 
 namespace weir {
 
-/// Bytes of a stream of raw values. No exact stream has more.
+/// Bytes of a stream of raw values. No exact stream is longer.
 inline constexpr std::uint32_t kRawStreamBytes = 1 + 4 * 512;
-/// Room to write any stream in. The longest takes 2 bytes more than raw values: a stream of coefficients is chosen
-/// where it is shorter than those without the code of its mean, which has up to 24 bits.
+/// Room to write any stream. The longest takes 2 bytes more than raw values: a stream of coefficients is chosen if it
+/// is shorter than raw values without the code of its mean, and this code has up to 24 bits.
 inline constexpr std::size_t kStreamRoom = 4096;
-/// Bytes of the stream of a block whose voxels all have one value: its kind and that value.
+/// Bytes of the stream of a block with one value in all voxels: its kind and the value.
 inline constexpr std::uint32_t kOneValueStreamBytes = 1 + 4;
 /// Bits of the stream of a mean alone, without the mean's code: its kind and its step.
 inline constexpr std::uint32_t kMeanAloneBits = 8;
 
-/// Bits of the end of a stream of kind lattice, and of the first code of floats in order.
+/// Bits of the `end` field of a lattice stream, and of the first code of floats in order.
 inline constexpr unsigned kLatticeEndBits = 6;
 inline constexpr unsigned kOrderedNumberBits = 32;
 
-/// Bits of a front and of what lies behind it: `symbols` 1/256 bits of symbols, `raw` bits as they are and `nonzero`
-/// signs in a stream whose end, of `end_bits`, is `end` > 0, beside a number of `number_bits`.
+/// Returns the bits of a stream's front and of the rest behind it. `symbols` is the cost of symbols in 1/256 bits,
+/// `raw` the uncoded bits, `nonzero` the number of signs. `end` > 0 is written in `end_bits`, beside a number of
+/// `number_bits`.
 WEIR_HOST_DEVICE inline std::uint32_t coded_stream_bits(std::uint32_t symbols, std::uint32_t raw, std::uint32_t nonzero,
                                                         unsigned end, unsigned end_bits, unsigned number_bits) {
   const unsigned states = states_of(end);
-  // Each state begins with 16 to 17 bits, 16 of which hold signs and the number's low bits, and ends in whole bytes, 3
-  // or more. Whole numbers in it lose a little of each symbol.
+  // Each state begins with 16 to 17 bits, 16 of which hold signs and low bits of the number, and ends in whole bytes,
+  // at least 3. Rounding to whole numbers in a state loses a little of each symbol.
   std::uint32_t coded = symbols + 256 * (raw + 17 * states);
   coded += coded / 1024;
   const std::uint32_t words = (coded + 2047) / 2048 + (states - 1);

@@ -1,4 +1,4 @@
-// What the symbols of coded values take.
+// The costs in bits of the symbols of coded values.
 #pragma once
 
 #include <array>
@@ -8,12 +8,12 @@
 
 namespace weir {
 
-/// Bits that symbols cost, in 1/256, by context and symbol.
+/// Costs of symbols, in 1/256 bits, by context and symbol.
 using SymbolCosts = std::array<std::array<std::uint16_t, kPackedSymbols>, kPackedTables>;
-/// Of the tables of BlockConstants.
+/// Returns the costs for tables as in BlockConstants.
 SymbolCosts symbol_costs(const std::uint16_t* tables);
 
-/// Bits of an escape, of what is left of a magnitude after its extra bits.
+/// Returns the bits of an escape for `high`, the part of a magnitude above its extra bits.
 unsigned escape_bits(std::uint32_t high);
 
 }  // namespace weir

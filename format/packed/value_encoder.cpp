@@ -18,31 +18,31 @@ using packed_detail::TwoRows;
 
 constexpr std::uint32_t kTotal = 1U << kFrequencyBits;
 
-// ceil(2^44 / f): x * inverse >> 44 is x / f for every x below f * 2^20, which is what a state is reduced to before it
-// takes a symbol of frequency f.
+// The inverse of f is ceil(2^44 / f): x * inverse >> 44 is x / f for every x below f * 2^20. A state is reduced to
+// below that before it takes a symbol of frequency f.
 static_assert(kFrequencyBits <= 12, "a state below 2^32 is below f * 2^20 then");
 constexpr unsigned kInverseBits = 44;
 
-// At most, for each value: a symbol, five bits of an escape, twice two halves of raw bits.
+// The most words: for each value a symbol, five bits of an escape, and two halves of raw bits twice.
 constexpr std::size_t kMostWords = 512 * 6;
 
-// What each value is coded as, by index.
+// The symbol and extra bits of each value, by index.
 struct CodedRows {
-  alignas(64) std::int32_t symbol[512];  // of its context, counted from the first table's
-  alignas(64) std::int32_t extra[512];   // low bits that are raw
-  std::int32_t with_extra = 0;           // how many have some, but for the first four
+  alignas(64) std::int32_t symbol[512];  // counted from the first table's first symbol
+  alignas(64) std::int32_t extra[512];   // low bits that are stored raw
+  std::int32_t with_extra = 0;           // number of values with extra bits, except the first four
 };
 
 template <typename Ints>
 [[gnu::always_inline]] inline void limit_neighbours(Ints& magnitudes) {
-  // Those of 32 bits look negative.
+  // Magnitudes of 32 bits look negative.
   constexpr auto kMost = static_cast<std::int32_t>(kMostOfNeighbour);
   const Ints none{};
   const Ints large = (magnitudes >> 31) | ((kMost - magnitudes) >> 31);
   magnitudes = (magnitudes & ~large) | ((none + kMost) & large);
 }
 
-// All places but the first four, and only those below `limit`.
+// Finds the symbols of all places except the first four, and only of those below `limit`.
 template <typename Lanes>
 [[gnu::always_inline]] inline void find_symbols(const RowPlaces& places, const std::int32_t* padded, std::int32_t limit,
                                                 CodedRows& coded) {
@@ -68,7 +68,7 @@ template <typename Lanes>
     Ints extra;
     contexts.find(t, level, extra);
     const Ints high = m >> extra;
-    const Ints plain = ((high - kFirstEscape) >> 31) & ~(m >> 31);  // all bits where there is no escape
+    const Ints plain = ((high - kFirstEscape) >> 31) & ~(m >> 31);  // all bits set if there is no escape
     symbol += 16 * level + ((high & plain) | ((none + kFirstEscape) & ~plain));
     store_lanes(symbol, coded.symbol + 8 * row);
     store_lanes(extra, coded.extra + 8 * row);
@@ -98,12 +98,12 @@ void symbols_of(const RowPlaces& places, const std::int32_t* padded, std::int32_
 }
 #endif
 
-// Signs of coded values in their order.
+// The signs of coded values, in the order of the values.
 class SignBits {
  public:
   SignBits(const SignedRows& values, unsigned places) {
     std::uint64_t held = 0;
-    std::uint32_t bits = 0;  // of `held`
+    std::uint32_t bits = 0;  // bits in `held`
     std::uint32_t* out = words_.data();
     const auto add = [&](unsigned place) {
       const unsigned index = kBlockScan.index[place];
@@ -114,7 +114,7 @@ class SignBits {
     for (unsigned first = 0; first < places; first += kEndUnit) {
       for (unsigned place = std::max(first, 1U); place < first + kEndUnit; ++place) add(place);
       *out = static_cast<std::uint32_t>(held);
-      const unsigned full = bits >= 32 ? 1 : 0;  // as good as random
+      const unsigned full = bits >= 32 ? 1 : 0;  // unpredictable, so it is added without a branch
       out += full;
       held >>= 32U * full;
       bits -= 32U * full;
@@ -123,7 +123,7 @@ class SignBits {
     count_ = static_cast<std::uint32_t>(32 * (out - words_.data())) + bits;
   }
   std::uint32_t count() const { return count_; }
-  /// At most 32 of them, from `first` on, the first one the lowest bit.
+  /// Returns at most 32 signs from `first` on, the first one in the lowest bit.
   std::uint32_t bits(std::uint32_t first, std::uint32_t count) const {
     const std::uint64_t two = words_[first / 32] | std::uint64_t{words_[first / 32 + 1]} << 32U;
     return static_cast<std::uint32_t>(two >> (first % 32) & ((std::uint64_t{1} << count) - 1));
@@ -137,9 +137,9 @@ class SignBits {
 
 class BitWriter {
  public:
-  /// To bytes that are zero.
+  /// Writes to bytes that are zero.
   explicit BitWriter(std::span<std::byte> out) : out_(out) {}
-  /// The low `bits` of `value`. What `out` has no room for is only counted.
+  /// Writes the low `bits` of `value`. Bits that `out` has no room for are only counted.
   void write(std::uint32_t value, unsigned bits) {
     std::uint64_t shifted = (value & ((std::uint64_t{1} << bits) - 1)) << (at_ % 8);
     std::size_t byte = at_ / 8;
@@ -164,19 +164,19 @@ class BitWriter {
 
 }  // namespace
 
-// Words in the order in which they are made, which is that of their addresses.
+// The words in the order in which they are made, which is the order of their addresses.
 class ValueEncoder::Words {
  public:
   void put_symbol(std::uint32_t& x, const Symbol& symbol) {
     put_word(x, symbol.most - x);
     x += static_cast<std::uint32_t>(x * symbol.inverse >> kInverseBits) * symbol.complement + symbol.low;
   }
-  /// Up to 16 bits as they are. Decoding shifts right and then reads a word where the state is below the least.
+  /// Puts up to 16 bits uncoded. The decoder shifts right and then reads a word if the state is below the least.
   void put_raw(std::uint32_t& x, std::uint32_t value, unsigned bits) {
     put_word(x, 0xFFFFFFFFU - (std::uint64_t{x} << bits));
     x = x << bits | value;
   }
-  /// What put after it reads before: the parts of an escape in turn, the length first.
+  /// Puts the parts of an escape. The decoder reads in reverse order, so the length is put last.
   void put_escape(std::uint32_t& x, std::uint32_t high) {
     const std::uint32_t over = high - (kEscape - 1);
     const auto length = static_cast<unsigned>(std::bit_width(over) - 1);
@@ -188,7 +188,7 @@ class ValueEncoder::Words {
   std::span<const std::uint16_t> all() const { return {words_.data(), count_}; }
 
  private:
-  // Whether a word has to go is as good as random: it is written in any case, and counted where `left` is negative.
+  // Whether a word must be written is unpredictable: it is always stored, and counted if `left` is negative.
   void put_word(std::uint32_t& x, std::uint64_t left) {
     words_[count_] = static_cast<std::uint16_t>(x & 0xFFFFU);
     count_ += left >> 63U;
@@ -223,7 +223,7 @@ ValueEncoder::ValueEncoder(const std::uint16_t* tables, Kind kind) : bands_(kind
   }
 }
 
-// From the last place to the first, and what is decoded last of a place first.
+// Goes from the last place to the first; within a place, puts first what is decoded last.
 template <unsigned States>
 void ValueEncoder::put_values(const StreamFront& front, const MagnitudeRows& magnitudes, std::uint32_t (&states)[2],
                               Words& words) const {
@@ -242,7 +242,7 @@ void ValueEncoder::put_values(const StreamFront& front, const MagnitudeRows& mag
         places.first_symbol[index] + static_cast<std::int32_t>(kPackedSymbols * level + std::min(m >> extra, kEscape));
     before += std::min(m, kMostOfNeighbour);
   }
-  // Where many have raw bits, a branch on it costs more than to write none.
+  // If many values have raw bits, a branch for them costs more than writing none.
   const bool many_raw = coded.with_extra > 64;
   const auto put = [&](std::uint32_t& state, unsigned place) {
     const unsigned index = kBlockScan.index[place];
@@ -256,7 +256,7 @@ void ValueEncoder::put_values(const StreamFront& front, const MagnitudeRows& mag
     }
     words.put_symbol(state, symbols_[static_cast<std::size_t>(symbol)]);
   };
-  // The states of even and odd places, where they are two, stay in registers.
+  // The states of even and odd places, if there are two, stay in registers.
   std::uint32_t even = states[0];
   std::uint32_t odd = states[1];
   unsigned place = kEndUnit * front.end - 1;

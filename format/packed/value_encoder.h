@@ -1,4 +1,4 @@
-// Encodes the coded values of a packed block: what coefficient_decoder.h reads.
+// Encodes the coded values of a packed block, in the format that coefficient_decoder.h reads.
 #pragma once
 
 #include <array>
@@ -11,13 +11,13 @@
 
 namespace weir {
 
-/// Signed values by index: their magnitudes, and words whose highest bit is set where they are negative.
+/// Signed values by index: their magnitudes, and words with the highest bit set for negative values.
 struct SignedRows {
   const MagnitudeRows& magnitudes;
   std::span<const std::uint32_t, 512> signs;
 };
 
-/// The front of a stream: what its bits hold besides flags and signs.
+/// The front of a stream: the contents of its bits besides flags and signs.
 struct StreamFront {
   unsigned end = 0;          ///< 0 to 32
   unsigned end_bits = 5;     ///< 5: end - 1 is written, 6: end
@@ -25,13 +25,13 @@ struct StreamFront {
   unsigned number_bits = 0;
 };
 
-/// How many units of kEndUnit places hold all values of the scan that are not zero; 0 where all are zero. Place 0 does
-/// not count.
+/// Returns how many units of kEndUnit places hold all nonzero values of the scan; 0 if all are zero. Place 0 does not
+/// count.
 unsigned end_of(const MagnitudeRows& magnitudes);
-/// The same where `last_place` is the last one that is not zero; it is 0 where there is none.
+/// Returns end_of() for values with `last_place` as the last nonzero place; 0 means that there is none.
 constexpr unsigned end_at(unsigned last_place) { return last_place == 0 ? 0 : last_place / kEndUnit + 1; }
 
-/// Bytes of a stream's two parts, between which there may be zeros.
+/// The bytes of a stream's two parts; there may be zeros between them.
 struct StreamSize {
   std::uint32_t front = 0;  ///< bits besides coded values
   std::uint32_t back = 0;   ///< words and states
@@ -39,19 +39,20 @@ struct StreamSize {
 
 class ValueEncoder {
  public:
-  /// Of transformed blocks, or of lattice blocks, by kPackedTables tables as in BlockConstants.
+  /// Whether the values are of transformed blocks or of lattice blocks. `tables` are kPackedTables tables as in
+  /// BlockConstants.
   enum class Kind { transform, lattice };
   ValueEncoder(const std::uint16_t* tables, Kind kind);
 
-  /// Writes front, words and states to all of `out`, zeros between them. Values from place kEndUnit * front.end on, and
-  /// that of place 0, are not looked at. False where `out` is too short; it is then anything. `size`, where given,
-  /// becomes what they take.
+  /// Writes front, words and states to all of `out`, with zeros between front and words. Ignores the values at place 0
+  /// and from place kEndUnit * front.end on. Returns false if `out` is too short; `out` then holds anything. Sets
+  /// `size`, if given, to the bytes that the parts take.
   bool encode(const StreamFront& front, const SignedRows& values, std::span<std::byte> out,
               StreamSize* size = nullptr) const;
 
  private:
-  // What a symbol of frequency f from `low` on makes of a state x, once that is at most `most`: f goes into it
-  // x * inverse >> 44 times, and what that leaves is x + that * (total - f) + low.
+  // How a symbol of frequency f, which begins at `low`, changes a state x, once x is at most `most`: q = x * inverse >>
+  // 44 is x / f, and the new state is x + q * (total - f) + low.
   struct Symbol {
     std::uint64_t inverse = 0;
     std::uint64_t most = 0;

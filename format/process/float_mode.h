@@ -1,13 +1,13 @@
-// The floating-point mode that weir computes in, whatever a caller has set.
+// Sets the floating-point mode that weir computes in, whatever mode the caller has set.
 #pragma once
 
 #include <cfenv>
 
 namespace weir {
 
-/// While it lives, the calling thread rounds to nearest, takes subnormal numbers for what they are and traps nothing:
-/// what files, certificates and FORMAT.md count on. Then the caller's mode is back: -ffast-math, for instance, sets one
-/// for a whole program in which subnormal numbers are 0. Threads that are started meanwhile begin with its mode.
+/// While it lives, the calling thread rounds to nearest, keeps subnormal numbers and traps nothing. Files, certificates
+/// and FORMAT.md rely on this mode. The destructor restores the caller's mode: -ffast-math, for instance, sets a mode
+/// for a whole program that makes subnormal numbers 0. Threads started while it lives begin with its mode.
 class FloatMode {
  public:
   FloatMode() {

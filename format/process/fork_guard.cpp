@@ -17,7 +17,7 @@ void in_child() {
   if (guards > 0) forked = true;
 }
 
-// Without memory for the handler nothing is refused.
+// If there is no memory for the handler, nothing is refused.
 void watch_forks() {
   static std::once_flag watched;
   std::call_once(watched, [] { pthread_atfork(nullptr, nullptr, in_child); });

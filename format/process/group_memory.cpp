@@ -11,18 +11,18 @@
 namespace weir {
 namespace {
 
-// The names of one version's files.
+// The names of the files of one cgroup version.
 struct GroupFiles {
   const char* limit;
   const char* used;
   const char* cache;   // keys of memory.stat
-  const char* shared;  // of the cache what cannot be dropped: files in memory
+  const char* shared;  // part of the cache that cannot be dropped: files in memory
 };
 constexpr GroupFiles kVersion2{"memory.max", "memory.current", "file", "shmem"};
 constexpr GroupFiles kVersion1{"memory.limit_in_bytes", "memory.usage_in_bytes", "total_cache", "total_shmem"};
 
-// A group that lies at `group` below `root`, and those around it. In a container that sees its own group as the root,
-// what the kernel says of the path may lie outside, and only the root is there.
+// Lowers `room` by the limits of the group at `group` below `root` and of the groups around it. In a container that
+// sees its own group as the root, the kernel's path may lie outside; then only the root exists.
 void look_upwards(const std::string& root, std::string group, const GroupFiles& files, std::uint64_t& room) {
   while (true) {
     const std::string directory = root + group + "/";

@@ -1,4 +1,4 @@
-// What the limits of control groups leave a process: of a container, a batch job, a service.
+// The memory that the limits of control groups (of a container, a batch job, a service) leave a process.
 #pragma once
 
 #include <cstdint>
@@ -6,10 +6,9 @@
 
 namespace weir {
 
-/// Bytes up to the nearest limit of the groups that this process is in, cgroup v2 or v1; caches of
-/// files on disks, which the system may drop, are not counted as taken. The largest number where there is no limit.
-/// `groups` lists the groups as /proc/self/cgroup does, which lie below `mounts`; a level that cannot be read has no
-/// limit.
+/// Returns the bytes up to the nearest limit of the groups that this process is in, cgroup v2 or v1; the largest number
+/// if there is no limit. Caches of files on disks, which the system may drop, do not count as taken. `groups` lists the
+/// groups in the format of /proc/self/cgroup; they lie below `mounts`. A level that cannot be read has no limit.
 std::uint64_t group_room(const std::string& groups = "/proc/self/cgroup", const std::string& mounts = "/sys/fs/cgroup");
 
 }  // namespace weir

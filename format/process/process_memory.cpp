@@ -27,7 +27,7 @@ std::uint64_t available_bytes() {
 
 void make_pages(std::span<const std::byte> memory) {
   while (::madvise(const_cast<std::byte*>(memory.data()), memory.size(), MADV_POPULATE_WRITE) != 0) {
-    if (errno != EINTR) return;  // whoever needs a page waits for it
+    if (errno != EINTR) return;  // the first access to a page allocates it then
   }
 }
 

@@ -1,4 +1,4 @@
-// A stretch of a file, and what reads some of them at once from wherever the file lies.
+// A range of bytes of a file, and the function that reads several ranges at once from wherever the file lies.
 #pragma once
 
 #include <cstddef>
@@ -17,8 +17,8 @@ struct ByteRange {
   friend bool operator==(const ByteRange&, const ByteRange&) = default;
 };
 
-/// Reads each of `ranges` into `into` at the same position, which has its length. One request each; the order is the
-/// reader's own. Throws Error where one cannot be read whole.
+/// Reads each of `ranges` into the buffer of `into` at the same position, which has the range's length. It makes one
+/// request for each, in any order. Throws Error if a range cannot be read whole.
 using RangeReader = std::function<void(std::span<const ByteRange> ranges, std::span<const std::span<std::byte>> into)>;
 
 }  // namespace weir

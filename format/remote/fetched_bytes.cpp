@@ -16,7 +16,7 @@
 namespace weir {
 namespace {
 
-/// What is asked of the reader at once: it may hold as much again.
+/// The most bytes asked of the reader at once; the reader may hold as many again.
 constexpr std::uint64_t kBatchBytes = std::uint64_t{64} << 20U;
 
 std::span<std::byte> address_space(std::uint64_t bytes) {
@@ -46,7 +46,7 @@ bool FetchedBytes::has(const ByteRange& range) const {
 void FetchedBytes::fetch(const std::vector<ByteRange>& ranges) {
   std::vector<ByteRange> missing;
   for (ByteRange range : ranges) {
-    // What is there at either end need not be read again.
+    // Parts that are held at either end are not read again.
     if (const auto after = there_.upper_bound(range.offset); after != there_.begin()) {
       const std::uint64_t begin = std::clamp(std::prev(after)->second, range.offset, range.end());
       range = {begin, range.end() - begin};

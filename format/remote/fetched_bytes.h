@@ -1,5 +1,6 @@
-// A remote file as a span of its whole length, of which only the parts that were asked for are there: address space is
-// set aside for all of it, memory is taken by what was read. So the readers of files in memory read remote ones, too.
+// A remote file as a span of its whole length that holds only the parts that were fetched. Address space is reserved
+// for the whole file; only the parts that were read take memory. So the readers of files in memory also read remote
+// files.
 #pragma once
 
 #include <cstddef>
@@ -14,25 +15,25 @@ namespace weir {
 
 class FetchedBytes {
  public:
-  /// Throws Error(io) where the system has no address space of `bytes`, more than 0.
+  /// Throws Error(io) if the system has no address space for `bytes` (more than 0).
   FetchedBytes(std::uint64_t bytes, RangeReader reader);
   ~FetchedBytes();
   FetchedBytes(const FetchedBytes&) = delete;
   FetchedBytes& operator=(const FetchedBytes&) = delete;
 
-  /// The whole file; bytes that were not fetched are 0.
+  /// Returns the whole file; bytes that were not fetched are 0.
   std::span<const std::byte> bytes() const { return bytes_; }
 
-  /// Whether all of `range` is there.
+  /// Returns whether all of `range` is fetched.
   bool has(const ByteRange& range) const;
-  /// Reads `ranges`, which lie in the file and apart from each other, less what is there, some 64 MiB at a time. Throws
-  /// as the reader; then what was there, and what was read before, is there.
+  /// Reads the parts of `ranges` that are not fetched yet, some 64 MiB at a time. `ranges` lie in the file and do not
+  /// overlap. Throws as the reader; parts fetched before, also in this call, then remain.
   void fetch(const std::vector<ByteRange>& ranges);
-  /// Adds what was read otherwise.
+  /// Adds bytes that were read by other means.
   void put(std::uint64_t offset, std::span<const std::byte> bytes);
-  /// Bytes that are there.
+  /// Returns the number of bytes that are held.
   std::uint64_t held() const { return held_; }
-  /// Forgets what lies at `offset` and beyond, and gives its memory back, in whole pages.
+  /// Forgets the bytes from `offset` on, and frees their memory in whole pages.
   void forget_from(std::uint64_t offset);
 
  private:
@@ -40,7 +41,7 @@ class FetchedBytes {
 
   std::span<std::byte> bytes_;
   RangeReader reader_;
-  std::map<std::uint64_t, std::uint64_t> there_;  // begin to end, apart from each other
+  std::map<std::uint64_t, std::uint64_t> there_;  // begin to end, apart from each other; the parts that are held
   std::uint64_t held_ = 0;
 };
 

@@ -17,17 +17,17 @@
 namespace weir {
 namespace {
 
-/// Requests for the streams of a region.
+/// The most requests for the streams of a region.
 constexpr std::size_t kRequestsOfRegion = 3;
 
 constexpr auto kGroups = static_cast<std::size_t>(packed::chunk::kGroupCount);
-/// From so many groups on, all of a region is read.
+/// From this many groups on, the whole region is read.
 constexpr std::size_t kManyGroups = kGroups / 3;
 
 /// Groups of 16 blocks along z (packed_chunk.h).
 using GroupSet = std::bitset<kGroups>;
 
-// Adds those that touch `box`, which lies in one region.
+// Adds the groups that touch `box`, which lies in one region.
 void add_groups(const Box& box, GroupSet& groups) {
   const NodeLattice blocks = make_lattice(box, kLeafDim);
   for (std::int64_t x = 0; x < blocks.count.x; ++x) {
@@ -44,7 +44,7 @@ NvdbGrid open_heads(FetchedBytes& file, const std::string& path) {
 
 }  // namespace
 
-/// What is wanted of a region.
+/// The groups that are wanted of a region.
 struct RemoteGrid::WantedRegion {
   PackedRegion region;
   GroupSet groups;
@@ -147,7 +147,8 @@ void RemoteGrid::with_blocks(std::span<const Box> boxes, const std::function<voi
 }
 
 void RemoteGrid::use_blocks(std::span<const Box> boxes, const std::function<void()>& use) {
-  const std::vector<WantedRegion> wanted = wanted_regions(boxes);  // by the table of regions, which always stays
+  const std::vector<WantedRegion> wanted = wanted_regions(boxes);  // reads only the table of regions, which is always
+                                                                   // held
   {
     const std::shared_lock lock(mutex_);
     if (has(wanted)) return use();

@@ -13,9 +13,9 @@
 namespace weir {
 namespace {
 
-/// The file's head and the grid's, which begins at the second page.
+/// Bytes of the file's head and of the grid's, which begins at the second page.
 constexpr std::uint64_t kHeadBytes = 2 * nvdb::kPage;
-/// A head that says more is taken for damaged, so that it does not have gigabytes read.
+/// A head with larger counts is taken as damaged, so that it cannot make weir read gigabytes.
 constexpr std::uint64_t kMostRootTiles = std::uint64_t{1} << 16;
 constexpr std::int64_t kMostRegions = std::int64_t{1} << 24;
 constexpr std::uint32_t kMostBlindRecords = 1024;
@@ -49,7 +49,8 @@ class HeadFetcher {
   }
 
  private:
-  // `offset` from the grid's start. What lies beyond its end is missed by whoever looks at it.
+  // Fetches bytes at `offset` from the grid's start. Ignores a range beyond the grid's end: the code that reads it
+  // reports the error.
   void need(std::uint64_t offset, std::uint64_t bytes) {
     if (grid_.holds(offset, bytes)) file_.fetch({{header_.grid_offset + offset, bytes}});
   }
@@ -60,7 +61,8 @@ class HeadFetcher {
     refuse(path_, "is not packed (--encoding packed), and only packed files are read block by block");
   }
 
-  // Right behind the macrocells, where weir writes it; without packed data where it is not there.
+  // Looks for the packed data right behind the macrocells, where weir writes it. Returns no packed data if it is not
+  // there.
   NvdbBlindData at_its_place(const NvdbTree& tree) {
     const auto records = grid_.get<std::uint64_t>(nvdb::grid::kBlindOffset);
     const NodeLattice cells = make_lattice(tree.bbox, kMacrocell);
@@ -86,7 +88,7 @@ class HeadFetcher {
     need(grid_.get<std::uint64_t>(nvdb::grid::kBlindOffset), records * nvdb::kBlindMetaBytes);
     const NvdbBlindData blind = read_nvdb_blind_data(grid_, tree.end, tree.bbox);
     if (blind.packed_bytes == 0) refuse_unpacked();
-    if (blind.packed_bytes < packed::kRegionsOffset) return blind;  // read_packed_header says so
+    if (blind.packed_bytes < packed::kRegionsOffset) return blind;  // read_packed_header() reports it
     need(blind.packed, packed::kRegionsOffset);
     const auto table = grid_.get<std::uint64_t>(blind.packed + packed::header::kRegions);
     if (table != packed::kRegionsOffset) refuse(path_, "has its table of regions elsewhere than behind its head");

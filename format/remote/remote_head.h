@@ -1,4 +1,4 @@
-// The heads of a packed grid in a file that lies elsewhere: two requests where weir wrote it.
+// Reads the heads of a packed grid in a remote file; two requests are enough for a file written by weir.
 #pragma once
 
 #include <memory>
@@ -13,16 +13,16 @@ namespace weir {
 
 struct RemoteHead {
   NvdbHeader header;
-  NvdbTree tree;        ///< as read_nvdb_tree_head says
-  NvdbBlindData blind;  ///< the macrocells are where they would be; their values were not read
+  NvdbTree tree;        ///< as from read_nvdb_tree_head()
+  NvdbBlindData blind;  ///< the macrocells have their place, but their values were not read
 };
 
-/// The file's bytes with the first pages read, its length as its head says it. Throws as `reader`, and Error(input)
-/// where the file is no NanoVDB file of one grid; `path` is for messages.
+/// Returns the file's bytes with the first pages read; the head tells the file's length. Throws as `reader`, and
+/// Error(input) if the file is not a NanoVDB file of one grid; `path` is for messages.
 std::unique_ptr<FetchedBytes> fetch_file_head(const std::string& path, RangeReader reader);
 
-/// Reads the heads of the grid and of its packed data, the region table included. Throws the same, and where the grid
-/// is not packed.
+/// Reads the heads of the grid and of its packed data, including the region table. Throws as fetch_file_head(), and
+/// Error(input) if the grid is not packed.
 RemoteHead fetch_heads(FetchedBytes& file, const std::string& path);
 
 }  // namespace weir

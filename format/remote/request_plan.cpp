@@ -5,7 +5,7 @@
 namespace weir {
 namespace {
 
-// Makes one range of those between which the gap is below `gap`; `ranges` are sorted.
+// Joins ranges with a gap below `gap` between them; `ranges` are sorted.
 std::vector<ByteRange> joined(const std::vector<ByteRange>& ranges, std::uint64_t gap) {
   std::vector<ByteRange> all;
   for (const ByteRange& range : ranges) {
@@ -28,7 +28,7 @@ std::vector<ByteRange> plan_requests(std::vector<ByteRange> wanted, std::size_t 
   std::vector<std::uint64_t> gaps;
   for (std::size_t i = 1; i < plan.size(); ++i) gaps.push_back(plan[i].offset - plan[i - 1].end());
   std::ranges::sort(gaps, std::greater<>());
-  // The most - 1 longest gaps stay; equal ones may all go.
+  // The most - 1 longest gaps stay; gaps of equal length may all be closed.
   return joined(plan, most == 1 ? gaps.front() + 1 : gaps[most - 1] + 1);
 }
 

@@ -5,7 +5,7 @@
 
 namespace weir {
 
-/// In the order of documentation.
+/// In the order of the documentation.
 inline constexpr std::string_view kColormapNames =
     "gray|white|heat|cool-warm|dusk|ct|water|magma|viridis|plasma|inferno|cividis";
 

@@ -20,8 +20,8 @@ bool have_one_head(const Sidecar::File& a, const Sidecar::File& b) {
   return a.bytes == b.bytes && a.head_checksum == b.head_checksum;
 }
 
-// Whether OUT.nvdb.partial is a volume with the head that `record` tells, or, as the lock of a volume in another place,
-// holds the digest of the sidecar at `sidecar`. While a conversion runs it is neither.
+// Returns whether OUT.nvdb.partial is a volume with the head that `record` describes, or is the lock of a volume in
+// another place and holds the digest of the sidecar at `sidecar`. While a conversion runs it is neither.
 bool is_to_follow(FileSystem& files, const std::string& partial, const Sidecar::File& record,
                   const std::string& sidecar) {
   const std::unique_ptr<File> file = files.open_to_read(partial);
@@ -30,8 +30,8 @@ bool is_to_follow(FileSystem& files, const std::string& partial, const Sidecar::
   return short_text(files, partial) == piece_digest(std::as_bytes(std::span(text))).hex();
 }
 
-// Whether a commit that was killed may have put the sidecar beside another volume of the same head. What cannot be read
-// tells nothing.
+// Returns whether a killed commit may have put the sidecar beside another volume with the same head. Files that cannot
+// be read count as no evidence.
 bool may_be_of_another(FileSystem& files, const std::string& path, const Sidecar::File& record) {
   const std::string sidecar = find_sidecar(path);
   const std::string previous = previous_path(sidecar);
@@ -67,7 +67,7 @@ bool is_of(const Sidecar& sidecar, const NvdbFile& file) {
   if (!is_of(sidecar, file.grid())) return false;
   const std::unique_ptr<FileSystem> files = make_posix_file_system();
   if (!may_be_of_another(*files, file.path(), sidecar.file)) return true;
-  // Read, not mapped: mapped pages count as the process's memory.
+  // Reads the file instead of mapping it, because mapped pages count as the process's memory.
   return whole_digest(*files->open_to_read(file.path())).hex() == sidecar.file.digest;
 }
 

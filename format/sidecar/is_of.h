@@ -1,5 +1,5 @@
-// Whether a sidecar is of the very file that it lies beside: a crash between two renames, or a copy, may leave
-// another's.
+// Tells whether a sidecar belongs to the very file that it lies beside: a crash between two renames, or a copy, may
+// leave the sidecar of another volume.
 #pragma once
 
 #include "format/io/file_system.h"
@@ -9,15 +9,16 @@
 
 namespace weir {
 
-/// Whether a file has the length and the head checksum that a sidecar records: so may another volume's.
+/// Returns whether a file has the length and the head checksum that a sidecar records. Another volume may have the
+/// same.
 bool has_head(const Sidecar::File& record, File& volume);
 
-/// By the file's length and the checksum of its head.
+/// Returns whether `sidecar` has the file's length and the checksum of its head.
 bool is_of(const Sidecar& sidecar, const NvdbGrid& grid);
 
-/// The same of a file, `sidecar` being the one beside it. Volumes of equal range and topology may have equal heads:
-/// where a commit that was killed has left another volume or sidecar of that head there, OUT.nvdb.partial or
-/// OUT.nvdb.json.previous, also by the digest of all its bytes, which are read for it.
+/// Returns whether the sidecar beside a file belongs to it, by length and head checksum. Volumes of equal range and
+/// topology may have equal heads. So if OUT.nvdb.partial or OUT.nvdb.json.previous shows that a killed commit may have
+/// left another volume or sidecar, this also reads the whole file and compares its digest.
 bool is_of(const Sidecar& sidecar, const NvdbFile& file);
 
 }  // namespace weir

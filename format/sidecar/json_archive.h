@@ -1,4 +1,4 @@
-// The keys of a sidecar, written to and read from JSON by one description: both classes have the same functions.
+// Writes and reads the keys of a sidecar as JSON from one description: both classes have the same functions.
 #pragma once
 
 #include <array>
@@ -108,7 +108,8 @@ class JsonReader {
   }
 
  private:
-  // Arrays and objects are not shown: they may be large, and nested deeper than a recursion can follow.
+  // Returns `value` for a message. Does not print arrays and objects: they may be large, and nested too deep for a
+  // recursion.
   static std::string shown(const Json& value) {
     if (value.is_array()) return cat("an array of ", value.size());
     if (value.is_object()) return "an object";

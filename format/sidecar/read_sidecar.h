@@ -1,4 +1,4 @@
-// The sidecar of a volume, from disk.
+// Reads the sidecar of a volume from disk.
 #pragma once
 
 #include <optional>
@@ -9,11 +9,12 @@
 
 namespace weir {
 
-/// Reads and parses the sidecar at `path`. Throws Error(input) where it is missing, larger than any
-/// sidecar, or invalid, Error(io) where it cannot be read; the message has the remedy.
+/// Reads and parses the sidecar at `path`. Throws Error(input) if it is missing, larger than any sidecar, or invalid,
+/// and Error(io) if it cannot be read; the message has the remedy.
 Sidecar read_sidecar(const std::string& path);
 
-/// The one that lies beside the file and is of it (is_of.h); none else. Throws as read_sidecar.
+/// Returns the sidecar beside the file if it belongs to the file (is_of.h); otherwise nullopt. Throws as
+/// read_sidecar().
 std::optional<Sidecar> own_sidecar(const NvdbFile& file);
 
 }  // namespace weir

@@ -20,7 +20,7 @@ constexpr Bounds kUnit{0, 1};
 constexpr Bounds kRadiance{0, 1e6};
 constexpr Bounds kFloats{-std::numeric_limits<float>::max(), std::numeric_limits<float>::max()};
 constexpr Bounds kDirection{-1e15, 1e15};
-constexpr Bounds kPlace{-1e60, 1e60};  // in the world, however large its voxels are; make_camera counts in voxels
+constexpr Bounds kPlace{-1e60, 1e60};  // in the world, for voxels of any size; make_camera() counts in voxels
 
 const toml::table& as_table(const TomlReader& reader, const toml::node& node, std::string_view key) {
   if (!node.is_table()) reader.fail(node, cat(key, " must be a table"));
@@ -49,7 +49,7 @@ void read_camera(TomlReader reader, SceneCamera& camera) {
   reader.finish();
 }
 
-// An array of arrays of N numbers whose first is the position, rising and in [0, 1].
+// Reads an array of arrays of N numbers. The first number is the position, in [0, 1], and positions rise.
 template <std::size_t N, class Add>
 void read_points(TomlReader& reader, std::string_view key, const Add& add) {
   const toml::node* node = reader.find(key);
@@ -66,7 +66,7 @@ void read_points(TomlReader& reader, std::string_view key, const Add& add) {
   }
 }
 
-// Whole voxel indices, [[x0, x1], [y0, y1], [z0, z1]], half open.
+// Reads whole voxel indices, [[x0, x1], [y0, y1], [z0, z1]], half open.
 void read_region(TomlReader& reader, SceneVolume& volume) {
   const toml::node* node = reader.find("region");
   if (node == nullptr) return;
@@ -117,7 +117,7 @@ void read_volume(TomlReader reader, SceneVolume& volume) {
   reader.finish();
 }
 
-// An environment is all the light there is but for [[light]]: keys that it would silence are refused.
+// An environment replaces all light except [[light]], so keys that it would make ineffective are refused.
 void read_environment(TomlReader& reader, SceneLighting& lighting) {
   const bool given = reader.read("environment", lighting.environment);
   if (given && lighting.environment.empty()) {

@@ -1,6 +1,5 @@
-// What a picture of a volume looks like: camera, transfer function, medium,
-// light. Plain data with defaults that suit any volume; nothing here knows a
-// grid. Parsed from TOML, see docs/scene.md for every key.
+// The look of a picture of a volume: camera, transfer function, medium, light. Plain data with defaults that suit any
+// volume; nothing here depends on a grid. Parsed from TOML, see docs/scene.md for every key.
 #pragma once
 
 #include <array>
@@ -18,19 +17,19 @@ using Double3 = std::array<double, 3>;
 
 enum class RenderMode { path, dvr, iso, mip };
 
-/// "path", "dvr", "iso" or "mip", and back.
+/// Convert a mode to and from "path", "dvr", "iso" or "mip".
 std::string_view render_mode_name(RenderMode mode);
 std::optional<RenderMode> parse_render_mode(std::string_view name);
 
-/// What an orbiting camera frames: the part of the volume that the transfer function or the iso value
-/// shows, or all of it, which is the same for every step of a series and every rate.
+/// What an orbiting camera frames. content: the part of the volume that the transfer function or the iso value shows.
+/// volume: all of it, which is the same for every step of a series and every rate.
 enum class Framing { content, volume };
 
-/// With a position the camera stands there (world space) and looks at `look_at`; without, it orbits the
+/// With `position`, the camera stands there (world space) and looks at `look_at`. Without it, the camera orbits the
 /// centre of what it frames.
 struct SceneCamera {
   std::optional<Double3> position;
-  std::optional<Double3> look_at;  ///< world space; default: the centre of what it frames
+  std::optional<Double3> look_at;  ///< world space; default: the centre of what the camera frames
   Double3 up{0, 0, 1};
   double azimuth = 35;    ///< degrees around `up`
   double elevation = 20;  ///< degrees above the horizon, in [-90, 90]
@@ -72,15 +71,16 @@ struct SceneLight {
   Double3 irradiance{1, 1, 1};  ///< linear RGB
 };
 
-/// Linear RGB radiance of the sky by elevation or from a picture, and what the camera sees behind the volume.
+/// Linear RGB radiance of the sky, by elevation or from a picture, and the background that the camera sees.
 struct SceneLighting {
   std::optional<Double3> zenith;
   std::optional<Double3> horizon;
   std::optional<Double3> ground;
-  std::string environment;                        ///< a latitude-longitude picture instead of the three; empty: none
+  std::string environment;                        ///< latitude-longitude picture that replaces the three above; empty:
+                                                  ///< none
   double environment_rotation = 0;                ///< degrees about the camera's `up`
-  double environment_scale = 1;                   ///< factor on its radiance
-  bool environment_behind = false;                ///< the camera sees it instead of `background`
+  double environment_scale = 1;                   ///< factor on the environment's radiance
+  bool environment_behind = false;                ///< the camera sees the environment instead of `background`
   std::optional<Double3> background;              ///< default: the mode's
   std::optional<double> exposure;                 ///< factor on the radiance; default: the mode's
   std::optional<std::vector<SceneLight>> lights;  ///< at most 4; default: one key light, none with an environment
@@ -93,16 +93,16 @@ struct Scene {
   SceneLighting lighting;
 };
 
-/// Most directional lights a scene may have.
+/// The most directional lights that a scene may have.
 inline constexpr std::size_t kMaxSceneLights = 4;
 
-/// Parses a scene; paths in it are relative to `path`'s directory. Throws Error(input) "PATH:LINE:COLUMN: ..." for
+/// Parses a scene; paths in it are relative to the directory of `path`. Throws Error(input) "PATH:LINE:COLUMN: ..." for
 /// broken TOML, an unknown key, a wrong type or a value out of range.
 Scene parse_scene(std::string_view text, const std::string& path);
-/// A longer text is no scene: a transfer function of a thousand points takes some 30 KB.
+/// The most bytes of a scene; a transfer function of a thousand points takes some 30 KB.
 inline constexpr std::size_t kMostSceneBytes = std::size_t{1} << 20U;
 
-/// parse_scene of a file; Error(input) where it is missing, unreadable or longer than kMostSceneBytes.
+/// Parses the scene in a file. Throws Error(input) if the file is missing, unreadable or longer than kMostSceneBytes.
 Scene load_scene(const std::string& path);
 
 }  // namespace weir

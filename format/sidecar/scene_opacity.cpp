@@ -6,10 +6,11 @@ namespace weir {
 
 namespace {
 
-// A lower peak is not told from its shape.
+// The share of its opacity that a peak may lose; such a loss does not show in its shape.
 constexpr double kMissedShare = 0.1;
 
-// The highest entry that a look-up beside `position` blends; of a position at an entry, the entries beside it, too.
+// Returns the highest entry that a look-up near `position` blends; for a position at an entry, also the entries beside
+// it.
 double highest_around(const std::vector<float>& table, double position) {
   const auto last = static_cast<double>(table.size() - 1);
   const double at = position * last;
@@ -36,7 +37,7 @@ std::vector<float> opacity_table(const std::vector<OpacityPoint>& points) {
 std::optional<MissedBand> missed_band(const std::vector<OpacityPoint>& points) {
   const std::vector<float> table = opacity_table(points);
   std::optional<MissedBand> worst;
-  std::optional<MissedBand> band;  // of the points just before
+  std::optional<MissedBand> band;  // the band of the previous points
   const auto end_band = [&] {
     if (band && (!worst || loss(*band) > loss(*worst))) worst = band;
     band.reset();

@@ -1,5 +1,5 @@
-// Opacity over the values as a scene gives it, in one table that the renderer and, with a scene, the compressor share
-// to decide whether a value can be seen.
+// The opacity over the values in a scene, as one table. The renderer and, with a scene, the compressor use it to decide
+// whether a value can be seen.
 #pragma once
 
 #include <algorithm>
@@ -11,11 +11,11 @@
 
 namespace weir {
 
-/// Entries of the tables: a control point is met within half a thousandth of the range.
+/// Entries of the tables: an entry lies within half a thousandth of the range from every control point.
 inline constexpr std::size_t kTransferEntries = 1024;
 
-/// Value at position `at` of a piecewise-linear function given by points with rising `position`, ends extended;
-/// `value` reads it from a point, `mix(a, b, f)` blends two.
+/// Returns the value at position `at` of a piecewise-linear function given by points with rising `position`; the ends
+/// extend. `value` reads a point's value, `mix(a, b, f)` blends two.
 template <class Point, class Value, class Mix>
 auto interpolate(const std::vector<Point>& points, double at, const Value& value, const Mix& mix) {
   const auto above = std::find_if(points.begin(), points.end(), [&](const Point& p) { return p.position >= at; });
@@ -26,19 +26,19 @@ auto interpolate(const std::vector<Point>& points, double at, const Value& value
   return mix(value(*below), value(*above), f);
 }
 
-/// Opacity at kTransferEntries equal distances over [0, 1]. `points` is not empty.
+/// Returns the opacity at kTransferEntries equal distances over [0, 1]. `points` is not empty.
 std::vector<float> opacity_table(const std::vector<OpacityPoint>& points);
 
-/// Opacity between two entries of that table which no look-up gives.
+/// A band of opacity between two entries of opacity_table() that no look-up returns.
 struct MissedBand {
-  double from;  ///< positions of the first and the last of its points
+  double from;  ///< positions of the band's first and last point
   double to;
-  double opacity;  ///< the highest of its points
-  double shown;    ///< the most that look-ups give there: the higher of the entries around it
+  double opacity;  ///< the highest opacity of its points
+  double shown;    ///< the most that look-ups return there: the higher of the entries around it
 };
 
-/// Of the bands and peaks that lose more than a tenth of their opacity in opacity_table, the one that loses most; none
-/// where all are met. `points` is not empty.
+/// Returns the band or peak that loses most of its opacity in opacity_table(), among those that lose more than a tenth;
+/// none if there are none. `points` is not empty.
 std::optional<MissedBand> missed_band(const std::vector<OpacityPoint>& points);
 
 }  // namespace weir

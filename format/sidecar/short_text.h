@@ -1,4 +1,5 @@
-// The text of a sidecar, or of the lock of a commit, not parsed: what tells, after a crash, which volume is whose.
+// Reads the unparsed text of a sidecar or of a commit's lock; after a crash it tells which sidecar belongs to which
+// volume.
 #pragma once
 
 #include <string>
@@ -7,10 +8,10 @@
 
 namespace weir {
 
-/// All of `file`. Throws Error(input) where it is larger than any sidecar, Error(io) where it cannot be read.
+/// Returns all of `file`. Throws Error(input) if it is larger than any sidecar, Error(io) if it cannot be read.
 std::string short_text(File& file);
 
-/// The same of the file at `path`, which is opened for that.
+/// Opens the file at `path` and returns all of it. Throws the same errors.
 std::string short_text(FileSystem& files, const std::string& path);
 
 }  // namespace weir

@@ -92,7 +92,7 @@ void describe_gradient(Archive& archive, G& gradient) {
   archive.field("left_out", gradient.left_out);
 }
 
-// The document's keys, once, for writing and for reading: `archive` is a JsonWriter or a JsonReader.
+// Describes the document's keys once, for writing and for reading: `archive` is a JsonWriter or a JsonReader.
 template <typename Archive, typename S>
 void describe(Archive& archive, S& s) {
   archive.object("source", [&] { describe_source(archive, s.source); });
@@ -180,7 +180,7 @@ void describe(Archive& archive, S& s) {
   });
 }
 
-// Where sidecars of 0.2 had what is elsewhere now.
+// Copies keys of sidecars of weir 0.2 to the places that they have now.
 void move_older_keys(nlohmann::json& document) {
   if (!document.contains("packed") || !document.contains("selection")) return;
   nlohmann::json& packed = document["packed"];
@@ -190,7 +190,7 @@ void move_older_keys(nlohmann::json& document) {
   if (packed.contains("error_preview")) document.emplace("error_preview", packed["error_preview"]);
 }
 
-constexpr int kMaxSidecarDepth = 16;  ///< twice what one has
+constexpr int kMaxSidecarDepth = 16;  ///< twice the depth of a sidecar
 
 }  // namespace
 
@@ -211,7 +211,7 @@ std::string to_json_text(const Sidecar& sidecar) {
 
 Sidecar parse_sidecar(std::string_view text, const std::string& path) {
   nlohmann::json document;
-  // A level of nesting takes 80 times the memory of its byte.
+  // The depth is checked while parsing, because a level of nesting takes 80 times the memory of its byte.
   const auto check_depth = [&](int depth, nlohmann::json::parse_event_t, const nlohmann::json&) {
     if (depth > kMaxSidecarDepth) {
       throw Error(ErrorKind::input, cat(path, ": nested deeper than ", kMaxSidecarDepth,
@@ -244,8 +244,8 @@ Sidecar parse_sidecar(std::string_view text, const std::string& path) {
 
 std::string utc_text(std::int64_t nanoseconds) {
   using namespace std::chrono;
-  // By seconds and what is left: the first second that begins before the first time that 64 bits hold in nanoseconds is
-  // none of those times, and neither is its midnight.
+  // Splits the time into seconds and a rest. The first second that 64-bit nanoseconds reach begins before their
+  // earliest time, so neither it nor its midnight fits 64-bit nanoseconds.
   constexpr std::int64_t kSecond = 1'000'000'000;
   std::int64_t rest = nanoseconds % kSecond;
   if (rest < 0) rest += kSecond;

@@ -1,6 +1,6 @@
-// The sidecar OUT.nvdb.json: what one conversion read, chose, lost and wrote.
-// The struct holds every key of the JSON document under the same name; the
-// schema is format/sidecar.schema.json. Plain data, no invariants.
+// The sidecar OUT.nvdb.json: what one conversion read, chose, lost and wrote. The struct holds every key of the JSON
+// document under the same name; the schema is format/sidecar.schema.json. Plain data, no invariants. "No key" below
+// means that the document then lacks the key.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ namespace weir {
 /// Value of the key `weir_sidecar`. A reader refuses any other.
 inline constexpr int kSidecarVersion = 1;
 
-/// A longer text is no sidecar: a histogram of 1,024 bins and two paths take some 50 KB, and JSON takes up to 40 times
+/// The most bytes of a sidecar: a histogram of 1,024 bins and two paths take some 50 KB, and JSON takes up to 40 times
 /// its bytes in memory.
 inline constexpr std::uint64_t kMostSidecarBytes = std::uint64_t{4} << 20U;
 
@@ -26,15 +26,15 @@ inline constexpr std::uint64_t kMostSidecarBytes = std::uint64_t{4} << 20U;
 struct Sidecar {
   struct Time {
     double value = 0;
-    std::string units;     ///< "seconds since 2000-01-01", "s"; else empty
-    std::string calendar;  ///< of CF; empty, and no key, where the file names none
+    std::string units;     ///< "seconds since 2000-01-01", "s"; empty if unknown
+    std::string calendar;  ///< the CF calendar; empty, and no key, if the file names none
   };
-  /// The level of refinement that the volume is, of several.
+  /// The volume's level of refinement, if the source has several.
   struct Level {
-    std::int64_t number = 0;  ///< 0 the coarsest
-    std::int64_t count = 0;   ///< of levels: cells that one of them above `number` has are missing
+    std::int64_t number = 0;  ///< 0 is the coarsest
+    std::int64_t count = 0;   ///< number of levels; cells that a level above `number` covers are missing
   };
-  /// Coordinates of index 0, 1, ... of the source along an axis; empty, and no key, where they are equally spaced.
+  /// Coordinates of index 0, 1, ... of the source along an axis; empty, and no key, if they are equally spaced.
   struct IrregularAxes {
     std::vector<double> x;
     std::vector<double> y;
@@ -52,23 +52,27 @@ struct Sidecar {
     std::string digest;               ///< xxh3-128 of the float32 values, see FORMAT.md; 32 hex digits
     std::vector<std::int64_t> index;  ///< --index: position on the leading axes of the array
     std::array<std::string, 3> axes;  ///< the file's names of x, y, z, x fastest in memory; empty: not named
-    std::string units;                ///< of the values, as the file says; else empty
+    std::string units;                ///< of the values, as the file says; empty if it does not
     std::optional<double> unit_si;    ///< openPMD unitSI
     double scale = 1;                 ///< value = stored * scale + offset
     double offset = 0;
-    std::string files_digest;  ///< FileStates of the files that the volume lies in; empty, and no key, where it is one
-    // Each with a key where the file says it.
+    std::string files_digest;  ///< FileStates of the files that hold the volume; empty, and no key, if there is only
+                               ///< one
+    // Each of these has a key only if the file says it.
     std::string long_name;                        ///< "cloud water mixing ratio"
-    std::string component;                        ///< of an array of vectors: "0", "1" ... or "magnitude"
-    std::optional<Level> level;                   ///< of --levels separate
-    std::optional<Time> time;                     ///< at which the volume is
-    std::array<std::string, 3> axis_units;        ///< of the coordinates of x, y, z
-    std::optional<IrregularAxes> irregular_axes;  ///< those without a spacing
-    std::vector<std::string> reversed_axes;       ///< "x", "y", "z": the file has their elements in the other order
-    std::string orientation;                      ///< how the axes lie in the file's world (FieldDetails::orientation)
-    std::string unstored_chunks;                  ///< how many chunks the file lacks (FieldDetails::chunks_note)
-    std::uint64_t values = 0;  ///< of all arrays of the input file (file_values.h); 0, and no key: not counted
-    std::string real_path;     ///< what a relative `path` led to (real_path_of); empty, and no key, of others
+    std::string component;                        ///< component of an array of vectors: "0", "1" ... or "magnitude"
+    std::optional<Level> level;                   ///< with --levels separate
+    std::optional<Time> time;                     ///< time of the volume
+    std::array<std::string, 3> axis_units;        ///< units of the coordinates of x, y, z
+    std::optional<IrregularAxes> irregular_axes;  ///< axes without equal spacing
+    std::vector<std::string> reversed_axes;       ///< "x", "y", "z": the file stores their elements in reverse order
+    std::string orientation;                      ///< the axes' directions in the file's world
+                                                  ///< (FieldDetails::orientation)
+    std::string unstored_chunks;                  ///< the number of chunks that the file lacks
+                                                  ///< (FieldDetails::chunks_note)
+    std::uint64_t values = 0;  ///< values of all arrays of the input file (file_values.h); 0, and no key: not counted
+    std::string real_path;     ///< the target of a relative `path` (real_path_of); empty, and no key, for an absolute
+                               ///< one
   } source;
 
   struct Grid {
@@ -80,22 +84,22 @@ struct Sidecar {
     Box index_bbox;                  ///< half open, written [[lo x, y, z], [hi x, y, z]]
   } grid;
 
-  std::array<double, 2> value_range{};  ///< finite minimum and maximum of the source; NaN where no value is finite
+  std::array<double, 2> value_range{};  ///< finite minimum and maximum of the source; NaN if no value is finite
 
   struct Nonfinite {
     std::uint64_t count = 0;       ///< voxels of the source that are NaN or infinite
     std::string policy = "error";  ///< error, background or keep
   } nonfinite;
 
-  /// Voxels the source declares to hold no data. They read as the background, as NaN, or, under the policy keep alone,
-  /// as the values that say so; then they are data, else in no error figure.
+  /// Voxels that the source declares to hold no data. They read as the background, as NaN, or, only with the policy
+  /// keep, as their stored values. With keep they count as data; otherwise they are in no error figure.
   struct Missing {
     std::uint64_t count = 0;
-    std::vector<std::string> values;  ///< the stored values that say so
-    std::string policy;               ///< error, background, nan or keep; empty, and no key, where weir was older
+    std::vector<std::string> values;  ///< the stored values that mean "no data"
+    std::string policy;               ///< error, background, nan or keep; empty, and no key, in files of older weir
   } missing;
 
-  /// What the conversion to float32 lost.
+  /// The loss of the conversion to float32.
   struct ConversionLoss {
     std::uint64_t inexact = 0;   ///< values that float32 cannot hold
     std::uint64_t overflow = 0;  ///< values beyond float32's range
@@ -105,13 +109,13 @@ struct Sidecar {
   struct Background {
     double value = 0;
     std::string method;  ///< how it was found: "mode", "bin", "user", "source", ...
-    double share = 0;    ///< part of the voxels with that value, 0..1; 0, not counted, for "user" and "source"
+    double share = 0;    ///< share of the voxels with that value, 0..1; 0, not counted, for "user" and "source"
   } background;
 
-  /// Finite source voxels equal to zero; none where weir was older.
+  /// Finite source voxels equal to zero; absent in files of older weir.
   struct Zeros {
     std::uint64_t count = 0;
-    std::uint64_t lost = 0;  ///< those that decode to another value
+    std::uint64_t lost = 0;  ///< zeros that decode to another value
   };
   std::optional<Zeros> zeros;
 
@@ -137,44 +141,46 @@ struct Sidecar {
     std::uint64_t leaves_total = 0;
     std::uint64_t leaves_kept = 0;
     std::array<std::uint64_t, 6> bits{};  ///< kept leaves of 1, 2, 4, 8, 16 bits a voxel and float32
-    /// Of a packed file, blocks by kind: without a stream, mean, transform, lattice, raw.
+    /// For a packed file, blocks by kind: without a stream, mean, transform, lattice, raw.
     std::optional<std::array<std::uint64_t, 5>> blocks;
   } selection;
 
-  /// Of central differences, at the volume's faces those to the next voxel, as numpy.gradient has them; value per world
-  /// unit.
+  /// The error of central differences, at the volume's faces of one-sided differences, as numpy.gradient computes them;
+  /// value per world unit.
   struct GradientError {
     double rms = 0;                      ///< root mean square of |gradient of the error|
-    std::optional<double> relative_rms;  ///< that as a share of the source's; none where that is 0
+    std::optional<double> relative_rms;  ///< `rms` as a share of the source's; none if the source's is 0
     double max_abs = 0;                  ///< the largest |gradient of the error|
-    std::uint64_t voxels = 0;            ///< over which it is taken
-    std::uint64_t left_out = 0;          ///< those at which a value that it takes is not finite
+    std::uint64_t voxels = 0;            ///< number of voxels that it covers
+    std::uint64_t left_out = 0;          ///< voxels left out because a value of the difference is not finite
   };
 
-  /// Decoded values against the float32 source, all valid voxels (valid_voxels.h), in double.
+  /// Error of the decoded values against the float32 source, over all valid voxels (valid_voxels.h), computed in
+  /// double.
   struct CertifiedError {
     double mse = 0;
     double rmse = 0;
     double nmse = 0;                ///< mse / (value range)^2
-    std::optional<double> psnr_db;  ///< none where the error is 0, or all values are one
+    std::optional<double> psnr_db;  ///< none if the error is 0, or if all values are equal
     double max_abs = 0;
     bool lossless = false;
   } error;
-  std::optional<GradientError> gradient;  ///< error.gradient: none, and no key, where it was not asked for
-  /// Of a packed file, what readers see that know the tree alone; its two corner leaves count as means.
+  std::optional<GradientError> gradient;  ///< error.gradient: none, and no key, if it was not requested
+  /// For a packed file, the error that readers see that know only the tree; its two corner leaves count as means.
   std::optional<CertifiedError> error_preview;
 
-  /// With a scene that decided what matters: the same over the voxels of all 8^3 blocks of which something can be seen.
+  /// The error over the voxels of all 8^3 blocks with something visible, if a scene decided what matters.
   struct Visible {
     std::string scene;         ///< path, as the user gave it
-    std::uint64_t blocks = 0;  ///< that can be seen
-    std::uint64_t voxels = 0;  ///< finite ones in them: the error is over these
+    std::uint64_t blocks = 0;  ///< visible blocks
+    std::uint64_t voxels = 0;  ///< finite voxels of the visible blocks; the error covers these
     CertifiedError error;
-    std::string scene_digest;  ///< of what in the scene decides the bytes; empty, and no key, where weir was older
+    std::string scene_digest;  ///< digest of the parts of the scene that affect the bytes; empty, and no key, in files
+                               ///< of older weir
   };
   std::optional<Visible> visible;
 
-  /// Of a packed file (FORMAT.md).
+  /// For a packed file (FORMAT.md).
   struct Packed {
     bool preview = false;  ///< the tree holds each block's mean
   };
@@ -209,18 +215,18 @@ struct Sidecar {
   } weir;
 };
 
-/// "OUT.nvdb.json" for "OUT.nvdb".
+/// Returns "OUT.nvdb.json" for "OUT.nvdb".
 std::string sidecar_path(const std::string& volume_path);
 
-/// The JSON document, one line a top-level key, keys in the order of the struct, final newline. Finite
+/// Returns the JSON document: one line per top-level key, keys in the order of the struct, a final newline. Finite
 /// doubles read back bit-exact; bytes that are not UTF-8 (a path may hold any) become U+FFFD.
 std::string to_json_text(const Sidecar& sidecar);
 
-/// Inverse. `path` is for messages. Throws Error(input) naming the key that is missing, of the wrong
-/// type or out of range, or the byte where the text stops being JSON. Unknown keys are ignored.
+/// Parses a JSON document of to_json_text(). `path` is for messages. Throws Error(input) that names the key that is
+/// missing, of the wrong type or out of range, or the byte at which the text stops being JSON. Ignores unknown keys.
 Sidecar parse_sidecar(std::string_view text, const std::string& path);
 
-/// Nanoseconds since 1970-01-01 as "2026-11-21T01:39:00.123456789Z".
+/// Returns nanoseconds since 1970-01-01 as "2026-11-21T01:39:00.123456789Z".
 std::string utc_text(std::int64_t nanoseconds);
 
 }  // namespace weir

@@ -11,7 +11,7 @@ std::uint64_t all_voxels(const Sidecar& s) {
          static_cast<std::uint64_t>(s.source.extent.z);
 }
 
-// What became of missing voxels, in files of weir 0.1 too.
+// Returns the policy for missing voxels, also for files of weir 0.1.
 std::string policy_of(const Sidecar& s) {
   if (!s.missing.policy.empty()) return s.missing.policy;
   return s.nonfinite.policy == "keep" ? "nan" : "background";
@@ -26,7 +26,7 @@ std::uint64_t valid_voxels(const Sidecar& s) {
 
 namespace {
 
-// Whether other values take the place of voxels that are not finite or hold no data.
+// Returns whether other values replace voxels that are not finite or hold no data.
 bool replaces_voxels(const Sidecar& s) {
   return (s.nonfinite.count > 0 && s.nonfinite.policy != "keep") || (s.missing.count > 0 && policy_of(s) != "keep");
 }
@@ -39,14 +39,14 @@ std::string lossless_text(const Sidecar& s) { return replaces_voxels(s) ? "lossl
 
 namespace {
 
-// "1234 of 8000 voxels (15.4 %) ", with the first of the two verbs where it is one voxel.
+// Returns "1234 of 8000 voxels (15.4 %) " with the first of the two verbs for one voxel, the second for several.
 std::string counted(const Sidecar& s, std::uint64_t count, const char* of_one, const char* of_several) {
   return cat(count, " of ", all_voxels(s), " voxels (", share_text(count, all_voxels(s)), ") ",
              count == 1 ? of_one : of_several);
 }
 
-// What became of voxels that the background takes the place of, after what they are. Blocks lose what they lose of the
-// other voxels, and a block kept as its mean has theirs.
+// Describes voxels that the background replaces, as the end of a sentence. An inexact block changes them like its other
+// voxels, and a block kept as its mean gives them the mean.
 std::string under_background(const Sidecar& s, bool one) {
   if (s.error.lossless && s.budget.kind == "lossless") {
     return one ? " and reads as the background" : " and read as the background";

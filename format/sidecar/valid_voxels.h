@@ -1,4 +1,4 @@
-// Which voxels a certificate is of, and what is said of the others.
+// Tells which voxels a certificate covers, and describes the others.
 #pragma once
 
 #include <cstdint>
@@ -8,27 +8,28 @@
 
 namespace weir {
 
-/// Voxels that the error is of: all but those that are not finite and, unless they were kept as data, those that hold
-/// none.
+/// Returns the number of voxels that the error covers: all except those that are not finite and those that hold no
+/// data. Voxels without data count if they were kept as data.
 std::uint64_t valid_voxels(const Sidecar& sidecar);
 
-/// Whether every voxel reads as the source's, bit for bit: the file is lossless, and nothing took the place of a voxel
-/// that is not finite or holds no data.
+/// Returns whether every voxel reads as in the source, bit for bit: the file is lossless, and no voxel that is not
+/// finite or holds no data was replaced.
 bool lossless_everywhere(const Sidecar& sidecar);
 
-/// Of an error of the sidecar, of all or of what a scene shows, that is lossless: "lossless", or "lossless over valid
-/// voxels" where other values take the place of voxels that are not.
+/// Describes an error of the sidecar that is lossless, over all voxels or over what a scene shows: "lossless", or
+/// "lossless over valid voxels" if other values replace the invalid voxels.
 std::string lossless_text(const Sidecar& sidecar);
 
-/// "1234 of 8000 voxels (15.4 %) hold no data and read as the background"; of one level of several that they are not of
-/// it, or, where values stand for "no data", are without data; of a file that is not lossless, in whose inexact blocks
-/// they may read as anything, what is true of them there. Empty where none does.
+/// Returns "1234 of 8000 voxels (15.4 %) hold no data and read as the background". For one level of several: that they
+/// are not of that level or, if values stand for "no data", are without data. For a file that is not lossless, in which
+/// they may read as anything in inexact blocks: what is true there. Empty if all voxels hold data.
 std::string missing_text(const Sidecar& sidecar);
 
-/// The same of voxels that are NaN or infinite, where the background takes their place; empty where they are kept.
+/// Returns the same for voxels that are NaN or infinite, if the background replaces them; empty if they are kept.
 std::string nonfinite_text(const Sidecar& sidecar);
 
-/// "76109 of 1727781 zeros (4.4 %) lost": values that were 0 and are no longer; empty where none is lost.
+/// Returns "76109 of 1727781 zeros (4.4 %) lost", for values that were 0 and decode to another value; empty if none is
+/// lost.
 std::string lost_zeros_text(std::uint64_t lost, std::uint64_t zeros);
 
 }  // namespace weir

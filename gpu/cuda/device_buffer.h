@@ -11,8 +11,9 @@
 
 namespace weir {
 
-/// Grows where it has to: where the files of a series have one size, two buffers play it without an allocation. Beside
-/// the memory it keeps what a slower way of loading had to set up. Move only; one load at a time.
+/// Grows if a grid needs more. If the files of a series have one size, two buffers play it without further
+/// allocations. The buffer also keeps what a slower way of loading had to set up. Move only; serves one load at a
+/// time.
 class DeviceBuffer {
  public:
   DeviceBuffer() = default;
@@ -20,15 +21,15 @@ class DeviceBuffer {
   std::byte* data() const { return memory_.data(); }
   std::uint64_t capacity() const { return memory_.bytes(); }
 
-  /// Makes it at least `bytes` large, and up to a multiple of 16; its content is lost where it grows. Throws Error(io)
-  /// where the device has no room; it is empty then.
+  /// Makes the buffer at least `bytes` large, rounded up to a multiple of 16. If it grows, its content is lost.
+  /// Throws Error(io) if the device has no room; the buffer is empty then.
   void reserve(std::uint64_t bytes) {
     if (bytes <= capacity()) return;
-    memory_ = DeviceArray<std::byte>();  // first: there may be no room for both
+    memory_ = DeviceArray<std::byte>();  // freed first: there may be no room for both
     memory_ = DeviceArray<std::byte>((bytes + 15) / 16 * 16);
   }
 
-  /// Gives the memory back where it is more than an eighth larger than `bytes`.
+  /// Gives the memory back if it is more than an eighth larger than `bytes`.
   void shrink_to(std::uint64_t bytes) {
     if (capacity() > bytes + bytes / 8) memory_ = DeviceArray<std::byte>();
   }

@@ -71,7 +71,7 @@ void add_refusal(std::string& note, LoadPath path, const std::string& refusal) {
   throw Error(ErrorKind::io, cat(task.file.path(), ": cannot be brought to the device: ", note));
 }
 
-// What is in its tree are means: kernels would show those without a word.
+// The tree of a packed grid holds only means, and kernels would show them without a warning.
 void require_stored_voxels(const NvdbFile& file) {
   if (file.grid().packed() == nullptr) return;
   throw Error(ErrorKind::input,

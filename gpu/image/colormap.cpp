@@ -23,18 +23,18 @@ constexpr std::array kHeat{Stop{0.00F, {10, 4, 20}}, Stop{0.30F, {128, 18, 40}},
                            Stop{0.80F, {250, 180, 50}}, Stop{1.00F, {255, 250, 220}}};
 constexpr std::array kCoolWarm{Stop{0.00F, {52, 84, 190}}, Stop{0.25F, {126, 166, 240}}, Stop{0.50F, {224, 221, 218}},
                                Stop{0.75F, {240, 150, 118}}, Stop{1.00F, {180, 14, 42}}};
-// Dark violet to yellow over blue-green, lightness rising evenly.
+// Dark violet to yellow through blue-green; the lightness rises evenly.
 constexpr std::array kDusk{Stop{0.00F, {64, 8, 86}}, Stop{0.25F, {60, 80, 140}}, Stop{0.50F, {34, 142, 140}},
                            Stop{0.75F, {96, 202, 96}}, Stop{1.00F, {252, 230, 40}}};
-// Soft tissue, then bone. Light, because a path tracer takes it for the share of light scattered.
+// Soft tissue, then bone. Light colours, because a path tracer takes the colour as the fraction of light scattered.
 constexpr std::array kCt{Stop{0.00F, {176, 92, 76}}, Stop{0.25F, {222, 154, 124}}, Stop{0.50F, {238, 204, 172}},
                          Stop{0.75F, {248, 232, 210}}, Stop{1.00F, {255, 252, 246}}};
 // Water: deep blue to foam.
 constexpr std::array kWater{Stop{0.00F, {8, 24, 58}}, Stop{0.35F, {20, 84, 140}}, Stop{0.70F, {84, 176, 204}},
                             Stop{1.00F, {240, 252, 252}}};
-// Maps of matplotlib, whose lightness rises evenly: "viridis", "plasma", "inferno" and "magma" (S. van der Walt,
-// N. Smith and E. Firing, 2015, CC0) and "cividis" (J. Nunez, C. Anderton and R. Renslow, 2018), which looks alike to
-// the colour-blind. Each within 1/255 of its 256 colours.
+// Maps of matplotlib with evenly rising lightness: "viridis", "plasma", "inferno" and "magma" (S. van der Walt, N.
+// Smith and E. Firing, 2015, CC0) and "cividis" (J. Nunez, C. Anderton and R. Renslow, 2018), which looks the same to
+// the colour-blind. Each is within 1/255 of its 256 colours.
 constexpr std::array kViridis{
     Stop{0.0000F, {68, 1, 84}},    Stop{0.0706F, {72, 27, 109}},  Stop{0.1373F, {70, 48, 126}},
     Stop{0.2157F, {63, 72, 137}},  Stop{0.3412F, {48, 106, 142}}, Stop{0.4902F, {33, 142, 141}},

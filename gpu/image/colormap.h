@@ -1,5 +1,4 @@
-// Named colour maps: a few control points each, interpolated in sRGB and handed
-// out in linear light.
+// Named colour maps: a few control points each, interpolated in sRGB and returned in linear light.
 #pragma once
 
 #include <string_view>
@@ -9,14 +8,14 @@
 
 namespace weir {
 
-/// sRGB transfer function (IEC 61966-2-1), one channel, [0, 1] to [0, 1].
+/// The sRGB transfer function (IEC 61966-2-1) and its inverse, for one channel, [0, 1] to [0, 1].
 float srgb_from_linear(float linear);
 float linear_from_srgb(float srgb);
 
-/// Those of kColormapNames, one by one.
+/// Returns the names in kColormapNames as a list.
 std::vector<std::string_view> colormap_names();
-/// Linear RGB at `entries` equal distances over [0, 1]. Throws Error(usage) listing the names where
-/// `name` is none of them.
+/// Returns linear RGB at `entries` evenly spaced points of [0, 1]. Throws Error(usage), listing the names, if `name`
+/// is unknown.
 std::vector<Float3> colormap(std::string_view name, std::size_t entries);
 
 }  // namespace weir

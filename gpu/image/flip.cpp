@@ -18,7 +18,7 @@ namespace {
 
 using Row = std::vector<float>;
 
-// sum_i filter[i] padded[x + i] for every x of `out`.
+// Computes sum_i filter[i] padded[x + i] for every x of `out`.
 void filter_along(const Row& padded, const Filter1d& filter, float* out, std::size_t width) {
   std::fill_n(out, width, 0.0F);
   for (std::size_t i = 0; i < filter.size(); ++i) {
@@ -35,7 +35,7 @@ class Rows {
   float* row(std::size_t y) { return values_.data() + y * width_; }
   const float* row(std::size_t y) const { return values_.data() + y * width_; }
 
-  // sum_i filter[i] row(y + i): the column filter centred at row y + radius.
+  // Computes sum_i filter[i] row(y + i): the column filter centred at row y + radius.
   void filter_across(std::size_t y, const Filter1d& filter, Row& out) const {
     std::fill(out.begin(), out.end(), 0.0F);
     for (std::size_t i = 0; i < filter.size(); ++i) {
@@ -59,8 +59,8 @@ struct Filters {
   std::size_t radius() const { return std::max(filter_radius(contrast.achromatic), filter_radius(feature.smooth)); }
 };
 
-/// The rows [first, last) of a picture and those around them that the filters reach, filtered along x.
-/// Beyond its edges a picture continues with its edge pixels.
+/// The rows [first, last) of a picture and the rows around them that the filters reach, filtered along x. Outside its
+/// edges a picture continues with its edge pixels.
 class Band {
  public:
   Band(const Image& image, const Filters& filters, std::int32_t first, std::int32_t last)
@@ -75,7 +75,7 @@ class Band {
     }
   }
 
-  /// hunt_lab of the filtered picture in row `first` + y.
+  /// Returns hunt_lab of the filtered picture in row `first` + y.
   void perceived(std::size_t y, std::vector<Float3>& lab) {
     const ContrastFilters& f = filters_.contrast;
     const std::size_t top = y + margin_ - filter_radius(f.achromatic);
@@ -89,7 +89,8 @@ class Band {
     }
   }
 
-  /// Lengths of the gradient and of the second derivatives along x and y, as smoothed by the eye, in that row.
+  /// Calculates the lengths of the gradient and of the second derivatives along x and y in row `first` + y, as
+  /// smoothed by the eye.
   void features(std::size_t y, Row& edges, Row& points) {
     const FeatureFilters& f = filters_.feature;
     const std::size_t top = y + margin_ - filter_radius(f.smooth);
@@ -105,7 +106,7 @@ class Band {
 
  private:
   void filter_row(const Image& image, std::int32_t source, std::size_t row) {
-    // Four padded rows: Y, Cx, Cz, and Y from 0 to 1 for the features.
+    // Four padded rows: Y, Cx, Cz, and Y scaled to [0, 1] for the features.
     const std::size_t contrast_pad = filter_radius(filters_.contrast.achromatic);
     const std::size_t feature_pad = filter_radius(filters_.feature.smooth);
     Row y(width_ + 2 * contrast_pad);
@@ -186,7 +187,7 @@ std::vector<float> flip_errors(const Image& reference, const Image& test, double
                                       kFlipMaxPixelsPerDegree));
   }
   const Filters filters{contrast_filters(pixels_per_degree), feature_filters(pixels_per_degree)};
-  // Small enough for the cache, large enough that the rows around it, filtered again by the next, cost little.
+  // Small enough for the cache. Large enough that the rows around it, which the next band filters again, cost little.
   const std::int32_t band = 32 + 2 * static_cast<std::int32_t>(filters.radius());
   std::vector<float> errors(reference.pixels.size());
   tbb::parallel_for(0, (reference.height + band - 1) / band, [&](std::int32_t i) {

@@ -9,8 +9,8 @@ namespace {
 
 using Matrix = std::array<std::array<double, 3>, 3>;
 
-// XYZ of linear sRGB (IEC 61966-2-1), each row divided by its sum, so that white is (1, 1, 1): no illuminant appears
-// in what follows.
+// XYZ of linear sRGB (IEC 61966-2-1), with each row divided by its sum so that white is (1, 1, 1). No illuminant is
+// then needed below.
 constexpr Matrix kRelativeXyz{{{10135552.0 / 23359437, 8788810.0 / 23359437, 4435075.0 / 23359437},
                                {2613072.0 / 12288897, 8788810.0 / 12288897, 887015.0 / 12288897},
                                {1425312.0 / 80288307, 8788810.0 / 80288307, 70074185.0 / 80288307}}};
@@ -40,7 +40,7 @@ Float3 product(const Matrix& m, const Float3& v) {
   return {row(0), row(1), row(2)};
 }
 
-// The cube root, and near black the line that continues it (CIE 15:2004).
+// The cube root; near black, the line that continues it (CIE 15:2004).
 float lightness_response(float t) {
   constexpr float kDelta = 6.0F / 29;
   return t > kDelta * kDelta * kDelta ? std::cbrt(t) : t / (3 * kDelta * kDelta) + 4.0F / 29;

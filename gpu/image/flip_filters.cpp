@@ -10,8 +10,8 @@ namespace {
 
 constexpr double kPiSquared = std::numbers::pi * std::numbers::pi;
 
-/// a sqrt(pi / b) exp(-pi^2 r^2 / b), r in degrees: one term of a contrast sensitivity function after the Fourier
-/// transform. a and b of Andersson et al. 2020, table 1 (b in square degrees).
+/// One term of a contrast sensitivity function after the Fourier transform: a sqrt(pi / b) exp(-pi^2 r^2 / b), r in
+/// degrees. a and b come from Andersson et al. 2020, table 1 (b in square degrees).
 struct Sensitivity {
   double a;
   double b;
@@ -21,7 +21,7 @@ constexpr Sensitivity kRedGreen{1, 0.0053};
 constexpr Sensitivity kBlueYellowWide{34.1, 0.04};
 constexpr Sensitivity kBlueYellowNarrow{13.5, 0.025};
 constexpr double kWidestB = 0.04;
-/// Width of the features that the eye finds, in degrees (section 4.2.1).
+/// Width of the features that the eye detects, in degrees (section 4.2.1).
 constexpr double kFeatureWidth = 0.082;
 
 std::vector<double> weights(double radius, const std::function<double(double)>& weight) {
@@ -42,7 +42,7 @@ Filter1d divided(const std::vector<double>& values, double divisor) {
   return filter;
 }
 
-// Positive and negative weights divided by their own sums.
+// Divides positive and negative weights by their own sums.
 Filter1d divided_by_sign(const std::vector<double>& values) {
   double positive = 0;
   double negative = 0;
@@ -55,9 +55,9 @@ Filter1d divided_by_sign(const std::vector<double>& values) {
 }  // namespace
 
 ContrastFilters contrast_filters(double pixels_per_degree) {
-  // Three standard deviations of the widest term, for all of them.
+  // Three standard deviations of the widest term; used for all terms.
   const double radius = std::ceil(3 * std::sqrt(kWidestB / (2 * kPiSquared)) * pixels_per_degree);
-  // The square root of the factor: a term in two dimensions is the product of this along x and along y.
+  // The square root of the factor, because a term in two dimensions is the product of this one along x and along y.
   const auto term = [&](const Sensitivity& s) {
     return weights(radius, [&](double x) {
       const double degrees = x / pixels_per_degree;
@@ -68,7 +68,7 @@ ContrastFilters contrast_filters(double pixels_per_degree) {
   const std::vector<double> red_green = term(kRedGreen);
   const std::vector<double> narrow = term(kBlueYellowNarrow);
   const std::vector<double> wide = term(kBlueYellowWide);
-  // What the sum of two products must be divided by, half of it along each axis.
+  // The divisor of the sum of two products; half of it is applied along each axis.
   const double both = std::hypot(sum(narrow), sum(wide));
   return {divided(achromatic, sum(achromatic)), divided(red_green, sum(red_green)), divided(narrow, both),
           divided(wide, both)};

@@ -26,7 +26,7 @@ struct Image {
   const Float3& at(std::int32_t x, std::int32_t y) const { return pixels[index(x, y)]; }
 };
 
-/// Called with a picture's size before memory is taken for its pixels; throws to refuse it.
+/// Called with a picture's size before memory is allocated for its pixels. Throws to refuse the picture.
 using ImageSizeCheck = std::function<void(std::int32_t width, std::int32_t height)>;
 
 }  // namespace weir

@@ -17,7 +17,7 @@ namespace weir {
 
 namespace {
 
-// tinyexr's structures, freed however a reading ends.
+// tinyexr's structures, which are freed on every way out.
 struct ExrFile {
   EXRVersion version{};
   EXRHeader header{};
@@ -35,7 +35,7 @@ struct ExrFile {
   ExrFile& operator=(const ExrFile&) = delete;
 };
 
-// Throws with the library's reason where `status` is none of success.
+// Throws with the library's reason if `status` is not success.
 void check_exr(int status, const char* reason, const std::string& path) {
   const std::string text = reason != nullptr ? reason : cat("code ", status);
   if (reason != nullptr) FreeEXRErrorMessage(reason);
@@ -43,7 +43,7 @@ void check_exr(int status, const char* reason, const std::string& path) {
     throw input_error(path, cat("broken OpenEXR file (", text.substr(0, text.find('\n')), ")"));
 }
 
-// Where R, G and B are among the channels; three times the same for gray.
+// Returns where R, G and B are among the channels; for gray, three times the same channel.
 std::array<int, 3> find_channels(const EXRHeader& header, const std::string& path) {
   if (header.num_channels == 1) return {0, 0, 0};
   constexpr std::array<std::string_view, 3> kNames{"R", "G", "B"};
@@ -61,7 +61,8 @@ std::array<int, 3> find_channels(const EXRHeader& header, const std::string& pat
   return found;
 }
 
-// Copies a block of planes, `width` x `height` with rows of `pitch`, to (x0, y0), less what overhangs.
+// Copies a block of planes, `width` x `height` with rows of `pitch`, to (x0, y0), without what lies outside the
+// image.
 void place(unsigned char* const* planes, const std::array<int, 3>& channels, std::int64_t pitch, std::int64_t width,
            std::int64_t height, std::int64_t x0, std::int64_t y0, Image& image) {
   if (planes == nullptr || x0 < 0 || y0 < 0) return;
@@ -106,7 +107,7 @@ Image decode_exr(std::span<const std::byte> bytes, const std::string& path, cons
   check(static_cast<std::int32_t>(width), static_cast<std::int32_t>(height));
   reason = nullptr;
   const int loaded = LoadEXRImageFromMemory(&file.image, &file.header, memory, bytes.size(), &reason);
-  if (loaded != TINYEXR_SUCCESS) InitEXRImage(&file.image);  // it has freed what it still points to
+  if (loaded != TINYEXR_SUCCESS) InitEXRImage(&file.image);  // already freed by the failed call
   check_exr(loaded, reason, path);
 
   Image image(static_cast<std::int32_t>(width), static_cast<std::int32_t>(height));

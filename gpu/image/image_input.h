@@ -1,4 +1,4 @@
-// Pictures in linear light from disk, told apart by their first bytes.
+// Reads pictures in linear light from disk. The first bytes tell the format.
 #pragma once
 
 #include <string>
@@ -7,9 +7,9 @@
 
 namespace weir {
 
-/// RGB of an OpenEXR file (half or float channels R, G and B, or one channel for gray; scanlines or tiles)
-/// or a Radiance .hdr file, as stored, NaN and infinities included. Throws Error(input) where the file is
-/// missing, neither of the two, or broken.
+/// Returns the RGB of an OpenEXR file (half or float channels R, G and B, or one channel for gray; scanlines or
+/// tiles) or a Radiance .hdr file, as stored, including NaN and infinities. Throws Error(input) if the file is
+/// missing, of neither format, or broken.
 Image read_image(const std::string& path, const ImageSizeCheck& check);
 
 }  // namespace weir

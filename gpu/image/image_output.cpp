@@ -32,7 +32,7 @@ std::string extension_of(const std::string& path) {
   return extension;
 }
 
-// By the name that is asked for.
+// Tells the format from the requested name.
 bool is_exr(const std::string& path) {
   const std::string extension = extension_of(path);
   if (extension != ".exr" && extension != ".png") {
@@ -75,7 +75,7 @@ std::vector<std::byte> encode_png(const Image& image, const ToneMapping& tone) {
   head.width = static_cast<png_uint_32>(image.width);
   head.height = static_cast<png_uint_32>(image.height);
   head.format = PNG_FORMAT_RGB;
-  png_alloc_size_t bytes = PNG_IMAGE_PNG_SIZE_MAX(head);  // an upper bound: one pass of compression
+  png_alloc_size_t bytes = PNG_IMAGE_PNG_SIZE_MAX(head);  // an upper bound; avoids compressing twice
   std::vector<std::byte> png(bytes);
   if (png_image_write_to_memory(&head, png.data(), &bytes, 0, rows.data(), 0, nullptr) == 0) {
     throw Error(ErrorKind::internal, cat("libpng: ", head.message));

@@ -1,5 +1,5 @@
-// Pictures on disk: PNG (8-bit sRGB) and OpenEXR (32-bit linear). A picture is
-// complete or absent: it is written beside its place and renamed.
+// Writes pictures to disk: PNG (8-bit sRGB) and OpenEXR (32-bit linear). A picture is complete or absent: it is
+// written beside its final path and then renamed.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@
 
 namespace weir {
 
-/// What maps radiance to what a screen can show.
+/// Maps radiance to what a screen can show.
 struct ToneMapping {
   float exposure = 1;     ///< factor on the radiance
   bool soft_clip = true;  ///< bends radiance above kShoulder towards 1 instead of cutting it
@@ -23,25 +23,26 @@ struct ToneMapping {
 /// Radiance up to which a soft clip changes nothing.
 inline constexpr float kShoulder = 0.8F;
 
-/// Display-linear value in [0, 1] of one channel.
+/// Returns the display-linear value in [0, 1] of one channel.
 float tone_map(float radiance, const ToneMapping& tone);
 
-/// 8-bit sRGB, three bytes a pixel, rows from the top.
+/// Returns 8-bit sRGB, three bytes per pixel, rows from the top.
 std::vector<std::uint8_t> encode_rgb24(const Image& image, const ToneMapping& tone);
 std::vector<std::byte> encode_png(const Image& image, const ToneMapping& tone);
-/// Channels B, G, R in float32, radiance as it is.
+/// Encodes channels B, G, R in float32 with unchanged radiance.
 std::vector<std::byte> encode_exr(const Image& image);
 
-/// An image file to be. Opening it finds out before the rendering whether it can be written.
+/// An image file to be written. Opening it before the rendering shows whether it can be written.
 class ImageFile {
  public:
-  /// Throws Error(usage) where `path`, which the option `output` gives, does not end in .png or .exr, or is a
-  /// directory, and as PartialFile. `files` must outlive the object.
+  /// Throws Error(usage) if `path`, the value of the option `output`, does not end in .png or .exr or is a directory,
+  /// and the errors of PartialFile. `files` must outlive the object.
   ImageFile(FileSystem& files, const std::string& path, bool overwrite);
 
-  /// Whether it will hold radiance, as OpenEXR does, and not what a screen shows.
+  /// Returns whether the file holds radiance, as OpenEXR does, and not what a screen shows.
   bool linear() const { return exr_; }
-  /// Encodes by the extension, writes, renames to `path`; returns the bytes written. Throws as PartialFile::commit.
+  /// Encodes the picture by the path's extension, writes it and renames it to `path`. Returns the bytes written.
+  /// Throws the errors of PartialFile::commit.
   std::uint64_t commit(const Image& image, const ToneMapping& tone);
 
  private:

@@ -17,7 +17,7 @@ namespace weir {
 
 namespace {
 
-/// libpng's reader, freed however a reading ends.
+/// libpng's reader, which is freed on every way out.
 struct PngFile {
   png_image head{};
 
@@ -41,7 +41,8 @@ Image read_png(const std::string& path) {
   const auto broken = [&] { throw input_error(path, cat("broken PNG file (", head.message, ")")); };
   if (png_image_begin_read_from_memory(&head, bytes.data(), bytes.size()) == 0) broken();
   if ((head.format & PNG_FORMAT_FLAG_LINEAR) != 0) throw input_error(path, "16 bits a channel; give a PNG of 8");
-  // Deflate shrinks to no less than 1/1032, and a pixel is one bit at least: do not take memory on a header's word.
+  // A header may lie, so check it before allocating memory: deflate compresses to no less than 1/1032, and a pixel
+  // has at least one bit.
   const std::uint64_t pixels = std::uint64_t{head.width} * head.height;
   if (pixels / 8 / 1032 > bytes.size()) {
     throw input_error(path,

@@ -1,4 +1,4 @@
-// PNG pictures from disk, as a display shows them.
+// Reads PNG pictures from disk, as a display shows them.
 #pragma once
 
 #include <string>
@@ -7,9 +7,9 @@
 
 namespace weir {
 
-/// The picture in linear light, [0, 1]: gray and palettes become RGB; a gamma that the file states counts, else it is
-/// sRGB. Throws Error(input) where the file is missing, no PNG or broken, or where no one picture of 8 bits a channel
-/// is in it: 16 bits, or transparent pixels.
+/// Returns the picture in linear light, [0, 1]. Gray and palettes become RGB. Applies the gamma that the file states,
+/// otherwise sRGB. Throws Error(input) if the file is missing, no PNG or broken, or if it has 16 bits per channel or
+/// transparent pixels.
 Image read_png(const std::string& path);
 
 }  // namespace weir

@@ -12,7 +12,7 @@ namespace weir {
 
 namespace {
 
-constexpr std::int32_t kLeastPackedWidth = 8;      // scanlines narrower or wider than these
+constexpr std::int32_t kLeastPackedWidth = 8;      // scanlines outside these widths
 constexpr std::int32_t kMostPackedWidth = 0x7fff;  // are never packed by component
 
 using Rgbe = std::array<std::uint8_t, 4>;
@@ -36,7 +36,7 @@ class Reader {
     for (std::uint8_t& component : p) component = byte();
     return p;
   }
-  /// A line of the header without its end: a line feed, or both characters of Windows.
+  /// Returns a line of the header without its end, which is a line feed or Windows's two characters.
   std::string_view line() {
     const char* first = reinterpret_cast<const char*>(bytes_.data()) + at_;
     const std::string_view rest(first, bytes_.size() - at_);
@@ -72,7 +72,7 @@ void read_size(Reader& reader, std::int32_t& width, std::int32_t& height) {
   height = static_cast<std::int32_t>(*h);
 }
 
-// One component of a scanline: runs (length + 128, value) and literals (length, values).
+// Reads one component of a scanline: runs (length + 128, value) and literals (length, values).
 void read_component(Reader& reader, std::vector<Rgbe>& row, std::size_t component) {
   for (std::size_t x = 0; x < row.size();) {
     const std::uint8_t code = reader.byte();
@@ -87,8 +87,8 @@ void read_component(Reader& reader, std::vector<Rgbe>& row, std::size_t componen
   }
 }
 
-// Pixel by pixel, as old files have them: (1, 1, 1, n) repeats the pixel before, n times; several in a row
-// are the digits of n, the lowest first.
+// Reads a scanline pixel by pixel, as old files store it. (1, 1, 1, n) repeats the previous pixel n times. If several
+// follow each other, they are the digits of n, the lowest first.
 void read_flat(Reader& reader, std::vector<Rgbe>& row, Rgbe first) {
   int shift = 0;
   Rgbe p = first;

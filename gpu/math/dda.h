@@ -23,11 +23,11 @@ struct CellSpan {
   float t1 = 0;
 };
 
-/// Where a walk is. The lattice and the ray, which do not change along it, are named again at each step, so that a
+/// The position of a walk. The lattice and the ray, which do not change, are passed again at each step, so that a
 /// thread's registers hold no second copy of them.
 class CellWalk {
  public:
-  /// Walks [t0, t1] of a ray that lies inside the domain there.
+  /// Walks [t0, t1] of a ray. The ray lies inside the domain there.
   WEIR_HOST_DEVICE CellWalk(const CellLattice& lattice, const Ray& ray, float t0, float t1)
       : t_(t0), end_(t1), inside_(t0 < t1) {
     const Float3 start = ray.at(t0);
@@ -36,8 +36,8 @@ class CellWalk {
     z_.set(lattice.count.z, lattice.shift.z, ray.origin.z, ray.direction.z, start.z, lattice.edge);
   }
 
-  /// The next cell; false behind the last. Spans may be empty where a ray runs through an edge or corner. `lattice` and
-  /// `ray` are the constructor's.
+  /// Moves to the next cell; returns false after the last. A span may be empty if the ray passes through an edge or
+  /// corner. `lattice` and `ray` are those of the constructor.
   WEIR_HOST_DEVICE bool next(const CellLattice& lattice, const Ray& ray, CellSpan& span) {
     if (!inside_) return false;
     const float exit = lesser(x_.exit, lesser(y_.exit, z_.exit));
@@ -59,25 +59,25 @@ class CellWalk {
  private:
   struct Axis {
     std::int32_t cell;
-    float inverse;  ///< of the direction, finite; 0: none along this axis
+    float inverse;  ///< inverse of the direction, finite; 0: the ray does not move along this axis
     float exit;     ///< parameter at which the ray leaves the cell
 
     WEIR_HOST_DEVICE void set(std::int32_t cells, std::int32_t shift, float origin, float direction, float start,
                               float edge) {
-      // A slower ray moves less than any position's precision along this axis; its inverse would overflow.
+      // A smaller component moves less than a position's precision along this axis, and its inverse would overflow.
       inverse = std::abs(direction) < 1e-30F ? 0.0F : 1.0F / direction;
       const float at = clamped((start + static_cast<float>(shift)) / edge, 0.0F, static_cast<float>(cells));
       cell = lesser(static_cast<std::int32_t>(at), cells - 1);
       set_exit(shift, origin, edge);
     }
 
-    // Computed from the border itself, never accumulated.
+    // Computed from the border itself and never accumulated, so that errors do not grow.
     WEIR_HOST_DEVICE void set_exit(std::int32_t shift, float origin, float edge) {
       const auto face = static_cast<float>(inverse > 0.0F ? cell + 1 : cell) * edge;
       exit = inverse == 0.0F ? kInfinity : (face - (origin + static_cast<float>(shift))) * inverse;
     }
 
-    // False where there is no further cell.
+    // Returns false if there is no further cell.
     WEIR_HOST_DEVICE bool advance(std::int32_t cells, std::int32_t shift, float origin, float edge) {
       if (inverse == 0.0F) return false;
       cell += inverse > 0.0F ? 1 : -1;

@@ -1,4 +1,4 @@
-// From the host's 64-bit indices and doubles to the 32 bits that tracers count in.
+// Converts the host's 64-bit indices and doubles to the 32-bit numbers of the tracers.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace weir {
 
-/// `i` fits 32 bits along each axis.
+/// `i` must fit 32 bits along each axis.
 inline Int3 narrow(const Index3& i) {
   return {static_cast<std::int32_t>(i.x), static_cast<std::int32_t>(i.y), static_cast<std::int32_t>(i.z)};
 }

@@ -19,13 +19,14 @@ template <class T>
 WEIR_HOST_DEVICE constexpr T greater(T a, T b) {
   return a < b ? b : a;
 }
-/// `v` moved into [lo, hi]; NaN becomes lo.
+/// Returns `v` moved into [lo, hi]; NaN becomes lo.
 template <class T>
 WEIR_HOST_DEVICE constexpr T clamped(T v, T lo, T hi) {
   return v > lo ? (v < hi ? v : hi) : lo;
 }
 
-/// a b + c, rounded twice: compilers may not make one operation of it, so that it is the same in every kernel.
+/// Returns a b + c, rounded twice. Compilers may not fuse it into one operation, so the result is the same in every
+/// kernel.
 WEIR_HOST_DEVICE inline float multiply_add(float a, float b, float c) {
 #if defined(__CUDA_ARCH__)
   return __fadd_rn(__fmul_rn(a, b), c);
@@ -34,10 +35,10 @@ WEIR_HOST_DEVICE inline float multiply_add(float a, float b, float c) {
 #endif
 }
 
-/// False for NaN and both infinities.
+/// Returns false for NaN and both infinities.
 WEIR_HOST_DEVICE inline bool is_finite(float v) { return v - v == 0.0F; }
 
-/// (1 - t) a + t b: no overflow for finite a, b of any sign, unlike a + t (b - a).
+/// Returns (1 - t) a + t b. Unlike a + t (b - a), it does not overflow for finite a and b of any sign.
 WEIR_HOST_DEVICE inline float mix(float a, float b, float t) { return (1.0F - t) * a + t * b; }
 
 }  // namespace weir

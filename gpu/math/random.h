@@ -1,5 +1,5 @@
-// Random numbers of one sample of one pixel. The stream depends on (seed, pixel,
-// sample) alone, so an image does not depend on threads, tiles or back end.
+// Random numbers of one sample of one pixel. The sequence depends only on (seed, pixel, sample), so an image does not
+// depend on threads, tiles or back end.
 #pragma once
 
 #include "format/base/mix_bits.h"
@@ -22,7 +22,7 @@ class Random {
     return (xorshifted >> rotation) | (xorshifted << ((32U - rotation) & 31U));
   }
 
-  /// Uniform in [0, 1): a multiple of 2^-24, 0 included, 1 never.
+  /// Returns a uniform number in [0, 1): a multiple of 2^-24 that may be 0 and is never 1.
   WEIR_HOST_DEVICE float uniform() { return static_cast<float>(bits() >> 8U) * 0x1p-24F; }
 
  private:
@@ -32,7 +32,8 @@ class Random {
   std::uint64_t increment_;
 };
 
-/// Optical depth to the next tentative collision, exponentially distributed; finite for u in [0, 1).
+/// Returns the optical depth to the next tentative collision, exponentially distributed. It is finite for u in [0,
+/// 1).
 WEIR_HOST_DEVICE inline float free_depth(float u) { return -std::log(1.0F - u); }
 
 }  // namespace weir

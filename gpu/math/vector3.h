@@ -1,5 +1,5 @@
-// Three floats as position, direction or linear RGB, and three integers as a
-// voxel or cell index, for host and device.
+// Three floats as position, direction or linear RGB, and three integers as a voxel or cell index. For host and
+// device.
 #pragma once
 
 #include "gpu/math/portable.h"
@@ -22,7 +22,8 @@ struct Int3 {
   friend constexpr bool operator==(const Int3&, const Int3&) = default;
 };
 
-/// Position of `i`, 0 <= i < count, in a table of count.x * count.y * count.z entries, 2^31 at most, x fastest.
+/// Returns the position of `i`, 0 <= i < count, in a table of count.x * count.y * count.z entries (at most 2^31), x
+/// fastest.
 WEIR_HOST_DEVICE inline std::uint32_t table_index(const Int3& i, const Int3& count) {
   const auto wide = [](std::int32_t n) { return static_cast<std::uint32_t>(n); };
   return wide(i.x) + wide(count.x) * (wide(i.y) + wide(count.y) * wide(i.z));
@@ -50,11 +51,11 @@ WEIR_HOST_DEVICE constexpr Float3 cross(const Float3& a, const Float3& b) {
 }
 WEIR_HOST_DEVICE inline float length(const Float3& a) { return std::sqrt(dot(a, a)); }
 WEIR_HOST_DEVICE constexpr float max_component(const Float3& a) { return greater(a.x, greater(a.y, a.z)); }
-/// `a` scaled to length 1; `fallback` where a is zero or not finite.
+/// Returns `a` scaled to length 1, or `fallback` if `a` is zero or not finite.
 WEIR_HOST_DEVICE inline Float3 normalised(const Float3& a, const Float3& fallback) {
   const float l = length(a);
   if (l > 1e-15F && l < 1e15F) return a * (1.0F / l);
-  // Squares of such values leave the range of floats.
+  // The squares of the remaining values leave the range of floats.
   const float largest = max_component({std::abs(a.x), std::abs(a.y), std::abs(a.z)});
   const Float3 scaled = a / Float3{largest, largest, largest};
   const float s = length(scaled);
@@ -62,7 +63,7 @@ WEIR_HOST_DEVICE inline Float3 normalised(const Float3& a, const Float3& fallbac
 }
 WEIR_HOST_DEVICE inline Float3 mix(const Float3& a, const Float3& b, float t) { return a * (1.0F - t) + b * t; }
 
-/// Two unit vectors that complete unit `n` to a right-handed orthonormal frame.
+/// Sets two unit vectors that complete unit `n` to a right-handed orthonormal frame.
 /// Duff et al., Building an Orthonormal Basis, Revisited, JCGT 6(1), 2017.
 WEIR_HOST_DEVICE inline void frame(const Float3& n, Float3& u, Float3& v) {
   const float sign = n.z < 0.0F ? -1.0F : 1.0F;

@@ -24,7 +24,8 @@ namespace weir {
 /// alone takes some hundred MiB of the process.
 inline constexpr std::uint64_t kLeastMemoryOfDevice = std::uint64_t{1} << 30U;
 
-/// What to call when a device fails: tells `notice` (may be null) why, and that the CPU takes over.
+/// Returns the function to call when a device fails: it tells `notice` (may be null) why, and that the CPU takes
+/// over.
 inline std::function<void(const Error&)> say_device_failure(const Notice& notice) {
   return [notice](const Error& error) {
     if (notice)
@@ -32,11 +33,11 @@ inline std::function<void(const Error&)> say_device_failure(const Notice& notice
   };
 }
 
-/// The coder that `choice` asks for: one on the calling thread's current device, or null for the CPU. With
-/// CoderChoice::cpu it is null. CoderChoice::automatic takes a device that works, where the conversion writes `packed`
-/// blocks and its `memory` is kLeastMemoryOfDevice bytes or more; `notice` is told of one that does not work.
-/// CoderChoice::cuda takes the device, and throws Error(usage) where this build or this machine has none, Error(io)
-/// where it has no room. If the device fails later, `notice` is told once, and the CPU goes on.
+/// Returns the coder that `choice` asks for: one on the calling thread's current device, or null for the CPU.
+/// CoderChoice::cpu gives null. CoderChoice::automatic takes a working device if the conversion writes `packed`
+/// blocks and its `memory` is kLeastMemoryOfDevice bytes or more; `notice` is told of a device that does not work.
+/// CoderChoice::cuda takes the device. It throws Error(usage) if this build or this machine has none, Error(io) if
+/// the device has no room. If the device fails later, `notice` is told once, and the CPU continues.
 inline std::unique_ptr<BlockCoder> choose_coder(CoderChoice choice, bool packed, std::uint64_t memory,
                                                 const Notice& notice) {
   if (choice == CoderChoice::cpu) return nullptr;

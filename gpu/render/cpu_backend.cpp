@@ -23,7 +23,7 @@ class CpuVolume : public LoadedVolume {
   virtual Picture render(const Scene& scene, const RenderOptions& options, const CpuRenderOptions& sampling) = 0;
 };
 
-// The voxels of a mapped file: the leaves stay where they are, or are decoded.
+// The voxels of a mapped file. The leaves are read in the mapping, or decoded if the file is packed.
 struct FileVoxels {
   std::shared_ptr<const NvdbFile> file;
   LeafTable table;
@@ -31,7 +31,7 @@ struct FileVoxels {
   MeanPyramid pyramid(int first, int threads) const {
     return {file->grid().index_bbox(), table.view(), first, threads};
   }
-  // `seen(sampler)` is the volume that is rendered.
+  // `seen(sampler)` returns the volume that is rendered.
   template <class Seen>
   Image render(const RenderSetup& setup, Filter filter, const CpuRenderOptions& sampling, CacheCounts& /*counts*/,
                const Seen& seen) const {
@@ -50,7 +50,7 @@ struct DenseVoxels {
   }
 };
 
-// The voxels of a packed file that do not fit into memory.
+// The voxels of a packed file whose decoded blocks do not fit into memory.
 struct CachedVoxels {
   std::shared_ptr<const NvdbFile> file;
   std::unique_ptr<CachedBlocks> blocks;
@@ -73,7 +73,7 @@ struct CachedVoxels {
 template <class Voxels>
 class CpuVolumeOf : public CpuVolume {
  public:
-  // Levels of detail take `level_bytes` at most.
+  // Levels of detail take at most `level_bytes`.
   CpuVolumeOf(Voxels voxels, MacrocellGrid cells, const VolumeInfo& info, const LoadSummary& summary,
               std::uint64_t level_bytes)
       : voxels_(std::move(voxels)),
@@ -107,7 +107,8 @@ class CpuVolumeOf : public CpuVolume {
   }
 
  private:
-  // Null where the picture has no use for levels. Kept for the next picture that wants the same ones.
+  // Returns null if the picture has no use for levels. The pyramid is kept for the next picture that needs the same
+  // levels.
   const MeanPyramid* pyramid(const RenderSetup& setup, int threads, std::string& note) {
     if (!setup.levels()) return nullptr;
     const int first = finest_level_within(level_lattice(info_.frame.domain), setup.levels()->finest, level_bytes_);
@@ -168,7 +169,7 @@ class CpuBackend : public Backend {
  private:
   static std::int64_t cell_or_default(std::int64_t cell) { return cell == 0 ? kMacrocell : cell; }
 
-  // `summary` is without the macrocells.
+  // `summary` does not yet count the macrocells.
   template <class Voxels>
   static std::unique_ptr<LoadedVolume> volume_of(Voxels voxels, const NvdbFile& file, std::int64_t cell,
                                                  LoadSummary summary, std::uint64_t level_bytes) {

@@ -18,13 +18,14 @@ namespace weir {
 namespace {
 
 constexpr std::int32_t kTile = 16;            // pixels
-constexpr std::uint32_t kSamplesPerPass = 4;  // a tile of a pass is some milliseconds of work
+constexpr std::uint32_t kSamplesPerPass = 4;  // one tile takes some milliseconds per pass
 
 oneapi::tbb::task_arena make_arena(int threads) {
   return oneapi::tbb::task_arena(threads > 0 ? threads : oneapi::tbb::task_arena::automatic);
 }
 
-// The picture that `options` go on with, or an empty one; without `kept` its pixels' samples are not counted.
+// Returns the picture that `options` continue, or an empty one. Without `kept`, the samples of each pixel are not
+// counted.
 KeptPixels begun_picture(const RenderFrame& frame, const CpuRenderOptions& options) {
   KeptPixels picture;
   if (options.kept != nullptr) picture = std::exchange(*options.kept, {});
@@ -61,7 +62,7 @@ Image render_cpu(std::span<const RenderTask<Volume>> tasks, const CpuRenderOptio
         if (cancelled()) return;  // a pixel of a dense volume may take milliseconds
         const std::size_t pixel = image.index(x, y);
         if (!picture.samples.empty()) {
-          if (picture.samples[pixel] >= last) continue;  // drawn before the picture was given up
+          if (picture.samples[pixel] >= last) continue;  // drawn before the picture was cancelled
           picture.samples[pixel] = last;
         }
         for (std::uint32_t s = first; s < last; ++s) image.pixels[pixel] += render_sample(task, x, y, s);
@@ -72,7 +73,7 @@ Image render_cpu(std::span<const RenderTask<Volume>> tasks, const CpuRenderOptio
     }
   };
 
-  // More threads than cores are granted too: who asks for them wants to see them.
+  // A caller that asks for more threads than cores gets them.
   std::optional<ForkGuard> forks;
   std::optional<oneapi::tbb::global_control> limit;
   if (options.threads > 0) {

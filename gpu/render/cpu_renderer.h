@@ -1,5 +1,5 @@
-// The CPU back end: tiles of a picture on oneTBB, a few samples a pass. The
-// picture depends on task and sample count alone, never on threads.
+// The CPU renderer: draws tiles of a picture on oneTBB, a few samples per pass. The picture depends only on the task
+// and the sample count, never on the number of threads.
 #pragma once
 
 #include <cstddef>
@@ -16,19 +16,19 @@
 namespace weir {
 
 struct CpuRenderOptions : SampleOptions {
-  int threads = 0;  ///< 0: all of the machine's
+  int threads = 0;  ///< 0 means all of the machine's
 };
 
-/// Most threads that render, of those asked for.
+/// Returns the largest number of threads that render if `threads` are asked for (0: all of the machine's).
 std::size_t render_threads(int threads);
 
-/// The mean of all samples. Throws Error(interrupted) where `cancel` was set, after which `kept` has what was drawn,
-/// and what a look-up in the volume throws. Of VolumeSampler, DenseSampler and CachedSampler, with or without levels of
-/// detail in memory.
+/// Returns the mean of all samples. Throws Error(interrupted) if `cancel` is set; `kept` then holds what was drawn.
+/// Passes on what a look-up in the volume throws. Instantiated for VolumeSampler, DenseSampler and CachedSampler,
+/// each with or without levels of detail in memory.
 template <class Volume>
 Image render_cpu(const RenderTask<Volume>& task, const CpuRenderOptions& options);
-/// The same of volumes that only one thread at a time may use: `tasks` are of the same picture, one for each of
-/// render_threads(options.threads).
+/// Does the same for volumes that only one thread at a time may use. All `tasks` are of the same picture; there is
+/// one for each of render_threads(options.threads).
 template <class Volume>
 Image render_cpu(std::span<const RenderTask<Volume>> tasks, const CpuRenderOptions& options);
 

@@ -1,4 +1,4 @@
-// What was drawn of a picture before it was given up, so that the next call goes on with it.
+// What was drawn of a picture before it was cancelled, so that the next call continues it.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +10,10 @@
 namespace weir {
 
 struct KeptPixels {
-  Image sums;                          ///< of the radiance of the samples
-  std::vector<std::uint32_t> samples;  ///< that each pixel has; empty: nothing was drawn
+  Image sums;                          ///< sums of the samples' radiance
+  std::vector<std::uint32_t> samples;  ///< number of samples of each pixel; empty: nothing was drawn
 
-  /// Samples of all pixels.
+  /// Returns the number of samples of all pixels.
   std::uint64_t drawn() const { return std::accumulate(samples.begin(), samples.end(), std::uint64_t{0}); }
 };
 

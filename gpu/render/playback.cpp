@@ -15,7 +15,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// What `work` returns, and its time added to `seconds`: each stage has a sum of its own.
+// Returns what `work` returns and adds its time to `seconds`. Each stage has its own sum.
 template <class Work>
 auto timed(double& seconds, const Work& work) {
   struct Stop {
@@ -39,8 +39,8 @@ PlaybackReport play(Backend& backend, std::span<const std::string> files, const 
   PlaybackReport report;
   const Clock::time_point start = Clock::now();
   Clock::time_point first_written = start;
-  // Of the stages' threads, of which each is waited for before the next of its kind starts. A future of std::async
-  // waits when it goes, so that no thread outlives this function.
+  // Each stage has at most one thread: it is waited for before the stage's next one starts. A future of std::async
+  // waits in its destructor, so no thread outlives this function.
   const auto load = [&](const std::string& path, std::unique_ptr<LoadedVolume> reuse) {
     const auto loaded = [&] { return backend.load(std::make_shared<const NvdbFile>(path), 0, std::move(reuse)); };
     return timed(report.load_s, [&] { return naming_volume(path, loaded); });
@@ -59,7 +59,7 @@ PlaybackReport play(Backend& backend, std::span<const std::string> files, const 
     try {
       volume = loading.get();
     } catch (const Error& error) {
-      // Where two volumes find no room, one may.
+      // If there is no room for two volumes, there may be room for one.
       if (error.kind() != ErrorKind::io || !done) throw;
       done.reset();
       volume = load(files[step], nullptr);

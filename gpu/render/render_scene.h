@@ -1,6 +1,5 @@
-// Everything one picture of one grid needs on the CPU: leaf table, macrocells and
-// the set-up that a scene asks for. Owns the tables that the RenderTask points
-// into; the grid's bytes stay where they are mapped.
+// Everything that one picture of one grid needs on the CPU: leaf table, macrocells and the set-up that a scene asks
+// for. Owns the tables that the RenderTask points into; the grid's bytes stay mapped.
 #pragma once
 
 #include "gpu/render/render_setup.h"
@@ -10,8 +9,8 @@ namespace weir {
 
 class RenderScene {
  public:
-  /// `grid`'s bytes must outlive the object. Throws Error(input) where the grid is too large for the
-  /// leaf table, and as RenderSetup.
+  /// `grid`'s bytes must outlive the object. Throws Error(input) if the grid is too large for the leaf table, and the
+  /// errors of RenderSetup.
   RenderScene(const NvdbGrid& grid, const Scene& scene, const RenderOptions& options);
   RenderScene(const RenderScene&) = delete;
   RenderScene& operator=(const RenderScene&) = delete;

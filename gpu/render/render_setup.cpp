@@ -15,7 +15,7 @@ namespace weir {
 
 namespace {
 
-// What a mode looks best with where the scene says nothing.
+// What a mode looks best with if the scene sets nothing.
 struct ModeDefaults {
   std::string_view colormap;
   double density;  // optical depth of the longest edge at opacity 1
@@ -39,26 +39,27 @@ ModeDefaults defaults_of(RenderMode mode) {
   return {"gray", 1, {0, 0, 0}, 1};
 }
 
-// The grid's range where it is one; NaN policies of other writers may leave none, then the cells'.
+// Returns the grid's stored range if it is finite. Other writers' NaN policies may leave none; then the cells' range
+// is returned.
 MinMax value_range(const NvdbGrid& grid, const MacrocellGrid& cells) {
   const MinMax stored{grid.value_min(), grid.value_max()};
   return has_finite_ends(stored) ? stored : cells.finite_range().value_or(MinMax{0, 1});
 }
 
-// In double: scenes may have directions of any length.
+// Calculates in double, because the directions of a scene may have any length.
 Float3 unit_vector(const Double3& v) {
   const double largest = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
   if (!(largest > 0)) return {0, 0, 1};
   return normalised(narrow(Double3{v[0] / largest, v[1] / largest, v[2] / largest}), {0, 0, 1});
 }
 
-// Of the domain, in shortest voxel edges.
+// Returns the longest edge of the domain, in shortest voxel edges.
 double longest_edge(const GridFrame& frame) {
   const Double3 size = frame.size();
   return *std::max_element(size.begin(), size.end());
 }
 
-// In the world.
+// Returns the edge in world units.
 double shortest_voxel_edge(const GridFrame& frame) {
   return *std::min_element(frame.voxel_size.begin(), frame.voxel_size.end());
 }
@@ -71,14 +72,14 @@ Lighting make_lighting(const Scene& scene, const ModeDefaults& defaults, const E
   light.zenith = narrow(s.zenith.value_or(Double3{0.6, 0.68, 0.8}));
   light.horizon = narrow(s.horizon.value_or(Double3{0.6, 0.6, 0.6}));
   light.ground = narrow(s.ground.value_or(Double3{0.22, 0.2, 0.18}));
-  // The default ground is what a screen shows, whatever the exposure.
+  // The default background looks the same on the screen at any exposure.
   const double exposure = std::max(s.exposure.value_or(defaults.exposure), 1e-6);
   const Double3& ground = defaults.background;
   light.background =
       narrow(s.background.value_or(Double3{ground[0] / exposure, ground[1] / exposure, ground[2] / exposure}));
   light.sky_behind = s.environment_behind;
   std::vector<SceneLight> key{{{0.6, -0.5, 0.9}, {2.2, 2.1, 1.9}}};
-  if (environment != nullptr) key.clear();  // it has its own sun
+  if (environment != nullptr) key.clear();  // an environment has its own sun
   for (const SceneLight& l : s.lights.value_or(key)) {
     if (light.light_count == kMaxLights) break;
     light.lights[light.light_count++] = {unit_vector(l.direction), narrow(l.irradiance)};
@@ -109,7 +110,8 @@ TransferFunction picture_transfer(const VolumeInfo& volume, const Scene& scene, 
                                 defaults_of(scene.mode).colormap);
 }
 
-// Between the background and the value farthest from it: a surface of the background's noise shows nothing.
+// The value lies between the background and the value farthest from it. A surface in the background's noise shows
+// nothing.
 float picture_iso(const SceneVolume& volume, const TransferFunction& transfer, float background) {
   if (volume.iso) return static_cast<float>(*volume.iso);
   const double low = transfer.low();
@@ -122,10 +124,10 @@ float picture_iso(const SceneVolume& volume, const TransferFunction& transfer, f
 float picture_density(const Scene& scene, const GridFrame& frame) { return picture_density(scene, frame, frame); }
 
 float picture_density(const Scene& scene, const GridFrame& frame, const GridFrame& along) {
-  // In shortest edges of `frame`; a frame along itself has a ratio of exactly 1.
+  // The edge of `along` in shortest voxel edges of `frame`. If both are the same frame, the ratio is exactly 1.
   const double longest = longest_edge(along) * (shortest_voxel_edge(along) / shortest_voxel_edge(frame));
   const double density = scene.volume.density.value_or(defaults_of(scene.mode).density) / longest;
-  return static_cast<float>(std::min(density, static_cast<double>(FLT_MAX)));  // infinity times no opacity is no number
+  return static_cast<float>(std::min(density, static_cast<double>(FLT_MAX)));  // infinity times no opacity is NaN
 }
 
 RenderSetup::RenderSetup(const VolumeInfo& volume, const MacrocellGrid& cells, const Scene& scene,
@@ -136,7 +138,7 @@ RenderSetup::RenderSetup(const VolumeInfo& volume, const MacrocellGrid& cells, c
       environment_(options.environment ? options.environment : load_environment(scene)) {
   const ModeDefaults defaults = defaults_of(scene.mode);
 
-  // From the domain's lowest corner.
+  // Returns the position relative to the domain's lowest corner.
   const auto local = [&](const Index3& i) {
     const Index3 offset = i - domain_.lo;
     return Float3{static_cast<float>(offset.x), static_cast<float>(offset.y), static_cast<float>(offset.z)};
@@ -161,7 +163,7 @@ RenderSetup::RenderSetup(const VolumeInfo& volume, const MacrocellGrid& cells, c
   frame_.width = options.width;
   frame_.height = options.height;
   frame_.seed = options.seed;
-  // Sample positions are counted in floats: at most 2^22 along the longest way through.
+  // Sample positions are counted in floats, so there are at most 2^22 along the longest way through the volume.
   frame_.step = static_cast<float>(std::max(0.5, 2 * longest_edge(volume.frame) / (1 << 22)));
   frame_.shading = static_cast<float>(scene.volume.shading);
   frame_.max_bounces = scene.volume.max_bounces;
@@ -181,15 +183,16 @@ const std::vector<float>& RenderSetup::majorants() const {
   return majorants_;
 }
 
-// What is nearest to the camera and farthest from it, of what is shown, bounds the levels.
+// The nearest and the farthest point that is shown bound the levels.
 std::optional<LevelsUsed> RenderSetup::levels_for(const LevelOfDetail& detail) const {
   const Camera& camera = frame_.camera;
   const float pixel = std::min(2 * length(camera.right) / static_cast<float>(frame_.width),
                                2 * length(camera.down) / static_cast<float>(frame_.height));
   LevelsUsed used;
-  // Cubes have as many voxels along each axis: where voxels are longest, they must not be wider than the pixel.
+  // A cube has the same number of voxels along each axis. Along the axis with the longest voxels it must not be wider
+  // than the pixel.
   used.choice = {camera.position, medium_.stretch, std::log2(pixel / max_component(medium_.stretch)) + detail.bias, 0};
-  // Nothing scatters but light on a path.
+  // Only light on a path scatters.
   used.choice.scattered = used.choice.camera + (frame_.mode == RenderMode::path ? detail.scattered : 0);
   used.coarsest = used.choice.level(farthest_point(medium_.shown, camera.position), RayKind::scattered);
   if (!(used.coarsest > 0)) return std::nullopt;
@@ -198,7 +201,7 @@ std::optional<LevelsUsed> RenderSetup::levels_for(const LevelOfDetail& detail) c
   return used;
 }
 
-// The scene's region, or the whole domain.
+// Returns the scene's region, or the whole domain.
 Box RenderSetup::shown(const Scene& scene) const {
   if (!scene.volume.region) return domain_;
   const Box box = intersect(*scene.volume.region, domain_);
@@ -208,7 +211,7 @@ Box RenderSetup::shown(const Scene& scene) const {
                                     ", ", d.hi.x, "], [", d.lo.y, ", ", d.hi.y, "], [", d.lo.z, ", ", d.hi.z, "]]"));
 }
 
-// What the camera frames: an opacity below a hundredth is a haze that nobody looks at.
+// Returns the boxes that the camera frames. An opacity below a hundredth is only haze and is ignored.
 std::vector<Box> RenderSetup::framed(const Scene& scene) const {
   const Box all = shown(scene);
   if (scene.camera.framing == Framing::volume) return {all};

@@ -1,5 +1,5 @@
-// All that one picture of a volume needs but the voxels: camera, light, transfer function and majorants as a scene asks
-// for them.
+// All that one picture of a volume needs except the voxels: camera, light, transfer function and majorants, as a
+// scene asks for them.
 #pragma once
 
 #include <cstdint>
@@ -22,10 +22,10 @@
 
 namespace weir {
 
-/// How coarse a picture may see its volume.
+/// How coarsely a picture may sample its volume.
 struct LevelOfDetail {
-  float bias = 0;       ///< levels above the one whose cubes of voxels are as wide as a pixel
-  float scattered = 0;  ///< further levels for rays after a collision; light is then a little off
+  float bias = 0;       ///< levels added to the level at which a cube of voxels is as wide as a pixel
+  float scattered = 0;  ///< levels added further for rays after a collision; the light is then slightly inexact
 };
 
 struct RenderOptions {
@@ -33,62 +33,64 @@ struct RenderOptions {
   std::int32_t height = 720;  ///< pixels
   Filter filter = Filter::trilinear;
   std::uint64_t seed = 0;
-  std::int64_t cell = kMacrocell;  ///< voxels along a macrocell's edge, at least
-  /// Instead of the volume's own, so that all steps of a series look alike.
+  std::int64_t cell = kMacrocell;  ///< least number of voxels along a macrocell's edge
+  /// Replaces the volume's own background, so that all steps of a series look alike.
   std::optional<float> background = std::nullopt;
-  /// None: every look-up sees voxels.
+  /// If empty, every look-up reads voxels.
   std::optional<LevelOfDetail> levels = std::nullopt;
-  /// The scene's; null: loaded from where the scene says. Give it to render the scene again without loading it.
+  /// The scene's environment. If null, it is loaded from the path in the scene. Pass it to render the scene again
+  /// without loading it again.
   std::shared_ptr<const Environment> environment = nullptr;
-  /// Whose longest edge the scene's density counts along instead of the volume's own, so that an opacity has one
-  /// extinction in the world in all steps of a series, whatever their boxes and voxels.
+  /// The frame that gives the scene's density its longest edge, instead of the volume's own frame. With it, an
+  /// opacity has the same extinction in the world in all steps of a series, whatever their boxes and voxel sizes.
   std::optional<GridFrame> density_frame = std::nullopt;
 };
 
 /// What a picture depends on besides the voxels.
 struct VolumeInfo {
   GridFrame frame;
-  MinMax range{0, 1};    ///< of the values; finite
-  float background = 0;  ///< the value that is transparent where a scene gives no opacity
+  MinMax range{0, 1};    ///< range of the values; finite
+  float background = 0;  ///< the value that is transparent if a scene gives no opacity
 };
 
-/// Of a grid, whose values lie in `cells` where its root names no finite range.
+/// Returns the description of a grid. The value range comes from `cells` if the grid's root names no finite range.
 VolumeInfo volume_info(const NvdbGrid& grid, const MacrocellGrid& cells);
 
 /// The levels that a picture can make use of.
 struct LevelsUsed {
   LevelChoice choice;
-  int finest = 1;  ///< that a look-up may ask for; level 0 are voxels
-  float coarsest;  ///< likewise
+  int finest = 1;  ///< finest level that a look-up may ask for; level 0 is the voxels
+  float coarsest;  ///< coarsest level that a look-up may ask for
 };
 
-/// What to say of a picture: levels from `first` on are there (0: none), from `wanted` on were of use, up to
-/// `coarsest`. Empty where it has what it asked for.
+/// Returns a note for a picture that lacks levels it asked for, otherwise an empty text. Levels from `first` on exist
+/// (0: none); levels from `wanted` on, up to `coarsest`, would be used.
 std::string levels_note(int first, int wanted, float coarsest);
-/// Whether levels from `first` on change a picture: look-ups mix the voxels with them from one level below on.
+/// Returns whether levels from `first` on change a picture. A look-up mixes voxels with level `first` as soon as it
+/// asks for more than level `first` - 1.
 bool levels_are_of_use(int first, float coarsest);
 
-/// The colours and opacities that a picture of the scene is made with. Throws Error(usage) for an unknown colormap.
+/// Returns the colours and opacities of a picture of the scene. Throws Error(usage) for an unknown colormap.
 TransferFunction picture_transfer(const VolumeInfo& volume, const Scene& scene, const RenderOptions& options);
 
-/// The value of the surface that a picture shows: the scene's, or one between `background` and the value of `transfer`
-/// that is farthest from it.
+/// Returns the value of the surface that a picture shows: the scene's value, or a value between `background` and the
+/// end of `transfer`'s range that is farther from it.
 float picture_iso(const SceneVolume& volume, const TransferFunction& transfer, float background);
 
-/// Extinction at opacity 1, per shortest voxel edge of `frame`: the scene's density, or that of its mode, over the
-/// frame's longest edge, or the longest edge of `along`.
+/// Returns the extinction at opacity 1, per shortest voxel edge of `frame`. It is the density of the scene, or the
+/// default of its mode, divided by the longest edge of `frame` or of `along`.
 float picture_density(const Scene& scene, const GridFrame& frame);
 float picture_density(const Scene& scene, const GridFrame& frame, const GridFrame& along);
 
 class RenderSetup {
  public:
-  /// `cells` must outlive the object. Throws Error(usage) for an unknown colormap, an impossible camera or a
-  /// region outside the volume, and as load_environment.
+  /// `cells` must outlive the object. Throws Error(usage) for an unknown colormap, an impossible camera or a region
+  /// outside the volume, and the errors of load_environment.
   RenderSetup(const VolumeInfo& volume, const MacrocellGrid& cells, const Scene& scene, const RenderOptions& options);
   RenderSetup(const RenderSetup&) = delete;
   RenderSetup& operator=(const RenderSetup&) = delete;
 
-  /// The picture of `volume` (see volume_sampler.h), which lies over the same domain. The pointers in it are to
+  /// Returns the task that draws `volume` (see volume_sampler.h), which covers the same domain. The task points into
   /// this object, `cells` and the environment.
   template <class Volume>
   RenderTask<Volume> task(const Volume& volume) const {
@@ -96,7 +98,7 @@ class RenderSetup {
     task.medium.cell_opacity = majorants().data();
     return task;
   }
-  /// The same without majorants, for callers that compute them elsewhere.
+  /// Returns the same task without majorants, for callers that compute the majorants elsewhere.
   template <class Volume>
   RenderTask<Volume> bare_task(const Volume& volume) const {
     RenderTask<Volume> task;
@@ -107,13 +109,13 @@ class RenderSetup {
   }
 
   const TransferFunction& transfer_function() const { return transfer_; }
-  /// With host pointers; not present where the scene has none.
+  /// Returns the environment with host pointers. It is not present if the scene has none.
   const EnvironmentView& environment() const { return frame_.lighting.environment; }
   ToneMapping tone() const { return tone_; }
   RenderMode mode() const { return frame_.mode; }
-  /// None where the options ask for voxels, or all look-ups come near enough to see them.
+  /// Returns no levels if the options ask for voxels, or if every look-up is so near that it reads voxels.
   const std::optional<LevelsUsed>& levels() const { return levels_; }
-  /// For a picture with levels: what rays may see in each of the cells (level_bounds.h).
+  /// For a picture with levels: sets the bounds of the values that rays may read in each cell (level_bounds.h).
   void bound_cells(std::vector<MinMax> bounds);
 
  private:
@@ -127,7 +129,7 @@ class RenderSetup {
   const MacrocellGrid& cells_;
   std::optional<MacrocellGrid> levelled_cells_;
   TransferFunction transfer_;
-  mutable std::vector<float> majorants_;  ///< empty until asked for
+  mutable std::vector<float> majorants_;  ///< empty until majorants() is called
   std::shared_ptr<const Environment> environment_;
   MediumProperties medium_;
   RenderFrame frame_;

@@ -1,5 +1,5 @@
-// One picture as a kernel sees it: plain data, host or device pointers inside,
-// and the function that both back ends call for every sample of every pixel.
+// One picture as a kernel sees it: plain data with host or device pointers, and the function that both back ends call
+// for every sample of every pixel.
 #pragma once
 
 #include "format/sidecar/scene.h"
@@ -11,7 +11,7 @@
 
 namespace weir {
 
-/// All of a picture but its medium.
+/// All of a picture except its medium.
 struct RenderFrame {
   Lighting lighting;
   Camera camera;
@@ -19,7 +19,7 @@ struct RenderFrame {
   std::int32_t width = 1;   ///< pixels
   std::int32_t height = 1;  ///< pixels
   std::uint64_t seed = 0;
-  float step = 0.5F;  ///< dvr, iso, mip: distance of samples, in the shortest voxel edges
+  float step = 0.5F;  ///< dvr, iso, mip: distance between samples, in shortest voxel edges
   float shading = 0;  ///< dvr
   float iso = 0;      ///< iso: value of the surface
   Float3 iso_color{1, 1, 1};
@@ -31,8 +31,8 @@ struct RenderTask : RenderFrame {
   Medium<Volume> medium;
 };
 
-/// Radiance of sample `sample` of pixel (x, y), y down; linear RGB, finite. Depends on the arguments
-/// alone. `mode` is the task's, for callers that know it at compile time.
+/// Returns the radiance of sample `sample` of pixel (x, y), with y pointing down, as finite linear RGB. Depends only
+/// on the arguments. `mode` is the task's mode, passed separately for callers that know it at compile time.
 template <class Volume>
 WEIR_HOST_DEVICE Float3 render_sample(const RenderTask<Volume>& task, RenderMode mode, std::int32_t x, std::int32_t y,
                                       std::uint32_t sample) {
@@ -58,7 +58,8 @@ WEIR_HOST_DEVICE Float3 render_sample(const RenderTask<Volume>& task, RenderMode
       radiance = project_max(task.medium, task.lighting, eye, direction, task.step, random);
       break;
   }
-  // Light of 1e38 times a white may overflow: one such sample must not take the pixel with it.
+  // A light of 1e38 multiplied by a colour may overflow. Such a sample counts as black, so that it does not spoil its
+  // pixel.
   return is_finite(radiance.x + radiance.y + radiance.z) ? radiance : Float3{};
 }
 

@@ -11,14 +11,14 @@ namespace weir {
 
 struct SampleOptions {
   std::uint32_t samples = 1;                  ///< per pixel
-  const std::atomic<bool>* cancel = nullptr;  ///< looked at every few milliseconds of work
-  /// Called with the pixel samples done so far, from any thread, one at a time.
+  const std::atomic<bool>* cancel = nullptr;  ///< checked every few milliseconds of work
+  /// Called with the number of pixel samples done so far, from any thread, one call at a time.
   std::function<void(std::uint64_t)> progress = {};
-  /// Of a volume that comes and goes (a cache on a device): does not wait for what is missing, which the next picture
-  /// finds there, but does with what is near it. For a camera that moves; ends no sooner for `cancel`.
+  /// For a volume that is paged (a cache on a device): a draft does not wait for missing data but uses data near it.
+  /// The next picture finds the missing data. For a moving camera. `cancel` does not end a draft earlier.
   bool draft = false;
-  /// Where `cancel` was set, what was drawn stays here, and the next call for the same picture (volume, scene, options
-  /// and samples) begins with it. Empty after a picture that is whole. May be null; a device keeps nothing.
+  /// If `cancel` is set, this receives what was drawn, and the next call for the same picture (volume, scene, options
+  /// and samples) continues it. It is empty after a complete picture. May be null. A device keeps nothing.
   KeptPixels* kept = nullptr;
 };
 

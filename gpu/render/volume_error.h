@@ -1,4 +1,4 @@
-// Errors of a volume say which file it is of.
+// Adds the file's path to the errors of a volume.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace weir {
 
-/// What `work` returns, which loads or renders the volume of the file `path`. An error of kind usage or input that it
-/// throws begins with "PATH: ".
+/// Returns what `work` returns, which loads or renders the volume of the file `path`. An error of kind usage or input
+/// that `work` throws then begins with "PATH: ".
 template <class Work>
 auto naming_volume(const std::string& path, const Work& work) {
   try {

@@ -38,7 +38,7 @@ void check_pixels(const Image& image, const std::string& name) {
                   " such; radiance must be finite and not negative"));
 }
 
-// The command line names no such file: what opens none has to say who does.
+// The command line does not name this file. If it cannot be opened, the error must say that the scene names it.
 Image read_picture(const std::string& path) {
   try {
     return read_image(path, [&](std::int32_t width, std::int32_t height) { check_size(width, height, path); });
@@ -49,10 +49,11 @@ Image read_picture(const std::string& path) {
   }
 }
 
-// Rec. 709, linear.
+// Returns the luminance by Rec. 709 of a linear colour.
 double luminance(const Float3& c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
 
-// Bounds in proportion to `weights`, from 0 to kEnvironmentUnit; any where all weights are 0.
+// Fills bounds in proportion to `weights`, from 0 to kEnvironmentUnit. If all weights are 0, the bounds are
+// arbitrary.
 void fill_bounds(const std::vector<double>& weights, std::uint32_t* bounds) {
   double total = 0;
   for (const double w : weights) total += w;
@@ -63,7 +64,7 @@ void fill_bounds(const std::vector<double>& weights, std::uint32_t* bounds) {
     sum += weights[i];
   }
   bounds[weights.size()] = kEnvironmentUnit;
-  // What rounding leaves behind the last weight above 0 belongs to it.
+  // What rounding leaves after the last weight above 0 belongs to that weight.
   for (std::size_t i = weights.size(); i-- > 0 && total > 0 && !(weights[i] > 0);) bounds[i] = kEnvironmentUnit;
 }
 
@@ -76,7 +77,7 @@ Environment::Environment(const Image& image, const EnvironmentPlacement& placeme
   const auto scale = static_cast<float>(placement.scale);
   for (Float3& texel : radiance_) {
     const Float3 scaled = texel * scale;
-    texel = {lesser(scaled.x, 1e30F), lesser(scaled.y, 1e30F), lesser(scaled.z, 1e30F)};  // so that sums stay finite
+    texel = {lesser(scaled.x, 1e30F), lesser(scaled.y, 1e30F), lesser(scaled.z, 1e30F)};  // keeps sums finite
   }
   view_.radiance = radiance_.data();
   view_.width = image.width;
@@ -117,7 +118,8 @@ void Environment::tabulate() {
   view_.columns = columns_.data();
 }
 
-// Spherical harmonics up to degree 2 of the radiance, times the cosine lobe's (pi, 2 pi / 3, pi / 4) / pi.
+// Projects the radiance to spherical harmonics up to degree 2, multiplied by the cosine lobe's (pi, 2 pi / 3, pi / 4)
+// / pi.
 void Environment::project() {
   constexpr std::size_t kTerms = 9;
   std::array<Double3, kTerms> sums{};

@@ -1,7 +1,6 @@
-// Light from all around as a latitude-longitude picture, as kernels see it:
-// radiance by direction, and directions drawn in proportion to it. Radiance is
-// constant over a texel, and so is the density within it, so that what is drawn
-// and what `density` says agree exactly.
+// Light from all around as a latitude-longitude picture, as kernels see it: radiance by direction, and directions
+// drawn in proportion to it. Radiance and density are constant within a texel, so that the drawn directions agree
+// exactly with `density`.
 #pragma once
 
 #include "gpu/math/random.h"
@@ -9,12 +8,12 @@
 
 namespace weir {
 
-/// Probabilities are whole multiples of 1 / kEnvironmentUnit: a random integer below it picks a texel
-/// with exactly the probability that the tables say.
+/// Probabilities are whole multiples of 1 / kEnvironmentUnit: a random integer below it picks a texel with exactly
+/// the tables' probability.
 inline constexpr std::uint32_t kEnvironmentUnit = 1U << 31U;
 
-/// Index i of the interval [bounds[i], bounds[i + 1]) that holds `at`, by bisection; `bounds` rises from 0
-/// to kEnvironmentUnit in `count` steps, at < kEnvironmentUnit. Empty intervals are never found.
+/// Returns the index i of the interval [bounds[i], bounds[i + 1]) that contains `at`, by bisection. `bounds` rises
+/// from 0 to kEnvironmentUnit in `count` steps, and at < kEnvironmentUnit. Never returns an empty interval.
 WEIR_HOST_DEVICE inline std::int32_t find_interval(const std::uint32_t* bounds, std::int32_t count, std::uint32_t at) {
   std::int32_t low = 0;
   std::int32_t high = count;
@@ -36,12 +35,12 @@ struct EnvironmentSample {
   float density = 0;
 };
 
-/// Pointers may be host or device memory. The picture's first row is around `up`, its centre column
-/// at azimuth 0, and azimuth falls to the right, as someone sees it who stands inside.
+/// Pointers may be to host or device memory. The picture's first row is around `up` and its centre column at azimuth
+/// 0. Azimuth falls to the right, as an observer inside sees it.
 struct EnvironmentView {
-  const Float3* radiance = nullptr;        ///< height x width, rows from the top; null: there is no environment
-  const std::uint32_t* rows = nullptr;     ///< height + 1 bounds, of the probability of rows
-  const std::uint32_t* columns = nullptr;  ///< height x (width + 1) bounds, of the probability of columns in a row
+  const Float3* radiance = nullptr;        ///< height x width, rows from the top; null: no environment
+  const std::uint32_t* rows = nullptr;     ///< height + 1 bounds of the rows' probabilities
+  const std::uint32_t* columns = nullptr;  ///< height x (width + 1) bounds of the columns' probabilities in each row
   std::int32_t width = 0;                  ///< texels, twice the height
   std::int32_t height = 0;
   Float3 up{0, 0, 1};
@@ -54,7 +53,7 @@ struct EnvironmentView {
 
   WEIR_HOST_DEVICE bool present() const { return radiance != nullptr; }
 
-  /// Radiance from a unit direction, of the texel it falls into.
+  /// Returns the radiance from a unit direction: that of its texel.
   WEIR_HOST_DEVICE Float3 at(const Float3& direction) const {
     std::int32_t row;
     std::int32_t column;
@@ -62,7 +61,7 @@ struct EnvironmentView {
     return radiance[index(row, column)];
   }
 
-  /// Density, per steradian, with which `sample` draws a unit direction.
+  /// Returns the density, per steradian, with which `sample` draws a unit direction.
   WEIR_HOST_DEVICE float density(const Float3& direction) const {
     std::int32_t row;
     std::int32_t column;
@@ -73,8 +72,8 @@ struct EnvironmentView {
   WEIR_HOST_DEVICE EnvironmentSample sample(Random& random) const {
     const std::int32_t row = find_interval(rows, height, random.bits() >> 1U);
     const std::int32_t column = find_interval(columns + column_bounds(row), width, random.bits() >> 1U);
-    // Uniform in azimuth and in the cosine of the polar angle t, by s = sin^2(t / 2) = (1 - cos t) / 2 from
-    // the nearer pole: 1 - cos t would cancel there.
+    // Uniform in azimuth and in the cosine of the polar angle t. Uses s = sin^2(t / 2) = (1 - cos t) / 2 from the
+    // nearer pole, because 1 - cos t would cancel there.
     const bool lower = 2 * row >= height;
     const auto from_pole = static_cast<float>(lower ? height - 1 - row : row);
     const float quarter = 0.5F * kPi / static_cast<float>(height);  // half a row's height
@@ -89,13 +88,13 @@ struct EnvironmentView {
     return {ahead * local.x + left * local.y + up * local.z, radiance[index(row, column)], density(row, column)};
   }
 
-  /// Radiance from a unit direction, blended between the four texels around it: smooth, for the eye.
+  /// Returns the radiance from a unit direction, blended from the four texels around it so that it looks smooth.
   WEIR_HOST_DEVICE Float3 blended(const Float3& direction) const {
     float x;
     float y;
     position(direction, x, y);
     y = clamped(y - 0.5F, 0.0F, static_cast<float>(height - 1));
-    x = x < 0.5F ? x - 0.5F + static_cast<float>(width) : x - 0.5F;  // the picture closes at its sides
+    x = x < 0.5F ? x - 0.5F + static_cast<float>(width) : x - 0.5F;  // the picture wraps around at its sides
     const std::int32_t x0 = clamped(static_cast<std::int32_t>(x), 0, width - 1);
     const std::int32_t y0 = static_cast<std::int32_t>(y);
     const std::int32_t x1 = x0 + 1 < width ? x0 + 1 : 0;
@@ -106,8 +105,8 @@ struct EnvironmentView {
     return mix(above, below, y - static_cast<float>(y0));
   }
 
-  /// What a matt white surface of unit `normal` reflects: within some percent of the peak for soft light,
-  /// blurred to about 90 degrees for a sun.
+  /// Returns what a matt white surface of unit `normal` reflects. For soft light it is exact to some percent of the
+  /// peak; the light of a sun is blurred to about 90 degrees.
   WEIR_HOST_DEVICE Float3 on_surface(const Float3& normal) const {
     const float x = dot(normal, ahead);
     const float y = dot(normal, left);
@@ -118,7 +117,8 @@ struct EnvironmentView {
     return {greater(sum.x, 0.0F), greater(sum.y, 0.0F), greater(sum.z, 0.0F)};
   }
 
-  /// Steradians that each texel of a row covers: (cos t0 - cos t1) 2 pi / width, as a product that does not cancel.
+  /// Returns the steradians that each texel of a row covers: (cos t0 - cos t1) 2 pi / width, as a product that does
+  /// not cancel.
   WEIR_HOST_DEVICE float solid_angle(std::int32_t row) const {
     const float step = kPi / static_cast<float>(height);
     return 4.0F * kPi / static_cast<float>(width) * std::sin((static_cast<float>(row) + 0.5F) * step) *
@@ -128,13 +128,14 @@ struct EnvironmentView {
   WEIR_HOST_DEVICE std::int64_t index(std::int32_t row, std::int32_t column) const {
     return static_cast<std::int64_t>(row) * width + column;
   }
-  /// Where a row's bounds begin in `columns`.
+  /// Returns where a row's bounds begin in `columns`.
   WEIR_HOST_DEVICE std::int64_t column_bounds(std::int32_t row) const {
     return static_cast<std::int64_t>(row) * (width + 1);
   }
 
  private:
-  // In texels from the upper left corner. The polar angle is as precise at the poles as elsewhere.
+  // Returns the position in texels from the upper left corner. The polar angle is as precise at the poles as
+  // elsewhere.
   WEIR_HOST_DEVICE void position(const Float3& direction, float& x, float& y) const {
     const float a = dot(direction, ahead);
     const float b = dot(direction, left);

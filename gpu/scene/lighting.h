@@ -1,6 +1,5 @@
-// The light that reaches a volume: a sky that depends on elevation or a picture
-// of the surroundings, and a few directional lights. Radiance is linear RGB, in
-// units of a white of 1.
+// The light that reaches a volume: a sky that depends on elevation or a picture of the surroundings, and a few
+// directional lights. Radiance is linear RGB in units of a white of 1.
 #pragma once
 
 #include "gpu/scene/environment_view.h"
@@ -9,21 +8,21 @@ namespace weir {
 
 inline constexpr int kMaxLights = 4;
 
-/// Light from infinitely far: `irradiance` on a surface that faces it.
+/// Light from infinitely far away. `irradiance` is that of a surface facing it.
 struct DirectionalLight {
   Float3 direction;  ///< unit, towards the light
   Float3 irradiance;
 };
 
-/// Radiance by elevation: ground below, horizon, zenith above, blended smoothly. All three equal make
-/// an ambient light. An environment takes the place of all three.
+/// Radiance by elevation: ground below, horizon, zenith above, blended smoothly. If all three are equal, the light is
+/// ambient. An environment replaces all three.
 struct Lighting {
   Float3 up{0, 0, 1};
   Float3 zenith{1, 1, 1};
   Float3 horizon{1, 1, 1};
   Float3 ground{1, 1, 1};
   Float3 background;       ///< what the camera sees behind the volume
-  bool sky_behind = true;  ///< it sees the sky instead
+  bool sky_behind = true;  ///< true: the camera sees the sky instead of `background`
   DirectionalLight lights[kMaxLights];
   int light_count = 0;
   EnvironmentView environment;
@@ -40,8 +39,9 @@ struct Lighting {
     return environment.present() ? environment.blended(direction) : sky(direction);
   }
 
-  /// Light that a matt white surface of unit `normal` reflects, no shadows: the sky's at the normal
-  /// for the mean over the hemisphere, or the environment's mean, and the lights' by Lambert's law.
+  /// Returns the light that a matt white surface of unit `normal` reflects, without shadows: the lights' by Lambert's
+  /// law, plus the environment's mean over the hemisphere. Without an environment, the sky's value at the normal
+  /// stands in for the mean.
   WEIR_HOST_DEVICE Float3 on_surface(const Float3& normal) const {
     Float3 sum = environment.present() ? environment.on_surface(normal) : sky(normal);
     for (int i = 0; i < light_count; ++i) {

@@ -13,8 +13,8 @@ namespace weir {
 
 namespace {
 
-constexpr double kMargin = 0.94;    // share of the picture that the box may fill
-constexpr double kFarthest = 1e15;  // voxels: tracers count in floats, whose squares must stay finite
+constexpr double kMargin = 0.94;    // fraction of the picture that the box may fill
+constexpr double kFarthest = 1e15;  // voxels; tracers count in floats, and their squares must stay finite
 
 Double3 operator+(const Double3& a, const Double3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
 Double3 operator-(const Double3& a, const Double3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
@@ -26,14 +26,14 @@ Double3 cross(const Double3& a, const Double3& b) {
 double length(const Double3& a) { return std::hypot(a[0], a[1], a[2]); }
 Double3 unit(const Double3& a) {
   const double largest = std::max({std::abs(a[0]), std::abs(a[1]), std::abs(a[2])});
-  const Double3 scaled{a[0] / largest, a[1] / largest, a[2] / largest};  // of subnormal numbers, 1 / length is infinite
+  const Double3 scaled{a[0] / largest, a[1] / largest, a[2] / largest};  // 1 / length of a subnormal is infinite
   return scaled * (1 / length(scaled));
 }
 Double3 as_double(const Index3& i) {
   return {static_cast<double>(i.x), static_cast<double>(i.y), static_cast<double>(i.z)};
 }
 
-// Unit vector across `up`: the axis after the one `up` follows most, so azimuth 0 is +x where up is +z.
+// Returns a unit vector across `up`: along the axis after the one nearest to `up`, so azimuth 0 is +x if up is +z.
 Double3 across(const Double3& up) {
   const auto most =
       std::max_element(up.begin(), up.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
@@ -42,7 +42,7 @@ Double3 across(const Double3& up) {
   return unit(axis - up * dot(axis, up));
 }
 
-// Distance from `target` at which all boxes fit the picture.
+// Returns the distance from `target` at which all boxes fit the picture.
 double framing_distance(const GridFrame& frame, std::span<const Box> boxes, const Double3& target,
                         const Double3& forward, const Double3& right, const Double3& down, double tan_x, double tan_y) {
   double distance = 0;

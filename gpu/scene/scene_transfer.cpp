@@ -10,16 +10,16 @@ namespace weir {
 
 namespace {
 
-// Share of the largest distance from the background up to which the default is transparent: noise
+// Values are transparent by default up to this fraction of the largest distance from the background. Otherwise noise
 // around the background would veil everything else.
 constexpr double kTransparentShare = 0.06;
 
-// Of the entry at `position`, 0 to 1, of a table over [low, high]. Values beyond the table take its end's opacity, so
-// that where the background lies there the end is transparent in its place.
+// Returns the opacity of the entry at `position`, 0 to 1, of a table over [low, high]. Values outside the table take
+// the opacity of its end. If the background lies outside, that end is therefore transparent.
 double default_opacity(double position, double low, double high, double background) {
   if (!(high > low)) {
     const bool end = (background < low && position == 0) || (background > high && position == 1);
-    return end ? 0 : 0.5;  // a constant volume is a fog, not nothing
+    return end ? 0 : 0.5;  // a constant volume shows as a fog, not as nothing
   }
   const double from = std::isfinite(background) ? std::clamp(background, low, high) : low;
   const double reach = std::max(high - from, from - low);

@@ -1,6 +1,6 @@
-// From values to colour and opacity: a piecewise-linear RGBA table over a value
-// range. Values beyond the range take the end's colour; NaN and infinities are
-// transparent. Bounds of the opacity over an interval are exact, for majorants.
+// Maps values to colour and opacity by a piecewise-linear RGBA table over a value range. Values outside the range
+// take the colour of its end. NaN and infinities are transparent. Bounds of the opacity over an interval are exact,
+// as majorants need.
 #pragma once
 
 #include <cfloat>
@@ -11,7 +11,7 @@
 
 namespace weir {
 
-/// A filtered value may round past the voxels it came from by this share of the larger of them.
+/// A filtered value may exceed the voxels that it came from by this fraction of the larger voxel, through rounding.
 inline constexpr float kBlendRounding = 4 * FLT_EPSILON;
 
 /// Linear RGB and opacity in [0, 1].
@@ -24,16 +24,16 @@ struct Rgba {
   friend constexpr bool operator==(const Rgba&, const Rgba&) = default;
 };
 
-/// What a kernel needs of a TransferFunction.
+/// The part of a TransferFunction that a kernel needs.
 struct TransferFunctionView {
-  const Rgba* table = nullptr;  ///< last + 1 entries, at equal distances over the range
+  const Rgba* table = nullptr;  ///< last + 1 entries, evenly spaced over the range
   float last = 0;
-  float low = 0;    ///< range's low end times scale
-  float width = 0;  ///< range's width times scale; 0 for a single value
+  float low = 0;    ///< low end of the range times scale
+  float width = 0;  ///< width of the range times scale; 0 for a single value
   float scale = 1;  ///< keeps the width finite for ranges that overflow float32
 
-  /// Position of a finite value in the table, in [0, last]; the middle where the range is that one value, which a blend
-  /// of voxels that all have it may miss by a few ulp.
+  /// Returns the position of a finite value in the table, in [0, last]. If the range is a single value, returns the
+  /// middle for it; a blend of voxels that all have this value may miss it by a few ulp.
   WEIR_HOST_DEVICE float position(float value) const {
     const float offset = value * scale - low;
     if (width == 0.0F) {
@@ -54,20 +54,20 @@ struct TransferFunctionView {
   }
 };
 
-/// The largest opacity that any lookup of a stretch of values gives.
+/// The largest opacity that any look-up in an interval of values gives.
 struct OpacityBounds {
   TransferFunctionView transfer;
   RangeMaxView opacities;  ///< of the table's entries
 
-  /// No lookup of a value in [low, high] gives a larger opacity. Where an end is not finite or the
-  /// interval is empty, the largest opacity of all.
+  /// Returns an opacity that no look-up of a value in [low, high] exceeds. If an end is not finite or the interval is
+  /// empty, returns the largest opacity of all.
   WEIR_HOST_DEVICE float max_opacity(float low, float high) const {
     if (!(low <= high) || !is_finite(low) || !is_finite(high)) return opacities.between(0, opacities.size - 1);
     const float slack = kBlendRounding * greater(std::abs(low), std::abs(high));
     const float first = transfer.position(greater(low - slack, -FLT_MAX));
     const float last = transfer.position(lesser(high + slack, FLT_MAX));
-    // Positions grow with values and the opacity is linear between entries: its largest value is at an
-    // entry inside the interval or at one of the two ends.
+    // Positions grow with values, and the opacity is linear between entries. So its largest value is at an entry
+    // inside the interval or at one of the ends.
     float result = greater(opacity(first), opacity(last));
     const auto from = static_cast<std::uint32_t>(std::ceil(first));
     const auto until = static_cast<std::uint32_t>(last);
@@ -84,8 +84,8 @@ struct OpacityBounds {
 
 class TransferFunction {
  public:
-  /// `table` (2 or more entries) over [low, high], both finite, low <= high. Throws Error(internal)
-  /// where that does not hold.
+  /// `table` has 2 or more entries over [low, high]; both ends are finite, and low <= high. Throws Error(internal)
+  /// otherwise.
   TransferFunction(std::vector<Rgba> table, float low, float high);
 
   TransferFunctionView view() const { return view_; }

@@ -1,6 +1,5 @@
-// An implicit surface value(p) = iso: cells whose bounds hold the iso value are
-// marched for a change of sign, which is then refined by bisection. The surface
-// is matt and two-sided, its normal the gradient.
+// An implicit surface value(p) = iso. Cells with bounds that include the iso value are marched for a change of sign,
+// which bisection then refines. The surface is matt and two-sided; its normal is the gradient.
 #pragma once
 
 #include "gpu/scene/lighting.h"
@@ -9,7 +8,7 @@
 
 namespace weir {
 
-/// Halvings of the interval that holds the surface: half a voxel to 1e-5 of one.
+/// Halvings of the interval that contains the surface: from half a voxel to 1e-5 of a voxel.
 inline constexpr int kIsoRefinements = 16;
 
 namespace detail {
@@ -20,9 +19,10 @@ WEIR_HOST_DEVICE inline bool crosses(float a, float b, float level) {
 
 }  // namespace detail
 
-/// Parameter of the first place along a ray, which `enter` has moved into the volume, where values below iso meet iso
-/// or more, or -1. NaN and infinite values are on neither side. A blend of voxels that all have the value iso may miss
-/// it by kBlendRounding: so much below it is iso, too, else the rounding in a plateau of that value would be a surface.
+/// Returns the parameter of the first place along a ray where values below iso meet iso or more, or -1. `enter` has
+/// moved the ray into the volume. NaN and infinite values are on neither side. A blend of voxels that all have the
+/// value iso may miss it by kBlendRounding. Values that little below iso therefore count as iso; otherwise rounding
+/// in a plateau of this value would be a surface.
 template <class Volume>
 WEIR_HOST_DEVICE float find_iso(const Medium<Volume>& medium, const Ray& ray, float length, float iso,
                                 float voxel_step) {
@@ -59,7 +59,7 @@ WEIR_HOST_DEVICE float find_iso(const Medium<Volume>& medium, const Ray& ray, fl
   return -1.0F;
 }
 
-/// Radiance from unit `direction`; the surface has `colour`.
+/// Returns the radiance from unit `direction`. The surface has the colour `colour`.
 template <class Volume>
 WEIR_HOST_DEVICE Float3 shade_iso(const Medium<Volume>& medium, const Lighting& lighting, const Float3& origin,
                                   const Float3& direction, float iso, const Float3& colour, float step) {

@@ -1,6 +1,5 @@
-// Maximum intensity projection: the largest value along a ray, coloured by the
-// transfer function and laid over what is behind. Cells whose largest value is
-// not above the one found are skipped.
+// Maximum intensity projection: finds the largest value along a ray, colours it by the transfer function and lays it
+// over what is behind. Skips cells with no larger value than the one found so far.
 #pragma once
 
 #include "gpu/math/random.h"
@@ -10,8 +9,8 @@
 
 namespace weir {
 
-/// Largest finite value along a ray that `enter` has moved into the volume, at samples `voxel_step` apart (as march());
-/// -infinity where there is none.
+/// Returns the largest finite value along a ray that `enter` has moved into the volume, or -infinity if there is
+/// none. Samples are `voxel_step` apart, as in march().
 template <class Volume>
 WEIR_HOST_DEVICE float max_along(const Medium<Volume>& medium, const Ray& ray, float length, float voxel_step,
                                  float jitter) {
@@ -19,7 +18,7 @@ WEIR_HOST_DEVICE float max_along(const Medium<Volume>& medium, const Ray& ray, f
   CellWalk walk(medium.cells, ray, 0.0F, length);
   CellSpan span;
   while (walk.next(medium.cells, ray, span)) {
-    if (medium.cell_values[span.cell].max <= best) continue;  // false where the bound is NaN, unknown
+    if (medium.cell_values[span.cell].max <= best) continue;  // false if the bound is NaN, that is, unknown
     const float step = medium.sample_step(voxel_step, ray.at(span.t0), length);
     float k = std::ceil(span.t0 / step - jitter);
     for (float t = (k + jitter) * step; t < span.t1; k += 1.0F, t = (k + jitter) * step) {
@@ -30,7 +29,7 @@ WEIR_HOST_DEVICE float max_along(const Medium<Volume>& medium, const Ray& ray, f
   return best;
 }
 
-/// Radiance from unit `direction`.
+/// Returns the radiance from unit `direction`.
 template <class Volume>
 WEIR_HOST_DEVICE Float3 project_max(const Medium<Volume>& medium, const Lighting& lighting, const Float3& origin,
                                     const Float3& direction, float step, Random& random) {

@@ -1,9 +1,8 @@
-// Volume path tracing: multiple scattering with delta tracking, directional
-// lights by ratio tracking at every collision, the sky where a path escapes. An
-// environment is met both ways, by directions drawn towards its light and by
-// those that scattering draws, weighed by the balance heuristic (Veach and
-// Guibas, Optimally Combining Sampling Techniques, SIGGRAPH 1995). The radiance
-// is an unbiased estimate up to the bounce limit.
+// Volume path tracing: multiple scattering with delta tracking, directional lights by ratio tracking at every
+// collision, and the sky for a path that escapes. An environment is sampled in both ways: by directions drawn towards
+// its light, and by the directions that scattering draws. Both are weighted by the balance heuristic (Veach and
+// Guibas, Optimally Combining Sampling Techniques, SIGGRAPH 1995). The radiance is an unbiased estimate up to the
+// bounce limit.
 #pragma once
 
 #include "gpu/scene/lighting.h"
@@ -12,13 +11,13 @@
 
 namespace weir {
 
-/// Collisions after which Russian roulette may end a path.
+/// Number of collisions after which Russian roulette may end a path.
 inline constexpr int kRouletteAfter = 4;
 
 namespace detail {
 
-// Light from all directional lights, and from one direction of the environment, scattered at `position`
-// towards where the path came from. One loop, so that a device holds one copy of the tracking.
+// Returns the light that is scattered at `position` towards where the path came from. It comes from all directional
+// lights and from one direction of the environment. One loop, so that a device holds one copy of the tracking code.
 template <class Volume>
 WEIR_HOST_DEVICE Float3 direct_light(const Medium<Volume>& medium, const Lighting& lighting, const Float3& position,
                                      const Float3& direction, Random& random) {
@@ -50,15 +49,15 @@ WEIR_HOST_DEVICE Float3 direct_light(const Medium<Volume>& medium, const Lightin
 
 }  // namespace detail
 
-/// Radiance that arrives at `origin` (index space) from unit `direction` (physical space), at most
-/// `max_bounces` scatterings. The collision behind the last one emits and scatters nothing.
+/// Returns the radiance that arrives at `origin` (index space) from unit `direction` (physical space), after at most
+/// `max_bounces` scatterings. The collision after the last scattering emits but does not scatter.
 template <class Volume>
 WEIR_HOST_DEVICE Float3 trace_path(const Medium<Volume>& medium, const Lighting& lighting, const Float3& origin,
                                    Float3 direction, int max_bounces, Random& random) {
   Float3 radiance;
   Float3 throughput{1, 1, 1};
   Ray ray = medium.ray(origin, direction);
-  float turned = 0;  // with an environment: density with which the phase function drew `direction`
+  float turned = 0;  // with an environment: the density with which the phase function drew `direction`
   for (int bounce = 0;; ++bounce) {
     const float length = enter(ray, medium.shown);
     const RayKind kind = bounce == 0 ? RayKind::camera : RayKind::scattered;

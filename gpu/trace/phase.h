@@ -6,14 +6,14 @@
 
 namespace weir {
 
-/// Probability per steradian that light is turned by the angle of cosine `cosine`; `g` in (-1, 1) is
-/// the mean cosine, positive forward.
+/// Returns the probability per steradian that light turns by the angle whose cosine is `cosine`. `g` in (-1, 1) is
+/// the mean cosine; forward is positive.
 WEIR_HOST_DEVICE inline float phase(float cosine, float g) {
   const float d = 1.0F + g * g - 2.0F * g * cosine;
   return (1.0F - g * g) / (4.0F * kPi * d * std::sqrt(d));
 }
 
-/// A unit direction distributed as phase(dot(forward, result), g), from two uniform numbers in [0, 1].
+/// Returns a unit direction distributed as phase(dot(forward, result), g), from two uniform numbers in [0, 1].
 WEIR_HOST_DEVICE inline Float3 sample_phase(const Float3& forward, float g, float u1, float u2) {
   float cosine = 1.0F - 2.0F * u1;
   if (std::abs(g) > 1e-3F) {  // below, the general formula cancels and the phase is flat within 1e-3

@@ -1,7 +1,6 @@
-// Direct volume rendering: the emission-absorption integral
+// Direct volume rendering: computes the emission-absorption integral
 //   L = int T(t) sigma(t) c(t) dt + T(end) behind,  T(t) = exp(-int_0^t sigma)
-// by ray marching, each step a segment of constant extinction. Cells without
-// opacity are skipped.
+// by ray marching, with constant extinction in each step. Cells without opacity are skipped.
 #pragma once
 
 #include "gpu/math/random.h"
@@ -11,17 +10,17 @@
 
 namespace weir {
 
-/// Transmittance below which the medium ends, an eighth of a step of 8-bit output: what the rest of it would emit, and
-/// absorb of what is behind, is left out, at most that share of either.
+/// Transmittance below which a ray ends: an eighth of a step of 8-bit output. The emission of the rest and its
+/// absorption of what is behind are left out, at most this fraction of either.
 inline constexpr float kOpaque = 1.0F / 2048.0F;
-/// Opacity of a ray so far up to which its samples are not worth the six lookups of a gradient: they stay unlit. Their
-/// weights sum to that opacity, so the ray is off by at most that share of the difference between lit and unlit colour.
+/// Opacity of a ray up to which its samples stay unlit, because they are not worth the six look-ups of a gradient.
+/// Their weights sum to this opacity, so the ray is off by at most this fraction of the difference between lit and
+/// unlit colour.
 inline constexpr float kUnshaded = 1.0F / 4096.0F;
 
-/// Radiance from unit `direction`. `voxel_step` is the distance between samples, in the shortest voxel edges, or in
-/// edges of the cubes of voxels that are looked up;
-/// `shading` in [0, 1] blends the colour with its reflection of the lights on a surface
-/// across the gradient.
+/// Returns the radiance from unit `direction`. `voxel_step` is the distance between samples, in shortest voxel edges,
+/// or in edges of the cubes of voxels that are looked up. `shading` in [0, 1] blends the colour with its reflection
+/// of the lights on a surface across the gradient.
 template <class Volume>
 WEIR_HOST_DEVICE Float3 march(const Medium<Volume>& medium, const Lighting& lighting, const Float3& origin,
                               const Float3& direction, float voxel_step, float shading, Random& random) {
@@ -29,7 +28,7 @@ WEIR_HOST_DEVICE Float3 march(const Medium<Volume>& medium, const Lighting& ligh
   float transmittance = 1.0F;
   Ray ray = medium.ray(origin, direction);
   const float length = enter(ray, medium.shown);
-  // One lattice of samples along the whole ray, shifted at random: cells only say which to leave out.
+  // One lattice of samples along the whole ray, shifted at random. The cells only decide which samples to leave out.
   const float jitter = random.uniform();
   CellWalk walk(medium.cells, ray, 0.0F, length);
   CellSpan span;

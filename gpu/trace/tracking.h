@@ -8,21 +8,24 @@
 
 namespace weir {
 
-/// Tentative collisions of one flight. There are kMaxExtinction of them to a shortest voxel edge at most, in the mean,
-/// so that the diagonal of 8192^3 cubes, 14189 edges, takes 908,000, give or take a thousand. A flight that needs more
-/// leads through more than 16384 edges of clear cells that a wall touches: it counts as absorbed, so that it ends. Not
-/// all would end by themselves: from some 2^18 edges on, floats tell such collisions no longer apart.
+/// Most tentative collisions of one flight. On average there are at most kMaxExtinction of them per shortest voxel
+/// edge. The diagonal of 8192^3 cubes, 14189 edges, therefore takes 908,000, plus or minus a thousand. A flight that
+/// needs more passes more than 16384 edges of clear cells that a wall touches; it counts as absorbed, so that it
+/// ends. Not every flight would end by itself: from about 2^18 edges on, floats no longer distinguish such
+/// collisions.
 inline constexpr int kMaxTentative = 1 << 20;
 
-/// The tentative collisions along a ray: where it would collide if the extinction were the majorant everywhere. Where
-/// majorants are given by cells, the optical depth that remains at a border carries over, since it is memoryless.
+/// The tentative collisions along a ray: where it would collide if the extinction were the majorant everywhere. If
+/// majorants differ between cells, the optical depth that remains at a border carries over, because free flight is
+/// memoryless.
 class TentativeCollisions {
  public:
-  /// Along [0, length] of `ray`, which lies inside the volume. Draws one number.
+  /// Follows [0, length] of `ray`, which lies inside the volume. Draws one random number.
   WEIR_HOST_DEVICE TentativeCollisions(const CellLattice& cells, const Ray& ray, float length, Random& random)
       : walk_(cells, ray, 0.0F, length), depth_(free_depth(random.uniform())) {}
 
-  /// Moves on to the next one; false behind the last. `redraw` first where there was one.
+  /// Moves to the next tentative collision; returns false after the last. Call `redraw` before the next call if there
+  /// was one.
   template <class Volume>
   WEIR_HOST_DEVICE bool next(const Medium<Volume>& medium, const Ray& ray) {
     for (;;) {
@@ -44,7 +47,7 @@ class TentativeCollisions {
 
   WEIR_HOST_DEVICE float t() const { return t_; }
   WEIR_HOST_DEVICE float majorant() const { return majorant_; }
-  /// Whether there were more than kMaxTentative.
+  /// Returns whether there were more than kMaxTentative collisions.
   WEIR_HOST_DEVICE bool endless() const { return count_ > kMaxTentative; }
 
  private:
@@ -60,11 +63,11 @@ enum class FlightEnd { escaped, collided, absorbed };
 
 struct Flight {
   FlightEnd end = FlightEnd::escaped;
-  float t = 0;  ///< of the collision
-  Rgba colour;  ///< of the medium there
+  float t = 0;  ///< parameter of the collision
+  Rgba colour;  ///< colour of the medium at the collision
 };
 
-/// Flies along [0, length] of `ray`, which lies inside the volume.
+/// Follows [0, length] of `ray`, which lies inside the volume, to its first collision.
 template <class Volume>
 WEIR_HOST_DEVICE Flight delta_track(const Medium<Volume>& medium, const Ray& ray, float length, RayKind kind,
                                     Random& random) {
@@ -81,7 +84,7 @@ WEIR_HOST_DEVICE Flight delta_track(const Medium<Volume>& medium, const Ray& ray
   return {};
 }
 
-/// An estimate in [0, 1] whose expectation is the transmittance along [0, length] of `ray`.
+/// Returns an estimate in [0, 1] whose expectation is the transmittance along [0, length] of `ray`.
 template <class Volume>
 WEIR_HOST_DEVICE float ratio_track(const Medium<Volume>& medium, const Ray& ray, float length, RayKind kind,
                                    Random& random) {

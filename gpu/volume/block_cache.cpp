@@ -43,7 +43,7 @@ bool BlockCache::store(std::uint32_t key, std::span<const float, kVoxels> values
   return before >> 32U != 0;
 }
 
-// Second chance: a slot that was read since it was last passed over is passed over once more.
+// Second chance: a slot that was read since the last pass is passed over once more.
 std::uint64_t BlockCache::choose_slot(std::uint64_t first, std::uint32_t turn) {
   for (std::uint64_t slot = first; slot < first + kWays; ++slot) {
     if (state(slot).load(std::memory_order_relaxed) == 0) return slot;

@@ -1,11 +1,11 @@
-// Decoded blocks of 8^3 voxels in a fixed piece of memory, shared by all threads that render: set-associative, of four
-// ways, without locks. Any thread may read and store at any time.
+// Decoded blocks of 8^3 voxels in a fixed amount of memory that all rendering threads share. It is set-associative
+// with four ways, and has no locks. Any thread may read and store at any time.
 //
-// A slot has 512 floats and one word of state: the block's key plus 1 (0: empty), whether it was read lately, and a
-// sequence number, which is odd while a thread writes the slot. A reader looks at the state before and after the
-// floats and takes them only where it did not change (a sequence lock: Boehm, Can Seqlocks Get Along With Programming
-// Language Memory Models?, MSPC 2012). Here floats are loaded with acquire and stored with release, which is what the
-// paper's fences do, and costs nothing on x86.
+// A slot has 512 floats and one word of state: the block's key plus 1 (0: empty), a flag for a recent read, and a
+// sequence number that is odd while a thread writes the slot. A reader looks at the state before and after it reads
+// the floats, and uses them only if the state did not change (a sequence lock: Boehm, Can Seqlocks Get Along With
+// Programming Language Memory Models?, MSPC 2012). Here floats are loaded with acquire and stored with release, which
+// does what the paper's fences do and costs nothing on x86.
 #pragma once
 
 #include <array>
@@ -22,17 +22,18 @@ class BlockCache {
  public:
   static constexpr std::uint32_t kWays = 4;
   static constexpr std::uint32_t kVoxels = 512;
-  /// Of a slot.
+  /// Bytes of a slot.
   static constexpr std::uint64_t kBlockBytes = kVoxels * sizeof(float) + sizeof(std::uint64_t);
 
-  /// As many blocks as `bytes` hold, in sets of kWays, one set at least. Pages are touched when blocks are stored.
+  /// Holds as many blocks as fit into `bytes`, in sets of kWays, at least one set. Memory pages are touched only when
+  /// blocks are stored.
   explicit BlockCache(std::uint64_t bytes);
 
   std::uint64_t blocks() const { return std::uint64_t{sets_} * kWays; }
   std::uint64_t bytes() const { return blocks() * kBlockBytes; }
 
-  /// The values at `offsets`, each below kVoxels, of the block `key`, below 2^32 - 1. False where it is not here; then
-  /// `values` are anything.
+  /// Reads the values at `offsets`, each below kVoxels, of the block `key`, which is below 2^32 - 1. Returns false if
+  /// the block is not in the cache; `values` are then undefined.
   template <std::size_t N>
   bool load(std::uint32_t key, const std::array<std::uint32_t, N>& offsets, float (&values)[N]) const {
     const std::uint64_t first = first_slot(key);
@@ -47,9 +48,9 @@ class BlockCache {
     return false;
   }
 
-  /// Puts the block `key` in the place of an empty slot of its set, or of one that was not read since it was stored or
-  /// last passed over; `turn` says from which slot on to look. May leave it out where other threads write to the set.
-  /// True where another block had to go.
+  /// Stores the block `key` in an empty slot of its set, or in one that was not read since it was stored or last
+  /// passed over. `turn` gives the slot at which the search begins. May leave the block out if other threads write to
+  /// the set. Returns true if another block was evicted.
   bool store(std::uint32_t key, std::span<const float, kVoxels> values, std::uint32_t turn);
 
  private:
@@ -60,7 +61,7 @@ class BlockCache {
     void operator()(void* p) const { std::free(p); }
   };
 
-  // Fibonacci hashing, so that blocks next to each other go to sets far apart.
+  // Fibonacci hashing, so that neighbouring blocks go to distant sets.
   std::uint64_t first_slot(std::uint32_t key) const {
     const std::uint32_t hash = key * 0x9E3779B9U;
     return (std::uint64_t{hash} * sets_ >> 32U) * kWays;

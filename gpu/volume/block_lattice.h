@@ -10,7 +10,7 @@
 
 namespace weir {
 
-/// Blocks of a region.
+/// Number of blocks per region.
 inline constexpr std::uint32_t kRegionBlocks = 4096;
 inline constexpr std::int64_t kRegionDim = 128;  ///< voxels
 
@@ -43,17 +43,18 @@ struct BlockLattice {
     const auto position = static_cast<std::int32_t>(id % kRegionBlocks);
     return {16 * region.x + (position >> 8), 16 * region.y + (position >> 4 & 15), 16 * region.z + (position & 15)};
   }
-  /// Of the domain's highest voxel.
+  /// Returns the block of the domain's highest voxel.
   WEIR_HOST_DEVICE Int3 last_block() const {
     return {(shift.x + extent.x - 1) >> 3, (shift.y + extent.y - 1) >> 3, (shift.z + extent.z - 1) >> 3};
   }
-  /// Whether a block has voxels of the domain.
+  /// Returns whether a block has voxels of the domain.
   WEIR_HOST_DEVICE bool contains(const Int3& block) const {
     const Int3 last = last_block();
     return block.x >= shift.x >> 3 && block.y >= shift.y >> 3 && block.z >= shift.z >> 3 && block.x <= last.x &&
            block.y <= last.y && block.z <= last.z;
   }
-  /// The k-th of `block` and the seven next to it above, those beyond the domain moved into it.
+  /// Returns the k-th of `block` and its seven upper neighbours. A block outside the domain is replaced by the
+  /// nearest one inside.
   WEIR_HOST_DEVICE Int3 above(const Int3& block, std::uint32_t k) const {
     const Int3 last = last_block();
     return {lesser(block.x + static_cast<std::int32_t>(k & 1U), last.x),
@@ -66,7 +67,7 @@ struct BlockLattice {
   }
 };
 
-/// Of a grid's index box, which leaf_lattice() has accepted.
+/// Returns the lattice for a grid's index box, which leaf_lattice() has accepted.
 inline BlockLattice block_lattice(const Box& domain) {
   const NodeLattice regions = make_lattice(domain, kRegionDim);
   return {narrow(regions.count), narrow(domain.lo - regions.first * kRegionDim), narrow(domain.extent())};

@@ -1,10 +1,10 @@
-// The voxels of a packed grid that do not fit into memory decoded: a table that says which blocks are coded, and a
-// cache of decoded ones. A block that is not in the cache is decoded from the file when a voxel of it is looked up, to
-// the same values as DecodedLeaves has. For the host alone.
+// The voxels of a packed grid that do not fit into memory when decoded: a table that marks the coded blocks, and a
+// cache of decoded ones. A block that is not in the cache is decoded from the file when one of its voxels is looked
+// up, to the same values as DecodedLeaves has. Host only.
 //
 //   CachedBlocks blocks(grid, bytes);                            // shared by all threads
-//   BlockReader reader(blocks);                                  // one of each thread
-//   CachedSampler volume{{reader}, Filter::trilinear};           // as VolumeSampler
+//   BlockReader reader(blocks);                                  // one per thread
+//   CachedSampler volume{{reader}, Filter::trilinear};           // used like VolumeSampler
 #pragma once
 
 #include <array>
@@ -21,20 +21,20 @@ namespace weir {
 
 class CachedBlocks {
  public:
-  /// Over grid.index_bbox(); `grid`, which is packed, must outlive the object. The cache takes `cache_bytes`. Throws as
-  /// LeafTable.
+  /// Covers grid.index_bbox(). `grid` must be packed and outlive the object. The cache takes `cache_bytes`. Throws
+  /// the errors of LeafTable.
   CachedBlocks(const NvdbGrid& grid, std::uint64_t cache_bytes);
 
   LeafTableView table() const { return table_.view(); }
-  /// The values of the block at the table's position `at`, past the cache; true where it has one value, which alone is
-  /// set. Throws Error(input) where its stream or directory is damaged.
+  /// Reads the values of the block at the table's position `at`, without the cache. Returns true if the block has one
+  /// value; then only values[0] is set. Throws Error(input) if its stream or directory is damaged.
   bool read(const Int3& at, std::span<float, kLeafVoxels> values) const;
   std::uint64_t bytes() const { return table_.bytes() + cache_.bytes(); }  ///< of table, tile values and cache
 
  private:
   friend class BlockReader;
 
-  // The 512 values of the block at the table's position `at`, from the file.
+  // Decodes the 512 values of the block at the table's position `at` from the file.
   void decode(const Int3& at, std::span<float, kLeafVoxels> values) const;
 
   const PackedData* packed_;
@@ -43,11 +43,11 @@ class CachedBlocks {
   BlockCache cache_;
 };
 
-/// What became of the look-ups in coded blocks.
+/// Counts of the look-ups in coded blocks.
 struct CacheCounts {
-  std::uint64_t lookups = 0;  ///< of the voxels of one block that one sample needs
+  std::uint64_t lookups = 0;  ///< one for each block that a sample needs voxels of
   std::uint64_t decoded = 0;  ///< blocks that were not in the cache
-  std::uint64_t evicted = 0;  ///< blocks that had to go
+  std::uint64_t evicted = 0;  ///< blocks that were evicted
 
   CacheCounts& operator+=(const CacheCounts& other) {
     lookups += other.lookups;
@@ -57,13 +57,13 @@ struct CacheCounts {
   }
 };
 
-/// One thread's way to CachedBlocks, which must outlive it.
+/// One thread's access to CachedBlocks, which must outlive it.
 class alignas(64) BlockReader {
  public:
   explicit BlockReader(CachedBlocks& blocks) : blocks_(&blocks) {}
 
-  /// The values at `offsets` of the coded block at the table's position `at`, whose entry is number `key`. Throws
-  /// Error(input) where its stream or directory is damaged.
+  /// Reads the values at `offsets` of the coded block at the table's position `at`; its entry has the number `key`.
+  /// Throws Error(input) if its stream or directory is damaged.
   template <std::size_t N>
   void load(const Int3& at, std::uint32_t key, const std::array<std::uint32_t, N>& offsets, float (&values)[N]) {
     ++counts_.lookups;
@@ -80,10 +80,10 @@ class alignas(64) BlockReader {
 
   CachedBlocks* blocks_;
   CacheCounts counts_;
-  std::array<float, kLeafVoxels> decoded_{};  ///< the block decoded last
+  std::array<float, kLeafVoxels> decoded_{};  ///< the block that was decoded last
 };
 
-/// Takes the place of LeafTableView in a FilteredVolume, with the same values.
+/// Replaces LeafTableView in a FilteredVolume, with the same values.
 struct CachedTableView {
   LeafTableView table;
   Int3 extent;
@@ -92,7 +92,7 @@ struct CachedTableView {
   CachedTableView() = default;
   CachedTableView(BlockReader& blocks) : table(blocks.table()), extent(table.extent), reader(&blocks) {}
 
-  /// As those of LeafTableView.
+  /// As the functions of LeafTableView.
   float voxel(const Int3& i) const {
     const Int3 v = table.from_corner(i);
     float value[1];
@@ -113,7 +113,8 @@ struct CachedTableView {
   }
 
  private:
-  // The values at `offsets` of the block that covers `v`. False where it is a tile; then only values[0] is set.
+  // Reads the values at `offsets` of the block that covers `v`. Returns false if the block is a tile; then only
+  // values[0] is set.
   template <std::size_t N>
   bool load(const Int3& v, const std::array<std::uint32_t, N>& offsets, float (&values)[N]) const {
     const Int3 at{v.x >> 3, v.y >> 3, v.z >> 3};

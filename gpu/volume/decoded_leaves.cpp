@@ -17,8 +17,8 @@
 namespace weir {
 namespace {
 
-// Calls work(i) for 0 <= i < count on all threads of the machine; throws what one of them threw. Not TBB, since those
-// that embed the renderer need no library.
+// Calls work(i) for 0 <= i < count on all threads of the machine. Throws what one of them threw. Does not use TBB, so
+// that programs that embed the renderer need no library.
 template <class Work>
 void for_all(std::int64_t count, const Work& work) {
   std::atomic<std::int64_t> next{0};

@@ -18,7 +18,7 @@ constexpr MinMax kEmptyRange{kInfinity, -kInfinity};
 
 bool is_number(float v) { return v == v; }
 
-// Bounds of those of `count` values that `counts` is true for, together with `bounds`.
+// Returns the bounds of `bounds` and of those of `count` values that counts(v) accepts.
 template <class Counts>
 MinMax bounds_of(const float* values, std::int64_t count, MinMax bounds, const Counts& counts) {
   for (std::int64_t i = 0; i < count; ++i) {

@@ -1,5 +1,5 @@
-// Filtered values of a grid at any positions, for callers that ask again and again: from a table whose packed blocks
-// are decoded at once, or, where those would take too much memory, when they are looked up. For the host alone.
+// Filtered values of a grid at any positions, for callers with many look-ups. Packed blocks are decoded at once into
+// a table. If they would take too much memory, they are decoded when they are looked up. Host only.
 #pragma once
 
 #include <cstdint>
@@ -20,10 +20,10 @@ namespace weir {
 /// Thread-safe.
 class GridSamples {
  public:
-  /// Most bytes of blocks that are decoded at once, and bytes of the cache of grids that have more.
+  /// Most bytes of blocks that are decoded at once. It is also the size of the cache for grids that have more.
   static constexpr std::uint64_t kMostDecoded = std::uint64_t{256} << 20U;
 
-  /// `grid` must outlive the object. Throws as LeafTable.
+  /// `grid` must outlive the object. Throws the errors of LeafTable.
   explicit GridSamples(const NvdbGrid& grid, std::uint64_t most_decoded = kMostDecoded) {
     if (decoded_bytes(grid) > most_decoded) {
       cached_ = std::make_unique<CachedBlocks>(grid, most_decoded);
@@ -32,8 +32,8 @@ class GridSamples {
     }
   }
 
-  /// Calls use(volume), a FilteredVolume for the calling thread. Looking up throws Error(input) where a packed block is
-  /// damaged.
+  /// Calls use(volume) with a FilteredVolume for the calling thread. A look-up throws Error(input) if a packed block
+  /// is damaged.
   template <class Use>
   void with_volume(Filter filter, const Use& use) {
     if (table_) return use(VolumeSampler{table_->view(), filter});
@@ -41,7 +41,7 @@ class GridSamples {
     use(CachedSampler{{reader}, filter});
   }
 
-  /// Of the table, and of decoded blocks or their cache.
+  /// Returns the bytes of the table and of the decoded blocks or their cache.
   std::uint64_t bytes() const { return table_ ? table_->bytes() : cached_->bytes(); }
 
  private:
@@ -52,7 +52,7 @@ class GridSamples {
   }
 
   std::optional<LeafTable> table_;
-  std::unique_ptr<CachedBlocks> cached_;  // where there is no table
+  std::unique_ptr<CachedBlocks> cached_;  // set if there is no table
 };
 
 }  // namespace weir

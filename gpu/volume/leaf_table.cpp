@@ -26,7 +26,7 @@ NodeLattice leaf_lattice(const Box& domain) {
     throw Error(ErrorKind::input, cat("the grid's bounding box is ", extent, " voxels, at most 2^30 an axis render"));
   }
   const NodeLattice lattice = make_lattice(domain, kLeafDim);
-  // Three axes of 2^27 blocks overflow 64 bits: compare by division.
+  // Three axes of 2^27 blocks overflow 64 bits, so compare by division.
   if (lattice.count.x > kMaxBlocks / lattice.count.y / lattice.count.z) {
     throw Error(ErrorKind::input,
                 compose("the grid's bounding box is ", extent, " voxels, more than 2^31 blocks of 8^3;",
@@ -51,7 +51,7 @@ std::uint64_t most_packed_tiles(const PackedData& packed) {
 }
 
 LeafTable::LeafTable(const NvdbGrid& grid, CodedBlocks coded) : lattice_(leaf_lattice(grid.index_bbox())) {
-  // Entry 0 is the background: calloc's untouched pages cost nothing where a sparse grid is empty.
+  // Entry 0 is the background. calloc's untouched pages cost nothing in the empty parts of a sparse grid.
   entries_.reset(
       static_cast<std::uint32_t*>(std::calloc(static_cast<std::size_t>(lattice_.size()), sizeof(std::uint32_t))));
   if (!entries_) throw std::bad_alloc();
@@ -75,7 +75,7 @@ LeafTable::LeafTable(const NvdbGrid& grid, CodedBlocks coded) : lattice_(leaf_la
            .type = grid.type()};
 }
 
-// Tiles of one value that follow each other share an entry: the blocks without a stream of a packed region do.
+// Consecutive tiles of one value share an entry. The blocks without a stream of a packed region are such tiles.
 void LeafTable::add_tiles(const NvdbGrid& grid) {
   if (grid.packed() != nullptr) tile_values_.reserve(most_packed_tiles(*grid.packed()));
   tile_values_.push_back(grid.background());
@@ -123,7 +123,7 @@ const std::byte* LeafTable::add_decoded(const NvdbGrid& grid) {
   return decoded_.data();
 }
 
-// Tiles of 128 or 4096 voxels cover many blocks; what overhangs the domain is never looked up.
+// Tiles of 128 or 4096 voxels cover many blocks. The part outside the domain is never looked up.
 void LeafTable::add(const GridBlock& block, std::uint32_t entry) {
   const Box all{{0, 0, 0}, lattice_.count};
   const Index3 lo = floor_div(block.origin, kLeafDim) - lattice_.first;

@@ -1,4 +1,4 @@
-// Bounds of what look-ups of levels of detail find in the cells of a macrocell grid. For host and device.
+// Bounds of the values that look-ups of levels of detail find in the cells of a macrocell grid. For host and device.
 #pragma once
 
 #include <cmath>
@@ -12,8 +12,9 @@
 
 namespace weir {
 
-/// For each cell, by a group of threads: bounds of the finite values that rays of every kind may see in it, of voxels
-/// and of levels. `Texels` has voxel(i), texel `i` of a level counted from its first.
+/// Calculates, by one group of threads per cell, the bounds of the finite values that rays of every kind may read in
+/// it, from voxels and from levels. `Texels` has voxel(i), which returns texel `i` of a level, counted from its
+/// first.
 template <class Texels>
 struct LevelBounds {
   struct Shared {
@@ -21,13 +22,13 @@ struct LevelBounds {
   };
 
   LevelLattice lattice;
-  int first = 1;  ///< level
-  int count = 0;  ///< of levels
+  int first = 1;  ///< the finest level
+  int count = 0;  ///< number of levels
   Texels texels[kMostLevels];
   LevelChoice choice;
-  bool drafts = false;  ///< look-ups of voxels that are missing find the first level
+  bool drafts = false;  ///< look-ups of missing voxels read the finest level
   CellLattice cells;
-  const MinMax* voxels = nullptr;  ///< bounds of each cell's voxels, and of those that filtered look-ups in it reach
+  const MinMax* voxels = nullptr;  ///< bounds of each cell's voxels and of those that filtered look-ups in it reach
   MinMax* bounds = nullptr;        ///< the result
 
   template <class Thread>
@@ -38,7 +39,7 @@ struct LevelBounds {
     seen = thread.widest(seen, shared.of_warps);
     if (thread.index() != 0) return;
     if (reach.voxels) {
-      // Bounds that are not a number are unknown, and stay so.
+      // NaN bounds are unknown and stay so.
       const MinMax& own = voxels[cell];
       seen = {seen.min < own.min ? seen.min : own.min, seen.max > own.max ? seen.max : own.max};
     }
@@ -46,12 +47,12 @@ struct LevelBounds {
   }
 
  private:
-  // What look-ups in a cell come by.
+  // What look-ups in a cell can reach.
   struct Reach {
-    RayBox box;  // voxels, inside the domain, with what rounding may leave the cell by
+    RayBox box;  // voxels, inside the domain, with a margin for rounding
     bool voxels;
     int finest;    // counted from the first level
-    int coarsest;  // below the finest: none
+    int coarsest;  // less than `finest`: no levels
   };
 
   WEIR_HOST_DEVICE Reach reach_of(std::uint32_t cell) const {
@@ -72,7 +73,7 @@ struct LevelBounds {
     const RayBox box{{begin(i.x, shift.x, extent.x), begin(i.y, shift.y, extent.y), begin(i.z, shift.z, extent.z)},
                      {end(i.x, shift.x, extent.x), end(i.y, shift.y, extent.y), end(i.z, shift.z, extent.z)}};
 
-    constexpr float kLogarithm = 0.01F;  // levels, more than two machines' logarithms differ by
+    constexpr float kLogarithm = 0.01F;  // levels; more than the logarithms of two machines differ
     const Float3 near = nearest_point(box, choice.eye);
     const Float3 far = farthest_point(box, choice.eye);
     const float fine = lesser(choice.level(near, RayKind::camera), choice.level(near, RayKind::scattered)) - kLogarithm;
@@ -81,12 +82,12 @@ struct LevelBounds {
     const auto last = static_cast<float>(count - 1);
     const auto from = static_cast<float>(first);
     const auto finest = static_cast<int>(std::floor(clamped(fine - from, 0.0F, last)));
-    // A mixture with the first level begins one below it.
+    // Look-ups begin to mix the first level in at one level below it.
     if (!drafts && coarse <= from - 1.0F) return {box, true, finest, finest - 1};
     return {box, fine < from, finest, static_cast<int>(std::ceil(clamped(coarse - from, 0.0F, last)))};
   }
 
-  // A look-up blends the two texels next to it along each axis.
+  // A look-up blends the two nearest texels along each axis.
   template <class Thread>
   WEIR_HOST_DEVICE void include(const Thread& thread, const Reach& reach, int i, MinMax& seen) const {
     const int level = first + i;
@@ -108,7 +109,7 @@ struct LevelBounds {
       const auto z = low.z + static_cast<std::int32_t>(row / sy);
       for (std::int32_t x = low.x; x <= high.x; ++x) {
         const float value = texels[i].voxel({x, y, z});
-        if (!is_finite(value)) continue;  // and so is what is filtered with it: it shows nothing
+        if (!is_finite(value)) continue;  // a value filtered with it is not finite either, and shows nothing
         seen = {lesser(seen.min, value), greater(seen.max, value)};
       }
     }

@@ -1,5 +1,5 @@
-// Which level of detail a look-up reads: the one whose cubes of voxels are as wide as a pixel where the look-up lies.
-// For host and device.
+// Which level of detail a look-up reads: the level whose cubes of voxels are as wide as a pixel at the look-up's
+// position. For host and device.
 #pragma once
 
 #include <cmath>
@@ -8,18 +8,18 @@
 
 namespace weir {
 
-/// What a ray is to a picture.
+/// The kinds of rays of a picture.
 enum class RayKind {
-  camera,     ///< seen by a pixel
-  scattered,  ///< from a collision on: the way light goes on, or comes from
+  camera,     ///< seen directly by a pixel
+  scattered,  ///< after a collision: the way on of the light, or the way to a light
 };
 
-/// The level depends on the position alone: all rays of a kind see one volume, filtered by its distance from the
-/// camera.
+/// The level depends only on the position: all rays of one kind see the same volume, filtered according to the
+/// distance from the camera.
 struct LevelChoice {
   Float3 eye;               ///< voxels from the domain's lowest corner
-  Float3 stretch{1, 1, 1};  ///< edges of a voxel, in units of the shortest
-  float camera = 0;         ///< level at distance 1 of that unit
+  Float3 stretch{1, 1, 1};  ///< edges of a voxel in units of the shortest edge
+  float camera = 0;         ///< level at distance 1 in units of the shortest edge
   float scattered = 0;      ///< the same for RayKind::scattered
 
   WEIR_HOST_DEVICE float level(const Float3& p, RayKind kind) const {

@@ -11,7 +11,7 @@ std::uint64_t level_bytes(const LevelLattice& lattice, int first) {
 }
 
 int finest_level_within(const LevelLattice& lattice, int wanted, std::uint64_t bytes, std::int32_t longest) {
-  constexpr std::uint64_t kMostTexels = std::uint64_t{1} << 31U;  // table_index()
+  constexpr std::uint64_t kMostTexels = std::uint64_t{1} << 31U;  // as table_index() needs
   for (int level = std::clamp(wanted, 1, kMostFinest); level <= kMostFinest; ++level) {
     const Int3 n = lattice.texels(level);
     if (greater(n.x, greater(n.y, n.z)) > longest || lattice.size(level) > kMostTexels) continue;

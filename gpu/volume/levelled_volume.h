@@ -1,4 +1,4 @@
-// A volume with levels of detail: its voxels near the camera, means of cubes of them where a pixel is wider than a
+// A volume with levels of detail: voxels near the camera, and means of cubes of voxels where a pixel is wider than a
 // voxel. For host and device.
 #pragma once
 
@@ -10,8 +10,8 @@
 
 namespace weir {
 
-/// The levels as a look-up sees them. `Texels` has smooth(q), trilinear, texel i covering [i, i + 1), clamped to the
-/// edge.
+/// The levels as look-ups use them. `Texels` has smooth(q), which filters trilinearly; texel i covers [i, i + 1), and
+/// positions are clamped to the edge.
 template <class Texels>
 struct LevelsView {
   LevelLattice lattice;
@@ -19,7 +19,8 @@ struct LevelsView {
   int count = 0;
   Texels texels[kMostLevels];
 
-  /// At a position (voxels from the domain's lowest corner), `level` >= first: between two levels, their mixture.
+  /// Returns the value at a position (voxels from the domain's lowest corner) for `level` >= first. Between two
+  /// levels it is a mixture of both.
   WEIR_HOST_DEVICE float at(const Float3& p, float level) const {
     const float above = lesser(level - static_cast<float>(first), static_cast<float>(count - 1));
     const int i = static_cast<int>(above);
@@ -31,7 +32,7 @@ struct LevelsView {
   }
 };
 
-/// See volume_sampler.h for what a tracer asks of a volume, and level_choice.h for the level.
+/// volume_sampler.h says what a tracer asks of a volume, level_choice.h how the level is chosen.
 template <class Fine, class Texels>
 struct LevelledVolume {
   Fine fine;
@@ -41,18 +42,19 @@ struct LevelledVolume {
   WEIR_HOST_DEVICE float sample(const Float3& p, RayKind kind, Random& random) const {
     return at(p, choice.level(p, kind), [&] { return fine.sample(p, random); });
   }
-  /// As a ray from the camera sees it.
+  /// Returns the value that a ray from the camera sees.
   WEIR_HOST_DEVICE float smooth(const Float3& p) const {
     return at(p, choice.level(p, RayKind::camera), [&] { return fine.smooth(p); });
   }
-  /// Voxels along the cubes that smooth() reads.
+  /// Returns the edge, in voxels, of the cubes that smooth() reads.
   WEIR_HOST_DEVICE float spacing(const Float3& p) const {
     const float level = choice.level(p, RayKind::camera);
     return coarse(level) ? std::exp2(lesser(level, static_cast<float>(levels.first + levels.count - 1))) : 1.0F;
   }
 
  private:
-  // Voxels below the level before the first, a mixture up to it; look_up() reads voxels. -infinity at the eye.
+  // Reads voxels by look_up() below level `first` - 1, and mixes voxels and the first level up to level `first`. At
+  // the eye the level is -infinity.
   template <class LookUp>
   WEIR_HOST_DEVICE float at(const Float3& p, float level, const LookUp& look_up) const {
     const float above = level - static_cast<float>(levels.first - 1);
@@ -62,7 +64,7 @@ struct LevelledVolume {
     return multiply_add(1.0F - above, voxels,
                         multiply_add(above, levels.at(p, static_cast<float>(levels.first)), 0.0F));
   }
-  // What look_up() finds of the voxels; of those that are missing (paged_sampler.h), the finest level.
+  // Returns what look_up() finds in the voxels. If they are missing (paged_sampler.h), returns the finest level.
   template <class LookUp>
   WEIR_HOST_DEVICE float found(const Float3& p, const LookUp& look_up) const {
     if constexpr (requires { Fine::missed(); }) {
@@ -76,7 +78,7 @@ struct LevelledVolume {
       return look_up();
     }
   }
-  // False for a look-up at the eye itself, whose level is -infinity.
+  // False for a look-up at the eye itself, because its level is -infinity.
   WEIR_HOST_DEVICE bool coarse(float level) const { return level >= static_cast<float>(levels.first); }
 };
 

@@ -10,10 +10,10 @@ namespace weir {
 
 namespace {
 
-// Bounds of nothing: any value widens them, and max_opacity takes them as unknown.
+// Bounds of no values. Any value widens them, and max_opacity treats them as unknown.
 constexpr MinMax kNoValues{kInfinity, -kInfinity};
 
-// Cells that a box of voxels touches.
+// Returns the cells that a box of voxels touches.
 Box cells_of(const Box& voxels, std::int64_t edge) {
   return {floor_div(voxels.lo, edge), floor_div(voxels.hi - Index3{1, 1, 1}, edge) + Index3{1, 1, 1}};
 }
@@ -82,7 +82,7 @@ std::vector<Box> MacrocellGrid::content(const std::function<bool(std::size_t)>& 
 
 void MacrocellGrid::include(const Index3& cell, float low, float high) {
   MinMax& bounds = cells_[static_cast<std::size_t>(lattice_.linear(cell - lattice_.first))];
-  // Bounds that are not a number, in the file or here, stay so: unknown.
+  // NaN bounds, in the file or here, are unknown and stay so.
   bounds.min = low < bounds.min || low != low ? low : bounds.min;
   bounds.max = high > bounds.max || high != high ? high : bounds.max;
 }
@@ -106,10 +106,10 @@ void MacrocellGrid::gather(const NvdbGrid& grid) {
       gather_tile(block);
     }
   });
-  if (grid.packed() == nullptr) gather_absent(grid);  // packed regions are all there
+  if (grid.packed() == nullptr) gather_absent(grid);  // a packed grid has all of its regions
 }
 
-// A root entry that is absent is visited by nobody: background all over.
+// for_each_block visits no absent root entry. Its voxels are all background.
 void MacrocellGrid::gather_absent(const NvdbGrid& grid) {
   const NodeLattice roots = make_lattice(lattice_.domain, kUpperDim);
   const Box all{roots.first, roots.first + roots.count};
@@ -134,8 +134,8 @@ void MacrocellGrid::gather_tile(const GridBlock& block) {
                  [&](const Index3& cell) { include(cell, block.value, block.value); });
 }
 
-// A block lies in one cell and is part of the apron of up to seven neighbours, each of which sees
-// only the voxels nearest to it.
+// A block lies in one cell and belongs to the apron of up to seven neighbours. Each neighbour sees only the nearest
+// voxels.
 void MacrocellGrid::gather_coded(const NvdbGrid& grid, const GridBlock& block) {
   const Index3 hi = block.origin + Index3{kLeafDim, kLeafDim, kLeafDim};
   const Box voxels = intersect({block.origin, hi}, lattice_.domain);
@@ -150,7 +150,7 @@ void MacrocellGrid::gather_coded(const NvdbGrid& grid, const GridBlock& block) {
     for_each_index(intersect(voxels, apron), [&](const Index3& voxel) {
       const Index3 i = voxel - block.origin;
       const float v = values[static_cast<std::size_t>(i.x << 6 | i.y << 3 | i.z)];
-      if (!is_finite(v)) return;  // renders as nothing, and a filtered value next to it does too
+      if (!is_finite(v)) return;  // such a value, and any value filtered with it, renders as nothing
       seen.min = std::min(seen.min, v);
       seen.max = std::max(seen.max, v);
     });

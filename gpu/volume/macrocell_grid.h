@@ -1,6 +1,5 @@
-// Bounds of the values in cells of 16^3 or 32^3 voxels, from the file where it
-// has them, and the majorants of the extinction that follow from them through a
-// transfer function. A cell's bounds hold for every filtered lookup in it.
+// Bounds of the values in cells of 16^3 or 32^3 voxels, read from the file if it has them, and the majorants of the
+// extinction that a transfer function gives them. A cell's bounds hold for every filtered look-up in it.
 #pragma once
 
 #include <cstdint>
@@ -14,35 +13,36 @@
 
 namespace weir {
 
-/// Whether a file's own macrocells bound filtered lookups.
+/// Returns whether the file's own macrocells bound filtered look-ups.
 bool has_macrocells(const NvdbGrid& grid);
 
-/// Cells as a tracer walks them.
+/// Returns the cells in the form in which a tracer walks them.
 CellLattice cell_lattice(const NodeLattice& lattice);
 
-/// Whether it is a range of finite values.
+/// Returns whether both ends of the range are finite.
 bool has_finite_ends(const MinMax& range);
 
 class MacrocellGrid {
  public:
-  /// Cells of at least `edge` voxels over grid.index_bbox(): the file's, merged eight to one until
-  /// they are that large, or, where it has none (or without an apron), gathered from all blocks.
+  /// Makes cells of at least `edge` voxels over grid.index_bbox(). The file's cells are merged, eight to one, until
+  /// they are large enough. If the file has none (or none with an apron), the cells are gathered from all blocks.
   MacrocellGrid(const NvdbGrid& grid, std::int64_t edge);
-  /// Given bounds; `cells` has lattice.size() entries.
+  /// Uses given bounds; `cells` has lattice.size() entries.
   MacrocellGrid(const NodeLattice& lattice, std::vector<MinMax> cells);
 
   CellLattice lattice() const { return cell_lattice(lattice_); }
   const NodeLattice& nodes() const { return lattice_; }
   const std::vector<MinMax>& bounds() const { return cells_; }
-  /// From the least to the largest end that is finite; none where no cell has one.
+  /// Returns the range from the least to the largest finite end; none if no cell has a finite end.
   std::optional<MinMax> finite_range() const;
-  /// Of bounds and, while a picture is made, majorants.
+  /// Returns the bytes of the bounds and, while a picture is made, of the majorants.
   std::uint64_t bytes() const { return cells_.size() * kCellBytes; }
   static constexpr std::uint64_t kCellBytes = sizeof(MinMax) + sizeof(float);
-  /// Boxes (voxels, inside the domain) that hold all cells `shows` is true for, called with a position in
-  /// `bounds`: one from the first to the last of each row in x. The domain where there is no such cell.
+  /// Returns boxes (voxels, inside the domain) that contain all cells for which `shows` returns true; it is called
+  /// with a position in `bounds`. There is one box per row in x, from the first to the last such cell. Returns the
+  /// domain if there is no such cell.
   std::vector<Box> content(const std::function<bool(std::size_t)>& shows) const;
-  /// Largest opacity of each cell, in [0, 1].
+  /// Returns the largest opacity of each cell, in [0, 1].
   std::vector<float> majorants(const TransferFunction& transfer) const;
 
  private:

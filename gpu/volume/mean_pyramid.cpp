@@ -15,7 +15,7 @@ namespace {
 
 using BlockValues = std::array<float, kLeafVoxels>;
 
-// A block's values; of one with one value, only the first is set, and true is returned.
+// Reads a block's values. If the block has one value, only the first is set and true is returned.
 struct TableBlocks {
   LeafTableView table;
 
@@ -34,7 +34,7 @@ struct DenseBlocks {
   DenseView voxels;
   Int3 shift;  // voxels from the first block's corner to the domain's
 
-  // Those outside the domain are not looked at.
+  // Voxels outside the domain are never used; they are filled with the nearest inside.
   bool read(const Int3& at, BlockValues& values) const {
     const Int3 low{8 * at.x - shift.x, 8 * at.y - shift.y, 8 * at.z - shift.z};
     for (std::int32_t i = 0; i < kLeafVoxels; ++i) {
@@ -52,7 +52,7 @@ struct PackedBlocks {
   bool read(const Int3& at, BlockValues& values) const { return blocks.read(at, values); }
 };
 
-// A group of one thread.
+// A group that consists of one thread.
 struct LoneThread {
   unsigned index() const { return 0; }
   unsigned count() const { return 1; }
@@ -61,7 +61,7 @@ struct LoneThread {
 
 Int3 blocks_of(const Int3& voxels) { return {voxels.x >> 3, voxels.y >> 3, voxels.z >> 3}; }
 
-// Adds the voxels [low, high) of the domain's first region's lattice that lie in `block`.
+// Adds the voxels [low, high) that lie in `block`, counted from the corner of the domain's first region.
 void add_block(VoxelMean& mean, const BlockValues& values, bool one_value, const Int3& block, const Int3& low,
                const Int3& high) {
   const auto in_block = [](std::int32_t v, std::int32_t b) { return clamped(v - 8 * b, 0, 8); };
@@ -74,7 +74,7 @@ void add_block(VoxelMean& mean, const BlockValues& values, bool one_value, const
   }
 }
 
-// Calls take(i) for all of [low, high).
+// Calls take(i) for all i in [low, high).
 template <class Take>
 void for_each_in(const Int3& low, const Int3& high, const Take& take) {
   for (std::int32_t x = low.x; x < high.x; ++x) {
@@ -84,7 +84,8 @@ void for_each_in(const Int3& low, const Int3& high, const Take& take) {
   }
 }
 
-// The finest level of a pyramid, made from the voxels. It is filled by units: texels, or blocks where these are larger.
+// The finest level of a pyramid, made from the voxels. It is filled unit by unit. A unit is a texel, or a block if
+// blocks are larger than texels.
 template <class Blocks>
 struct FinestLevel {
   const LevelLattice& lattice;
@@ -107,7 +108,7 @@ struct FinestLevel {
   }
 
  private:
-  // A texel of the voxels [low, high), which are those of whole blocks but for the domain's bounds.
+  // Fills a texel from the voxels [low, high). They are whole blocks, except at the domain's bounds.
   void fill_texel(const Int3& texel, const Int3& low, const Int3& high) const {
     BlockValues values{};
     VoxelMean mean;
@@ -119,7 +120,7 @@ struct FinestLevel {
     texels[table_index(texel, lattice.texels(level))] = mean.value();
   }
 
-  // The texels, 2^(3 - level) along an axis, whose voxels are in one block, which is a unit.
+  // Fills the texels of one block, which is a unit: 2^(3 - level) texels along each axis.
   void fill_block(const Int3& unit, const Int3& block) const {
     BlockValues values{};
     const bool one_value = read(block, values);
@@ -138,7 +139,8 @@ struct FinestLevel {
     });
   }
 
-  // Of a unit, counted from the level's first; those before it are outside the domain.
+  // Returns the first texel of a unit, counted from the level's first texel. Texels before that are outside the
+  // domain.
   Int3 first_texel(const Int3& unit) const {
     const int parts = unit_level() - level;
     const Int3 first_unit = lattice.first(unit_level());
@@ -147,7 +149,7 @@ struct FinestLevel {
             ((first_unit.z + unit.z) << parts) - first.z};
   }
 
-  // `block` counts from the first region's corner, the table from the domain's first block.
+  // `block` counts from the first region's corner. The table counts from the domain's first block.
   bool read(const Int3& block, BlockValues& values) const {
     const Int3 corner = blocks_of(lattice.shift);
     return blocks.read({block.x - corner.x, block.y - corner.y, block.z - corner.z}, values);
@@ -183,7 +185,7 @@ void MeanPyramid::fill(const Blocks& blocks, int threads) {
   });
 }
 
-// Work is split into columns in z of units: cubes of one block at least, and of one texel at least, so that each block
+// Splits the work into columns of units in z. A unit is at least one block and at least one texel, so that each block
 // is read once.
 template <class Blocks>
 void MeanPyramid::fill_finest(const Blocks& blocks) {

@@ -1,4 +1,4 @@
-// Levels of detail of a volume on the CPU: means of its voxels in memory.
+// Levels of detail of a volume on the CPU: means of its voxels, kept in memory.
 #pragma once
 
 #include <vector>
@@ -13,17 +13,18 @@ namespace weir {
 
 class MeanPyramid {
  public:
-  /// The levels from `first` (at most kMostFinest) on of a grid over `domain`; `threads` 0: all of the machine's. The
-  /// voxels are those of `table`.
+  /// Makes the levels from `first` (at most kMostFinest) on of a grid over `domain`, from the voxels of `table`.
+  /// `threads` 0 means all of the machine's.
   MeanPyramid(const Box& domain, const LeafTableView& table, int first, int threads);
-  /// Of a packed grid, whose coded blocks are decoded one after the other.
+  /// For a packed grid, whose coded blocks are decoded one after the other.
   MeanPyramid(const Box& domain, const CachedBlocks& blocks, int first, int threads);
 
-  /// Of a dense volume.
+  /// For a dense volume.
   MeanPyramid(const Box& domain, const DenseView& voxels, int first, int threads);
 
   LevelsView<DenseSampler> view() const;
-  /// Of each of `cells`, what look-ups of this choice of levels may see in it (level_bounds.h); `drafts` as there.
+  /// Returns, for each of `cells`, the bounds of the values that look-ups with this choice of levels may read in it
+  /// (level_bounds.h, also for `drafts`).
   std::vector<MinMax> bounds(const MacrocellGrid& cells, const LevelChoice& choice, int threads,
                              bool drafts = false) const;
   int first() const { return first_; }
@@ -33,7 +34,7 @@ class MeanPyramid {
   void fill(const Blocks& blocks, int threads);
   template <class Blocks>
   void fill_finest(const Blocks& blocks);
-  /// Makes `level` from the one below it.
+  /// Makes `level` from the next finer level.
   void reduce_level(int level);
 
   LevelLattice lattice_;
@@ -41,7 +42,7 @@ class MeanPyramid {
   std::vector<std::vector<float>> levels_;
 };
 
-/// Of a grid's index box.
+/// Returns the level lattice of a grid's index box.
 inline LevelLattice level_lattice(const Box& domain) {
   const BlockLattice blocks = block_lattice(domain);
   return {blocks.shift, blocks.extent};

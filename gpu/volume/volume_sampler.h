@@ -1,6 +1,5 @@
-// Filtered values of a volume at any position. Coordinates are voxels from the
-// domain's lowest corner: voxel i covers [i, i + 1), its centre is i + 0.5, and
-// positions outside are clamped to the domain, like a clamp-to-edge texture.
+// Filtered values of a volume at any position. Coordinates are voxels from the domain's lowest corner: voxel i covers
+// [i, i + 1), and its centre is i + 0.5. Positions outside are clamped to the domain, like a clamp-to-edge texture.
 #pragma once
 
 #include "gpu/math/random.h"
@@ -9,13 +8,14 @@
 
 namespace weir {
 
-/// nearest: the voxel that covers the position. trilinear: of the 8 around it. stochastic: one of
-/// those 8, chosen with its weight; its expectation is the trilinear value, at an eighth of the loads.
+/// nearest: the voxel that covers the position. trilinear: a blend of the 8 voxels around it. stochastic: one of
+/// these 8, chosen with the probability of its weight; its expectation is the trilinear value, at an eighth of the
+/// loads.
 enum class Filter { nearest, trilinear, stochastic };
 
-/// The volume a tracer sees: `sample` for lookups that may draw random numbers, `smooth` for those
-/// that must be a function of the position. Any type with these two and `extent` may take its place.
-/// `Table` holds the voxels: `extent`, `voxel(i)`, and `taps`, the eight that a blend needs.
+/// The volume that a tracer sees: `sample` for look-ups that may draw random numbers, `smooth` for look-ups that must
+/// be a function of the position. Any type with these two and `extent` may replace it. `Table` holds the voxels:
+/// `extent`, `voxel(i)`, and `taps`, the eight voxels that a blend needs.
 template <class Table>
 struct FilteredVolume {
   Table table;
@@ -35,14 +35,14 @@ struct FilteredVolume {
                         upper(i.z, random.uniform() < f.z, table.extent.z)});
   }
 
-  /// Nearest or trilinear; trilinear where the filter is stochastic.
+  /// Filters by `nearest` or trilinearly; trilinearly also for the filter `stochastic`.
   WEIR_HOST_DEVICE float smooth(const Float3& p) const {
     if (filter == Filter::nearest) return table.voxel(nearest(p));
     return trilinear(p);
   }
 
-  /// As smooth(), for values that are told, not drawn: a voxel of no weight plays no part, though it is NaN or
-  /// infinite, so that the centre of a voxel has that voxel's value.
+  /// Like smooth(), for values that are reported, not drawn. A voxel with weight 0 has no effect even if it is NaN or
+  /// infinite, so the value at a voxel's centre is the voxel's.
   float value(const Float3& p) const {
     if (filter == Filter::nearest) return table.voxel(nearest(p));
     return trilinear(p, [](float a, float b, float t) { return t == 0 ? a : mix(a, b, t); });
@@ -71,7 +71,7 @@ struct FilteredVolume {
   WEIR_HOST_DEVICE Int3 nearest(const Float3& p) const {
     return {voxel_of(p.x, table.extent.x), voxel_of(p.y, table.extent.y), voxel_of(p.z, table.extent.z)};
   }
-  // Lowest voxel of the 2 x 2 x 2 around p and the weights of the upper ones.
+  // Sets the lowest voxel of the 2 x 2 x 2 around p, and the weights of the upper voxels.
   WEIR_HOST_DEVICE static void corner(float p, std::int32_t extent, std::int32_t& i, float& f) {
     const float q = clamped(p - 0.5F, 0.0F, static_cast<float>(extent - 1));
     i = lesser(static_cast<std::int32_t>(q), extent - 1);  // float(extent - 1) rounds up beyond 2^24
@@ -87,13 +87,13 @@ struct FilteredVolume {
 /// The voxels of a NanoVDB file.
 using VolumeSampler = FilteredVolume<LeafTableView>;
 
-/// Of a LevelledVolume (levelled_volume.h).
+/// True for a LevelledVolume (levelled_volume.h).
 template <class Volume>
 inline constexpr bool kHasLevels = requires(const Volume& volume, const Float3& p) {
   volume.spacing(p);
 };
 
-/// Voxels between two values that `volume` tells apart at `p`.
+/// Returns the distance, in voxels, between two values that `volume` distinguishes at `p`.
 template <class Volume>
 WEIR_HOST_DEVICE float spacing(const Volume& volume, const Float3& p) {
   if constexpr (kHasLevels<Volume>) {
@@ -103,7 +103,7 @@ WEIR_HOST_DEVICE float spacing(const Volume& volume, const Float3& p) {
   }
 }
 
-/// Central differences over two voxels, or two cubes of voxels, in value per voxel.
+/// Returns central differences over two voxels, or two cubes of voxels, in value per voxel.
 template <class Volume>
 WEIR_HOST_DEVICE Float3 gradient(const Volume& volume, const Float3& p) {
   const float reach = spacing(volume, p);

@@ -1,4 +1,4 @@
-// The mean of the voxels of a cube, which are given block by block. For host and device.
+// The mean of the voxels of a cube, added block by block. For host and device.
 #pragma once
 
 #include <cstdint>
@@ -8,12 +8,12 @@
 
 namespace weir {
 
-/// Of the finite values.
+/// The mean counts only finite values.
 struct VoxelMean {
   double sum = 0;
   double count = 0;
 
-  /// The voxels [low, high) of a block's 512, low corner 0: x << 6 | y << 3 | z.
+  /// Adds the voxels [low, high) of a block's 512, counted from its lowest corner; value index x << 6 | y << 3 | z.
   WEIR_HOST_DEVICE void add(const float* values, const Int3& low, const Int3& high) {
     for (std::int32_t x = low.x; x < high.x; ++x) {
       for (std::int32_t y = low.y; y < high.y; ++y) {
@@ -21,17 +21,17 @@ struct VoxelMean {
       }
     }
   }
-  /// `weight` times `value`.
+  /// Adds `value` with weight `weight`.
   WEIR_HOST_DEVICE void add(float value, double weight) {
     if (!is_finite(value)) return;
     sum += weight * static_cast<double>(value);
     count += weight;
   }
-  /// NaN where nothing was finite.
+  /// Returns the mean; NaN if no value was finite.
   WEIR_HOST_DEVICE float value() const { return static_cast<float>(sum / count); }
 };
 
-/// Texel `i` of level `level` + 1 from the texels of `level`, each with the weight of its voxels.
+/// Returns texel `i` of level `level` + 1. Each texel of `level` counts with the weight of its voxels.
 WEIR_HOST_DEVICE inline float coarser_texel(const LevelLattice& lattice, int level, const float* texels,
                                             const Int3& i) {
   const Int3 from = lattice.first(level);

@@ -22,7 +22,7 @@ std::uint64_t tile_bytes(const NvdbGrid& grid) {
   if (grid.packed() != nullptr) return most_packed_tiles(*grid.packed()) * sizeof(float);
   std::uint64_t tiles = 1;
   grid.for_each_block([&](const GridBlock& block) { tiles += block.coded() ? 0 : 1; });
-  return 2 * tiles * sizeof(float);  // a vector that grows
+  return 2 * tiles * sizeof(float);  // twice, because a vector doubles when it grows
 }
 
 std::uint64_t macrocell_bytes(const NvdbGrid& grid) {
@@ -73,7 +73,7 @@ VoxelPlan plan_voxels(const NvdbGrid& grid, const VoxelMemory& memory) {
   const std::uint64_t most = std::min(share, available);
   if (plan.fixed_bytes + blocks * nvdb::kFloatLeafBytes <= most) return plan;
 
-  // Counted only where the number of positions does not say it already.
+  // Counted only if the number of positions does not decide already.
   plan.decoded_bytes = decoded_bytes(*grid.packed());
   if (plan.fixed_bytes + plan.decoded_bytes <= most) return plan;
   const std::uint64_t needed = plan.fixed_bytes + kLeastCacheBytes;

@@ -10,7 +10,7 @@ namespace {
 constexpr std::uint64_t kMiB = std::uint64_t{1} << 20U;
 constexpr std::uint64_t kResident = 30 * kMiB;
 
-/// A volume that is only planned for.
+/// A volume that is only planned and never read.
 class Planned final : public VolumeSource {
  public:
   explicit Planned(const Index3& extent) { info_.extent = extent; }
@@ -39,7 +39,7 @@ MemoryShares shares_of(Planned& volume, std::uint64_t ceiling, bool may_hold = t
 TEST(ConversionMemory, KeepsValuesInWhatIsLeft) {
   Planned volume({1024, 1024, 1024});
   EXPECT_EQ(shares_of(volume, 512 * kMiB).cache_bytes, 0U);
-  EXPECT_EQ(shares_of(volume, 1566 * kMiB, false).cache_bytes, 768 * kMiB);  // 3/4 of what is beyond 512 and 30 MiB
+  EXPECT_EQ(shares_of(volume, 1566 * kMiB, false).cache_bytes, 768 * kMiB);  // 3/4 of the memory beyond 512 and 30 MiB
   EXPECT_EQ(shares_of(volume, 16384 * kMiB).cache_bytes,
             LeafCache::whole_bytes(make_lattice(volume.info().domain(), kLeafDim)));
   Planned small({160, 160, 160});

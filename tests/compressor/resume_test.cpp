@@ -1,4 +1,4 @@
-// What an interrupted conversion keeps, when it is taken up, and when not.
+// What an interrupted conversion keeps, when it is continued, and when it is not.
 #include "compressor/resume.h"
 
 #include <gtest/gtest.h>
@@ -38,8 +38,8 @@ TEST_F(ResumeTest, InterruptedSurveyReadsTheRestOnly) {
       << result.notices[0];
   EXPECT_TRUE(files.content("out.nvdb") == expected.file);
   EXPECT_EQ(result.record, expected.record);
-  // Of the 4 MiB that were surveyed, a region that was not whole is read again. The second pass reads a little more or
-  // less with blocks of another shape.
+  // 4 MiB were surveyed; only a region that was not complete is read again. The second pass reads a little more or less
+  // with blocks of another shape.
   EXPECT_LE(result.bytes_read, expected.bytes_read - (2 << 20));
 }
 
@@ -62,19 +62,19 @@ TEST_F(ResumeTest, InterruptedEncodePassReadsTheRestOnly) {
   EXPECT_EQ(files.names(), kResult);
 }
 
-// What the saving thread writes down is whole, whatever the passes do meanwhile.
+// The saving thread writes a complete state, whatever the passes do at the same time.
 TEST_F(ResumeTest, SavesBesideTheWorkCanBeContinuedFrom) {
   ConversionOptions options = base();
   options.threads = 2;
   const Result expected = undisturbed(options);
-  options.save_interval_s = 1e-9;  // as soon as the last one is over
+  options.save_interval_s = 1e-9;  // saves again as soon as the last save is over
   const int calls = calls_of(options);
   for (const int part : {1, 2, 3, 4}) {
     SCOPED_TRACE(part);
     CrashFileSystem files;
     if (!killed(options, files, calls * part / 5)) continue;
     files.lose_unflushed();
-    options.overwrite = !files.content("out.nvdb").empty();  // where it was killed after the last rename
+    options.overwrite = !files.content("out.nvdb").empty();  // needed if it was killed after the last rename
     run(options, files);
     EXPECT_EQ(files.names(), kResult);
     EXPECT_TRUE(files.content("out.nvdb") == expected.file);
@@ -119,7 +119,7 @@ TEST_F(ResumeTest, ResumeOff_RemovesLeftoverFiles) {
   EXPECT_EQ(files.names(), kResult);
 }
 
-// The survey is kept: it does not depend on the scene. What was encoded is not.
+// The survey is kept, because it does not depend on the scene. Encoded leaves are not kept.
 TEST_F(ResumeTest, ChangedScene_KeepsTheSurveyAndEncodesAgain) {
   ConversionOptions options = base();
   Scene scene;
@@ -149,7 +149,7 @@ TEST_F(ResumeTest, ChangedScene_ErrorTarget_GivesTheUndisturbedBytes) {
   for (const int part : {6, 7, 8, 9}) {  // in later attempts, too
     CrashFileSystem files;
     killed(options, files, calls * part / 10);
-    edited.overwrite = !files.content("out.nvdb").empty();  // where it was killed after the last rename
+    edited.overwrite = !files.content("out.nvdb").empty();  // needed if it was killed after the last rename
     run(edited, files);
     EXPECT_TRUE(files.content("out.nvdb") == expected.file) << part;
   }
@@ -198,14 +198,14 @@ void flip_bit(FileSystem& files, const std::string& path, std::uint64_t at) {
 const std::string kSurveyedAgain = "out.nvdb: an interrupted conversion of it is not continued: ";
 const std::string kEncodedAgain = "out.nvdb: what was encoded of it is encoded again: ";
 
-// Whatever byte of whichever file is damaged, the output is that of an undisturbed conversion; that a byte on which it
-// depends is damaged is said.
+// Whatever byte of any file is damaged, the output is that of an undisturbed conversion. If the output depends on the
+// damaged byte, a notice says so.
 class ResumeOfDamage : public ResumeTest {
  protected:
   using ResumeTest::ResumeTest;
 
-  // After an interruption once `bytes` of the pass are done, of bytes all over the file. Returns of how many it was
-  // said.
+  // Interrupts when `bytes` of the pass are done and damages one byte, for bytes all over the file. Returns for how
+  // many of these bytes a notice reported the damage.
   int same_bytes(const ConversionOptions& options, const std::string& pass, std::uint64_t bytes,
                  const std::string& name, const std::string& reason) {
     constexpr std::uint64_t kPlaces = 5;
@@ -252,7 +252,7 @@ TEST_F(ResumeOfDamage, Quantised) {
   expect_same_bytes(options, "encode", 4 << 20, "volume", kEncodedAgain);
 }
 
-// Of 10 MiB that are asked for, 3 are in use.
+// Of the requested 10 MiB, 3 MiB are in use.
 TEST_F(ResumeOfDamage, Padding) {
   ConversionOptions options = base();
   options.encoding = Encoding::fp4;
@@ -283,7 +283,7 @@ TEST_F(ResumeOfDamage, Packed) {
   options.memory = 12U << 20U;
   options.budget.rate = 12;
   expect_same_bytes(options, "survey", 4 << 20, "ladders", kSurveyedAgain);
-  same_bytes(options, "encode", 4 << 20, "ladders", kSurveyedAgain);  // they are built again
+  same_bytes(options, "encode", 4 << 20, "ladders", kSurveyedAgain);  // damage may not show: ladders are built again
   expect_same_bytes(options, "encode", 4 << 20, "records", kEncodedAgain);
 }
 
@@ -298,7 +298,7 @@ TEST_F(ResumeOfDamage, PackedStreams) {
   }
 }
 
-// Ladders are built again after the survey: of blocks with missing values, or of all, which is not damage.
+// Ladders are built again after the survey, of blocks with missing values or of all blocks. This is no damage.
 class ResumeOfDamagedHoles : public ResumeOfDamage {
  protected:
   ResumeOfDamagedHoles()

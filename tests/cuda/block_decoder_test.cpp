@@ -1,4 +1,4 @@
-// The device decodes packed blocks to the bits that the host decodes.
+// The device decodes packed blocks to exactly the bits that the host decodes.
 #include "gpu/cuda/packed/block_decoder.h"
 
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ TEST_F(BlockDecoderTest, GivesTheBitsThatTheHostDecodes) {
   BlockDecoder decoder(packed());
   const DeviceArray<BlockId> ids{std::span<const BlockId>(blocks_)};
   const DeviceArray<float> device(512 * blocks_.size());
-  // In one call, and in calls of a few blocks.
+  // Once in one call, and once in calls of a few blocks.
   for (const std::size_t batch : {blocks_.size(), std::size_t{97}}) {
     for (std::size_t first = 0; first < blocks_.size(); first += batch) {
       const std::size_t count = std::min(batch, blocks_.size() - first);

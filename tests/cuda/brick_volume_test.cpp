@@ -1,5 +1,5 @@
-// Packed grids, and grids larger than the device memory they are given, on a device: the pictures are those of the CPU,
-// and those of a cache have the bits of those of all bricks.
+// Packed grids, and grids larger than the device memory they are given, on a device. The pictures agree with the
+// CPU's, and pictures from a cache are bit for bit those of all bricks.
 #include "gpu/cuda/render/brick_volume.h"
 
 #include <gtest/gtest.h>
@@ -64,7 +64,7 @@ int differing(const Image& a, const Image& b) {
   return count;
 }
 
-// Largest difference of any channel of the pixels but for the 2 % of them that differ most.
+// Returns the largest difference of any channel, without the 2 % of the pixels that differ most.
 float difference(const Image& a, const Image& b) {
   std::vector<float> differences;
   for (std::size_t i = 0; i < a.pixels.size(); ++i) {
@@ -151,7 +151,7 @@ TEST_F(BrickVolumeTest, ASmallCacheDrawsTheBitsOfAllBricksWithLevelsOfDetail) {
   EXPECT_NE(some->load_summary().note.find("a cache of "), std::string::npos) << some->load_summary().note;
   for (const RenderMode mode : kModes) {
     for (const Filter filter : kFilters) {
-      // Near voxels are looked up, far ones are not; light sees coarser levels than the camera.
+      // Near voxels are looked up, far ones are not. Scattered light sees coarser levels than the camera.
       for (const LevelOfDetail& levels : {LevelOfDetail{-1.2F, 0}, LevelOfDetail{-1.2F, 2}}) {
         const Image found = picture(*small, *some, mode, filter, 3, levels);
         const Image expected = picture(*large, *all, mode, filter, 3, levels);
@@ -161,7 +161,7 @@ TEST_F(BrickVolumeTest, ASmallCacheDrawsTheBitsOfAllBricksWithLevelsOfDetail) {
   }
 }
 
-// Bricks that are missing are there for the next draft; with all of them there, a draft is the picture.
+// Missing bricks are there for the next draft. When all bricks are there, a draft equals the picture.
 TEST_F(BrickVolumeTest, DraftsBecomeThePicture) {
   const auto grid = ball();
   for (const bool levels : {false, true}) {

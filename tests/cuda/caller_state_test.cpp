@@ -1,4 +1,4 @@
-// What a program has left in its thread when it calls: work in its default stream, and an error that it dealt with.
+// What a calling program has left in its thread: work in its default stream, and an error that it has handled.
 #include <cuda_runtime_api.h>
 #include <gtest/gtest.h>
 

@@ -61,7 +61,7 @@ class CudaBackendTest : public testing::Test {
 constexpr std::array kTypes{GridType::float32, GridType::fp4, GridType::fp8, GridType::fp16, GridType::fpn};
 constexpr std::array kFilters{Filter::nearest, Filter::trilinear, Filter::stochastic};
 
-/// Largest difference of any channel of the pixels but for the `outliers` share of them that differ most.
+/// Returns the largest difference of any channel, without the share `outliers` of the pixels that differ most.
 float difference(const Image& a, const Image& b, double outliers) {
   std::vector<float> differences;
   for (std::size_t i = 0; i < a.pixels.size(); ++i) {
@@ -72,7 +72,8 @@ float difference(const Image& a, const Image& b, double outliers) {
   return differences[static_cast<std::size_t>(static_cast<double>(differences.size() - 1) * (1 - outliers))];
 }
 
-// Without scattering both back ends compute the same numbers but for roundings; few rays hit or miss an edge by them.
+// Without scattering, both back ends compute the same numbers except for rounding. Rounding makes few rays hit or
+// miss an edge.
 TEST_F(CudaBackendTest, MarchedPicturesAreTheCpus) {
   CudaOptions options;
   options.atlas = false;
@@ -95,11 +96,11 @@ TEST_F(CudaBackendTest, MarchedPicturesAreTheCpus) {
   }
 }
 
-// Mean over pixels of the squared difference of two pictures, in units of its variance: 1 where both are drawn from
-// one distribution.
+// The mean over pixels of the squared difference of two pictures, in units of its variance. It is 1 if both are drawn
+// from one distribution.
 struct Agreement {
   double z2 = 0;    ///< mean over pixels of z^2
-  double bias = 0;  ///< of the mean over all pixels, in its standard deviations
+  double bias = 0;  ///< deviation of the mean over all pixels, in standard deviations
 };
 
 template <class Draw>
@@ -145,7 +146,7 @@ Agreement compare(const A& a, const B& b, int batches) {
   return result;
 }
 
-// z^2 has the mean (n - 1) / (n - 3) for n - 1 = 30 degrees of freedom and over 1000 pixels: 1.07 within 0.15.
+// z^2 has the mean (n - 1) / (n - 3) for n - 1 = 30 degrees of freedom; over 1000 pixels this is 1.07 within 0.15.
 void expect_one_distribution(const Agreement& agreement, const std::string& what) {
   EXPECT_GT(agreement.z2, 0.85) << what;
   EXPECT_LT(agreement.z2, 1.3) << what;
@@ -179,7 +180,7 @@ TEST_F(CudaBackendTest, PathTracedPicturesAgreeWithTheCpuWithinTheirNoise) {
   }
 }
 
-// Hangs would show as a test that never ends; what is drawn is the CPU's.
+// A hang would show as a test that never ends. The pictures are the CPU's.
 TEST_F(CudaBackendTest, OddVolumesAndCameras) {
   const auto cuda = make_cuda_backend({});
   const auto cpu = make_cpu_backend(0);
@@ -196,7 +197,7 @@ TEST_F(CudaBackendTest, OddVolumesAndCameras) {
   extreme.volume.density = 1e30;
   Scene inside;
   inside.camera.position = Double3{15.5, 15.5, 15.5};  // the corner of eight cells
-  inside.camera.look_at = Double3{31.5, 15.5, 15.5};   // along their edges
+  inside.camera.look_at = Double3{31.5, 15.5, 15.5};   // looks along the cells' edges
   Scene axis;
   axis.camera.azimuth = 0;
   axis.camera.elevation = 0;
@@ -256,7 +257,7 @@ TEST_F(CudaBackendTest, AGridThatTheDeviceHasNoRoomForStaysInHostMemory) {
   const auto cuda = make_cuda_backend({});
   const auto grid = file(TestGrid({{0, 0, 0}, {41, 41, 41}}, ball));
   const Image expected = picture(*cuda, grid, {}, Filter::stochastic, 1, 16);
-  const auto others = [&] {  // leaves half of what a back end wants to be left alone
+  const auto others = [&] {  // takes so much memory that half of what a back end leaves free remains
     const std::uint64_t free = free_device_bytes(std::numeric_limits<std::uint64_t>::max());
     void* memory = nullptr;
     check_cuda(cudaMalloc(&memory, free - kSpareDeviceBytes / 2), "test");

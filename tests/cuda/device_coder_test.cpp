@@ -1,4 +1,4 @@
-// The device surveys and encodes packed blocks to the bits that the host gives.
+// The device surveys and encodes packed blocks to exactly the bits that the host gives.
 #include "gpu/cuda/encode/device_coder.h"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ namespace {
 
 using Values = std::array<float, 512>;
 
-// The blocks of a volume, whose first one begins 5, 0 and 3 voxels before it where the volume is larger than one.
+// The blocks of a volume. If the volume is larger than one block, the first block begins 5, 0 and 3 voxels before it.
 struct Blocks {
   const test::BlockVolume& volume;
   Box voxels;
@@ -269,10 +269,10 @@ TEST(DeviceCoder, StreamsOfRoundedValuesAndOfFloatsInOrderAreThoseOfTheHost) {
   EXPECT_GT(compared, 1000U);
 }
 
-// The steps' results on the host, which tests/fake_coder/ compares with the CPU's own code.
+// Compares with the steps' results on the host, which tests/fake_coder/ compares with the CPU's own code.
 TEST(ResidentVolume, SummariesRecordsValuesAndCountsAreThoseOfTheStepsOnTheHost) {
   WEIR_NEEDS_DEVICE();
-  const KeptDevice kept(0);  // a test before may have left another one current
+  const KeptDevice kept(0);  // an earlier test may have left another device current
   using namespace encode_detail;
   const DigestTables tables;
   std::size_t summarized = 0;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint64_t kMuch = 1ULL << 30U;
 
-// A back end's pool keeps what is given back to it.
+// The pool of a back end keeps the memory that is given back to it.
 TEST(FreeDeviceBytes, ReleasesThePoolsReserveWhenItIsWanted) {
   WEIR_NEEDS_DEVICE();
   const auto backend = make_cuda_backend({});

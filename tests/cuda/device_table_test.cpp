@@ -21,7 +21,7 @@ float wave(const Index3& i) {
          0.01F * static_cast<float>(i.z);
 }
 
-/// Calls use(table) with the grid on the device.
+/// Calls use(table) with the table of the grid on the device.
 template <class Use>
 decltype(auto) with_table(const NvdbGrid& grid, const Use& use) {
   const DeviceArray<std::byte> bytes(grid.data());
@@ -41,7 +41,8 @@ void expect_every_voxel(const NvdbGrid& grid) {
   });
 }
 
-/// Positions all over the domain and a voxel beyond, many of them on borders of voxels, leaves and the domain.
+/// Returns positions all over the domain and one voxel beyond, many of them on borders of voxels, leaves and the
+/// domain.
 std::vector<Float3> positions(const NvdbGrid& grid) {
   const Index3 e = grid.index_bbox().extent();
   std::vector<Float3> result;
@@ -100,12 +101,12 @@ TEST_P(DeviceTableOfType, AStochasticTapIsTrilinearInTheMean) {
   const std::vector<float> values =
       with_table(volume.grid(), [&](const auto& table) { return test::read_stochastic(table, at, kDraws); });
   for (std::size_t i = 0; i < at.size(); ++i) {
-    // Values are within 6 of each other, so a mean's deviation is below 3 / 64.
+    // Values are within 6 of each other, so the standard deviation of a mean is below 3 / 64.
     ASSERT_NEAR(values[i], (VolumeSampler{host.view(), Filter::trilinear}.smooth(at[i])), 5.5F * 3 / 64);
   }
 }
 
-// The texture unit has 8 bits of each weight: an error of 2^-9 of the largest step along each axis.
+// The texture unit has weights of 8 bits: an error of 2^-9 of the largest step along each axis.
 TEST_P(DeviceTableOfType, TheAtlasFiltersToEightBits) {
   WEIR_NEEDS_DEVICE();
   const TestGrid volume = grid();

@@ -1,5 +1,5 @@
-// Of every way to the device. Runs on a device in weir_tests_cuda, and on a pretended one (tests/fake_cuda/)
-// everywhere.
+// Tests every way of loading to the device. They run on a device in weir_tests_cuda, and on a pretended one
+// (tests/fake_cuda/) everywhere.
 #include "gpu/cuda/grid_loader.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ constexpr std::array kPaths{LoadPath::registered, LoadPath::pinned_ring, LoadPat
 
 std::vector<std::byte> downloaded(const DeviceGrid& grid) {
   std::vector<std::byte> bytes(grid.bytes());
-  // Default: from the device or from registered host memory, as the address says.
+  // cudaMemcpyDefault copies from the device or from registered host memory, according to the address.
   check_cuda(cudaMemcpy(bytes.data(), grid.data(), bytes.size(), cudaMemcpyDefault), "reading back");
   return bytes;
 }
@@ -64,7 +64,7 @@ class GridLoader : public testing::Test {
     return path;
   }
 
-  // Skips direct storage where the system does not offer it.
+  // Direct storage is skipped if the system does not offer it.
   static bool offered(LoadPath path) { return path != LoadPath::direct_storage || DirectStorage::offered(); }
 
   const TemporaryDirectory directory_;
@@ -78,7 +78,7 @@ TEST_F(GridLoader, EveryWayBringsTheGridWithoutItsPadding) {
     ASSERT_EQ(file.grid().grid_bytes() - file.grid().data_bytes(), layout.tail_bytes);
     for (const LoadPath path : kPaths) {
       if (!offered(path)) continue;
-      // From one chunk for all to hundreds of a page.
+      // From one chunk for the whole grid to hundreds of one page each.
       for (const std::uint64_t chunk_bytes : {1ULL << 30U, 1ULL << 20U, 70000ULL, 1ULL}) {
         SCOPED_TRACE(cat(load_path_name(path), ", chunks of ", chunk_bytes, ", grid at ", layout.grid_offset));
         DeviceBuffer buffer;
@@ -169,7 +169,7 @@ TEST_F(GridLoader, ZeroCopyLeavesTheGridInHostMemory) {
     EXPECT_TRUE(holds(grid, file));
     DeviceBuffer buffer = std::move(grid).take_buffer();
     EXPECT_EQ(buffer.capacity(), 0U);
-    // The pages are unlocked: they can be locked again.
+    // The pages are unlocked, because they can be locked again.
     EXPECT_TRUE(holds(load_grid(file, std::move(buffer), {.only = LoadPath::registered}), file));
     EXPECT_TRUE(holds(load_grid(file, {}, {.only = LoadPath::pinned_ring, .zero_copy = true}), file));
   }
@@ -195,7 +195,7 @@ TEST_F(GridLoader, SaysWhichFileWasTruncatedWithoutASignal) {
       EXPECT_EQ(refusal(ErrorKind::input,
                         [&] { load_grid(file, std::move(buffer), {.only = path, .zero_copy = zero_copy}); }),
                 cat(name, ": had ", bytes, " bytes when it was opened, has 20000 now; open it again when it is whole"));
-      // Nothing sticks: the same buffer takes a whole file.
+      // No error sticks: the same buffer takes a whole file.
       const NvdbFile whole(write(16));
       EXPECT_TRUE(holds(load_grid(whole, std::move(buffer), {.only = path}), whole));
     }
@@ -220,7 +220,7 @@ TEST_F(GridLoader, LeavesNothingBehindAfterAThousandLoads) {
     const bool zero_copy = n % 5 == 4;
     if (zero_copy) {
       load_grid(file, {}, {.zero_copy = true});
-    } else if (path != LoadPath::direct_storage) {  // cuFile keeps what it likes
+    } else if (path != LoadPath::direct_storage) {  // cuFile keeps resources as it likes
       load_grid(file, {}, {.only = path, .chunk_bytes = 65536});
     }
   };

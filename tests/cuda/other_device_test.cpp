@@ -1,4 +1,4 @@
-// Work on the second device of a machine: threads, and the first device, are as they were.
+// Work on the second device of a machine leaves threads and the first device as they were.
 #include <cuda_runtime_api.h>
 #include <gtest/gtest.h>
 
@@ -36,7 +36,8 @@ TEST_F(OtherDevice, AThreadWithoutAContext_MakesNoneOnTheFirst) {
   EXPECT_EQ(has_context(0), used);
 }
 
-// The driver's count of who holds a context does not grow with the calls, nor does the context go with the first.
+// The driver's count of a context's holders does not grow with the calls, and the context does not end with the first
+// holder.
 TEST_F(OtherDevice, ContextsStayUntilTheDeviceIsReset) {
   std::thread([] {
     void* const first = primary_context(1);

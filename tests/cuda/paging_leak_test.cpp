@@ -1,4 +1,4 @@
-// A thousand loads of packed grids and a thousand evictions of bricks on a device, which leave its memory, page-locked
+// A thousand loads of packed grids and a thousand evictions of bricks on a device leave device memory, page-locked
 // memory, descriptors and mappings as they were.
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@
 namespace weir::paging_leak_test {
 namespace {
 
-constexpr std::size_t kOther = std::size_t{1} << 20U;  // bytes that a driver may round up to
+constexpr std::size_t kOther = std::size_t{1} << 20U;  // bytes that a driver may round up by
 
 struct Held {
   std::uint64_t pool = test::pool_bytes();
@@ -39,7 +39,7 @@ class PagingLeaks : public testing::Test {
  protected:
   void SetUp() override { WEIR_NEEDS_DEVICE(); }
 
-  // So thin that rays meet the bricks of all of it.
+  // The medium is so thin that rays meet bricks everywhere in it.
   static Picture picture(Backend& backend, LoadedVolume& volume, double azimuth, bool draft = false) {
     Scene scene;
     scene.mode = RenderMode::dvr;

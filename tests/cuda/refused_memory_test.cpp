@@ -1,5 +1,5 @@
-// A device that refuses memory at any moment of a load and a picture: the picture is the same, or there is an error of
-// one line that says what to do; nothing stays behind, and the next picture is right.
+// A device refuses memory at some moment of a load or a picture. Either the picture is the same, or there is an error
+// of one line that says what to do. Nothing stays behind, and the next picture is right.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -62,7 +62,7 @@ class RefusedMemory : public testing::Test {
 
   static std::uint64_t step_of(const Case& tried) { return tried.edge > 100 ? test::refusal_step() : 1; }
 
-  // One line with what was refused and what to do.
+  // Expects one line that says what was refused and what to do.
   static void expect_clear(const Error& error, const std::string& place) {
     const std::string message = error.what();
     EXPECT_EQ(error.kind(), ErrorKind::io) << message;
@@ -74,7 +74,7 @@ class RefusedMemory : public testing::Test {
     }
   }
 
-  // Each allocation of a load and a picture in turn.
+  // Refuses each allocation of a load and a picture in turn.
   void expect_picture_or_error(const Case& tried, bool lasting) {
     SCOPED_TRACE(tried.name + (lasting ? ", this and all later ones" : ", this one"));
     const auto grid = file(tried);
@@ -83,7 +83,7 @@ class RefusedMemory : public testing::Test {
       const auto volume = backend->load(grid, 16, nullptr);
       return picture(*backend, *volume, tried).image;
     };
-    whole();  // what CUDA itself allocates once
+    whole();  // allocates once what CUDA itself needs
     const std::uint64_t before = test::allocations();
     const Image expected = whole();
     const std::uint64_t count = test::allocations() - before;
@@ -116,7 +116,7 @@ class RefusedMemory : public testing::Test {
 };
 
 const Case kAll{"all bricks", 64};
-const Case kSome{"a cache", 240, std::uint64_t{70} << 20U};  // so that a smaller one does, too
+const Case kSome{"a cache", 240, std::uint64_t{70} << 20U};  // large enough that a smaller cache works, too
 const Case kLevels{"a cache with levels", 200, test::kSmallCacheWithLevels, true};
 const Case kUnfit{"a cache made again with floats",      240, std::uint64_t{70} << 20U, false, RenderMode::mip,
                   std::numeric_limits<float>::infinity()};
@@ -128,7 +128,8 @@ TEST_F(RefusedMemory, OfACache_AllFromOneOn) { expect_picture_or_error(kSome, tr
 TEST_F(RefusedMemory, OfLevels_OneAllocation) { expect_picture_or_error(kLevels, false); }
 TEST_F(RefusedMemory, OfLevels_AllFromOneOn) { expect_picture_or_error(kLevels, true); }
 
-// The second frame, of another size: what the volume holds makes room for it, or it fails and the third one works.
+// The second frame has another size. Either the volume's memory makes room for it, or it fails and the third frame
+// works.
 TEST_F(RefusedMemory, InTheMiddle_AFrameOfAnotherSizeIsDrawnOrFailsAndTheNextOneIsRight) {
   for (const Case& tried : {kAll, kSome, kLevels}) {
     SCOPED_TRACE(tried.name);
@@ -143,7 +144,7 @@ TEST_F(RefusedMemory, InTheMiddle_AFrameOfAnotherSizeIsDrawnOrFailsAndTheNextOne
     ASSERT_GE(count, 3U);
     for (std::uint64_t n = 0; n < count; ++n) {
       for (const bool lasting : {false, true}) {
-        if (lasting || n == 0) volume = backend->load(grid, 16, std::move(volume));  // as large as it was
+        if (lasting || n == 0) volume = backend->load(grid, 16, std::move(volume));  // as large as it was before
         picture(*backend, *volume, tried);
         try {
           const RefusedAllocations refused(n, lasting);
@@ -161,7 +162,7 @@ TEST_F(RefusedMemory, InTheMiddle_AFrameOfAnotherSizeIsDrawnOrFailsAndTheNextOne
   }
 }
 
-// A brick that 16 bits do not hold is met while a picture is drawn, and the cache is made again.
+// A brick that 16 bits do not hold appears while a picture is drawn, and the cache is made again.
 TEST_F(RefusedMemory, WhileACacheIsMadeAgainWithFloats_ThePictureIsRightOrFails) {
   const auto grid = file(kUnfit);
   const auto backend = cuda(kUnfit);
@@ -185,7 +186,7 @@ TEST_F(RefusedMemory, WhileACacheIsMadeAgainWithFloats_ThePictureIsRightOrFails)
   }
 }
 
-// Another step of a series finds no room beside the one that is drawn.
+// The next step of a series finds no room beside the one that is drawn.
 TEST_F(RefusedMemory, InTheMiddle_AnotherStepOfASeries) {
   const Case tried{"a series", 64};
   const auto grid = file(tried);
@@ -216,7 +217,7 @@ TEST_F(RefusedMemory, InTheMiddle_AnotherStepOfASeries) {
   }
 }
 
-// Others take the memory of the device, in truth.
+// Other programs really take the memory of the device.
 TEST_F(RefusedMemory, ByADeviceThatIsFull_APictureFailsOrIsRightAndTheNextOneIsRight) {
   const auto grid = file(kSome);
   const auto backend = cuda(kSome);

@@ -1,4 +1,4 @@
-// That kernels read a grid which stays in host memory.
+// Kernels read a grid that stays in host memory.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 namespace weir {
 namespace {
 
-/// Adds every byte, times its place modulo 251, to `sum`.
+/// Adds every byte, multiplied by its position modulo 251, to `sum`.
 __global__ void weigh_bytes(const std::byte* bytes, std::uint64_t count, unsigned long long* sum) {
   unsigned long long mine = 0;
   const std::uint64_t stride = std::uint64_t{gridDim.x} * blockDim.x;

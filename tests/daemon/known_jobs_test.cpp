@@ -1,4 +1,4 @@
-// Which jobs of the state file are forgotten when a watch begins.
+// Tests which jobs of the state file are forgotten when a watch begins.
 #include "daemon/known_jobs.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ class KnownJobsTest : public testing::Test {
     std::filesystem::create_directory(watch_.directory);
   }
 
-  /// A discovered job; all have the same time, as files of one copy may have.
+  /// Adds a discovered job. All jobs have the same time, as the files of one copy may have.
   std::int64_t observe(const std::string& name) {
     return store_.observe(watch_.label, watch_.directory + '/' + name, {8, 1, 1}, "").job.id;
   }
@@ -62,7 +62,7 @@ TEST_F(KnownJobsTest, ManyJobs_ThoseExcludedAndThoseWhoseFilesAreGone_AreForgott
   for (const std::int64_t id : kept) EXPECT_TRUE(store_.job(id)) << id;
 }
 
-// Between its steps the service answers.
+// The service answers requests between the steps.
 TEST_F(KnownJobsTest, StepWithoutTime_TakesOnePieceAndTheNextGoesOn) {
   store_.together([&] {
     for (int i = 0; i < 600; ++i) observe(cat("excluded", i, "_2x2x2_uint8.raw"));
@@ -110,7 +110,7 @@ TEST_F(KnownJobsTest, DirectoryThatIsNotThere_ForgetsOnlyWhatTheConfigurationNoL
   EXPECT_EQ(count(), 0U);
 }
 
-// As where the state file cannot be written: the transaction is taken back with what it removed.
+// If the state file cannot be written, the transaction and its removals are rolled back.
 TEST_F(KnownJobsTest, StepThatWasTakenBack_IsDoneAgain) {
   observe("excluded_2x2x2_uint8.raw");
   observe("gone_2x2x2_uint8.raw");

@@ -1,4 +1,4 @@
-// The life of one watch; what it does is seen from outside in watch_*_test.cpp.
+// Tests the life of one watch; watch_*_test.cpp tests its results from outside.
 #include "daemon/watched_tree.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@
 namespace weir::watched_tree_test {
 namespace {
 
-// A reload takes a watch away whose timer has ended, but whose turn comes after the reload's.
+// A reload removes a watch whose timer has fired but whose turn comes after the reload.
 TEST(WatchedTree, DoesNothingAfterItsDestruction) {
   const TemporaryDirectory directory;
   boost::asio::io_context io;
@@ -78,7 +78,7 @@ class WatchedTreeTest : public ::testing::Test {
   WatchedTree tree() {
     return {io_, turns_, watch(), store_, log_, WatchedTree::Reports{[] {}, [](std::int64_t) {}}};
   }
-  /// Runs handlers until `holds`, or for ten seconds; whether it held.
+  /// Runs handlers until `holds` returns true, for at most ten seconds. Returns whether it did.
   template <typename Condition>
   bool run_until(Condition holds) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(10);
@@ -106,7 +106,7 @@ TEST_F(WatchedTreeTest, JobsOfFilesThatAreGone_AreForgotten) {
   EXPECT_TRUE(store_.job(done)) << "the record of its result";
 }
 
-// As of those whose sources go away while no service runs: for as long as `history` says.
+// The same holds for cancelled jobs whose sources go away while no service runs: they stay for the time of `history`.
 TEST_F(WatchedTreeTest, ACancelledJob_IsKeptWhenItsSourceGoes) {
   std::filesystem::create_directory(watch().directory);
   const auto path = [&](const char* name) { return watch().directory + '/' + name; };
@@ -148,7 +148,7 @@ TEST_F(WatchedTreeTest, JobsOfADirectoryThatGoesAwayAndComesBack_AreKept) {
   EXPECT_TRUE(run_until([&] { return woken > woken_before && store_.job(id)->state == JobState::waiting; }));
 }
 
-// Whoever forgot the job meanwhile: a service of an earlier version, or a user.
+// The job may have been forgotten by an earlier version of the service or by a user.
 TEST_F(WatchedTreeTest, FilesOfADirectoryThatComesBack_AreFoundWithoutTheirJobs) {
   std::filesystem::create_directory(watch().directory);
   const std::string path = watch().directory + "/a_2x2x2_uint8.raw";
@@ -182,7 +182,7 @@ TEST_F(WatchedTreeTest, LogLevelDebug_TellsOfEachLook) {
       << log;
 }
 
-// Each record is flushed to the disk that the simulation writes to.
+// Each record causes a flush of the disk that the simulation writes to.
 TEST_F(WatchedTreeTest, FileThatIsWrittenTo_IsRecordedNowAndThen) {
   std::filesystem::create_directory(watch().directory);
   const WatchedTree tree = this->tree();
@@ -213,7 +213,7 @@ std::size_t open_descriptors() {
 
 TEST(WatchedTree, ManyLargeHierarchies_AreLookedThroughWithFewOpenDirectories) {
   constexpr int kStores = 24;
-  constexpr int kFiles = 1100;  // more than are looked at in one turn
+  constexpr int kFiles = 1100;  // more than one turn looks at
   const TemporaryDirectory directory;
   boost::asio::io_context io;
   JobStore store(directory / "weir.db");
@@ -243,7 +243,7 @@ TEST(WatchedTree, ManyLargeHierarchies_AreLookedThroughWithFewOpenDirectories) {
     most = std::max(most, open_descriptors());
   }
   EXPECT_EQ(store.count(waiting), kStores);
-  EXPECT_LE(most, before + 6);  // the watch, a listing, two looks
+  EXPECT_LE(most, before + 6);  // the watch, a listing and two looks
 }
 
 }  // namespace

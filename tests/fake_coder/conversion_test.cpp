@@ -1,5 +1,5 @@
-// Conversions whose packed blocks a device surveys and encodes, on the pretended one: the bytes are those of the CPU,
-// and where the device fails the CPU goes on.
+// Conversions with packed blocks that a pretended device surveys and encodes: the bytes are those of the CPU, and if
+// the device fails, the CPU continues.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -54,7 +54,7 @@ TEST_F(FakeCoder, FilesHaveTheBytesOfTheCpuWhateverTheBudgetAndTheThreads) {
         EXPECT_EQ(result.sidecar.error.max_abs, expected.sidecar.error.max_abs);
         EXPECT_EQ(result.sidecar.error.psnr_db, expected.sidecar.error.psnr_db);
         EXPECT_EQ(result.notices, expected.notices);
-        if (c.name != "lossless") {  // some of it is by the device
+        if (c.name != "lossless") {  // the device does some of the work
           EXPECT_GT(runtime().calls("cudaHostAlloc") + runtime().calls("cudaMemcpyAsync"), before);
         }
       }
@@ -62,7 +62,7 @@ TEST_F(FakeCoder, FilesHaveTheBytesOfTheCpuWhateverTheBudgetAndTheThreads) {
   }
 }
 
-// So many blocks that a sample of them is looked at first, and all get the rungs of a window.
+// There are so many blocks that a sample of them is surveyed first, and all blocks get the rungs of a window.
 TEST_F(FakeCoder, LargerVolumesWhoseLaddersHaveFewRungsHaveTheBytesOfTheCpu) {
   const std::unique_ptr<BlockCoder> device = coder();
   for (const bool smooth : {true, false}) {
@@ -76,7 +76,7 @@ TEST_F(FakeCoder, LargerVolumesWhoseLaddersHaveFewRungsHaveTheBytesOfTheCpu) {
   }
 }
 
-// Interrupted in the survey, with the other backend continued.
+// A conversion interrupted in the survey is continued with the other back end.
 TEST_F(FakeCoder, WhatOneBackendHasBegunAnotherOneEnds) {
   MemoryVolume volume = turbulence({{0, 0, 0}, {262, 205, 161}});
   ConversionOptions options = with(budget_of(Budget::Kind::rate, 12));

@@ -1,5 +1,5 @@
-// Arrays in the memory of a device as sources, on the pretended one: values, files and errors are those of the same
-// array in the host's memory.
+// Arrays in device memory as sources, on a pretended device: values, files and errors are those of the same array in
+// host memory.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -22,7 +22,7 @@ using test::FakeRuntime;
 
 constexpr Index3 kExtent{70, 45, 33};
 
-// Bytes of values of `type`, all of them numbers.
+// Returns the bytes of values of `type` that are all numbers.
 std::vector<std::byte> some_values(ScalarType type, std::int64_t count) {
   const std::size_t bytes = scalar_bytes(type);
   std::vector<std::byte> values(static_cast<std::size_t>(count) * bytes);
@@ -48,7 +48,7 @@ std::vector<std::byte> some_values(ScalarType type, std::int64_t count) {
   return values;
 }
 
-// The same array in the host's memory and on the device.
+// The same array in host memory and on the device.
 struct Both {
   Both(ScalarType type, const Index3& extent, std::array<std::int64_t, 3> stride, std::int64_t first = 0)
       : host(some_values(type, volume(kExtent))), device(host.size()) {
@@ -98,7 +98,7 @@ TEST_F(DeviceArraySource, BoxesHaveTheValuesOfTheHost_WhateverTheTypeAndTheStrid
     const auto bytes = static_cast<std::int64_t>(scalar_bytes(type));
     const std::array<std::int64_t, 3> packed = packed_stride(kExtent, type);
     expect_same_boxes({type, kExtent, packed});
-    // Every second voxel along x, y from the last row on.
+    // Every second voxel along x; y backwards from the last row.
     expect_same_boxes(
         {type, {35, kExtent.y, kExtent.z}, {2 * bytes, -packed[1], packed[2]}, (kExtent.y - 1) * packed[1]});
     // z fastest.
@@ -106,7 +106,7 @@ TEST_F(DeviceArraySource, BoxesHaveTheValuesOfTheHost_WhateverTheTypeAndTheStrid
   }
 }
 
-// More than a piece, in planes that are larger than one.
+// Boxes larger than a piece, with planes that are larger than a piece.
 TEST_F(DeviceArraySource, BoxesLargerThanAPieceCrossInPieces) {
   const Index3 extent{2100, 1100, 3};
   std::vector<float> values(static_cast<std::size_t>(volume(extent)));

@@ -1,4 +1,4 @@
-// In place of the kernels that survey and encode packed blocks: their steps, a block after the other.
+// Replaces the kernels that survey and encode packed blocks: runs their steps on the host, one block after the other.
 #include "gpu/cuda/encode/lattice_code_steps.h"
 #include "gpu/cuda/encode/launch.h"
 #include "gpu/cuda/encode/near_steps.h"

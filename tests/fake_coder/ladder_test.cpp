@@ -1,4 +1,5 @@
-// Ladders of what the pretended device has found of blocks: bit by bit those that the host builds of their values.
+// Ladders built from what the pretended device finds about blocks: bit for bit those that the host builds from the
+// values.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +23,7 @@ namespace {
 using test::BlockVolume;
 using test::FakeRuntime;
 
-// A smooth field with noise, most of whose blocks lie partly outside it.
+// A smooth field with noise. Most of its blocks lie partly outside it.
 BlockVolume wavy(const Index3& extent) {
   BlockVolume volume{"wavy", extent, {}};
   std::mt19937 random(3);
@@ -46,7 +47,8 @@ class FoundLadders : public testing::Test {
     FakeRuntime::instance().reset();
   }
 
-  // Compares each ladder of what is found when aim's rungs are asked for; returns for how many blocks it was enough.
+  // Surveys the blocks with the rungs of `aim` and compares each ladder. Returns for how many blocks the survey was
+  // enough.
   std::size_t compare(const LadderAim& aim, NearRungs near) { return compare(aim, near, aim.rung_ask()); }
   std::size_t compare(const LadderAim& aim, NearRungs near, const RungAsk& ask) {
     LadderBuilder builder(aim);
@@ -101,7 +103,7 @@ TEST_F(FoundLadders, WithNearRungsAreThoseOfTheHost_WhereverTheWindowLies) {
   for (const NearBlocks near : {NearBlocks::sparse, NearBlocks::all}) {
     aim.near = near;
     for (const double centre : {1e-24, 1e-14, 1e-9, 1e-5, 1e-2, 10.0, 1e6}) {
-      for (const float width : {0.0F, 1e30F}) {  // of means with codes at all steps, and at none
+      for (const float width : {0.0F, 1e30F}) {  // means have codes at all steps, or at none
         SCOPED_TRACE(testing::Message() << centre << ' ' << width);
         for (const double reach : {1.25, KeyWindow::kMostReach}) {
           aim.window = KeyWindow(centre, width, reach);

@@ -1,4 +1,4 @@
-// Work on the second of two pretended devices: it makes no context on the first, and leaves threads as it found them.
+// Work on the second of two pretended devices makes no context on the first, and leaves threads as it found them.
 #include <cuda_runtime_api.h>
 #include <gtest/gtest.h>
 
@@ -37,7 +37,7 @@ class OtherDevice : public testing::Test {
 
   static FakeRuntime& runtime() { return FakeRuntime::instance(); }
 
-  // On a thread that has no context.
+  // Runs `call` on a thread that has no context.
   template <class Call>
   static void elsewhere(const Call& call) {
     std::thread([&] {
@@ -46,7 +46,7 @@ class OtherDevice : public testing::Test {
     }).join();
   }
 
-  // On a thread in a context that it made itself.
+  // Runs `call` on a thread in a context that the thread made itself.
   template <class Call>
   static void in_own_context(const Call& call) {
     std::thread([&] {
@@ -130,7 +130,7 @@ TEST_F(OtherDevice, ContextThatTheCallerMade_AllThreadsReadInIt) {
 }
 
 TEST_F(OtherDevice, HoldsItsContextOnceAndWhoeverElseLetsGo) {
-  runtime().retain(1);  // another library's
+  runtime().retain(1);  // held by another library
   elsewhere([] {
     for (int i = 0; i < 5; ++i) const KeptDevice kept(1);
   });

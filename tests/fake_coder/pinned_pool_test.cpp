@@ -75,7 +75,7 @@ TEST_F(PinnedPoolTest, WhatCameBackFirstMakesRoomForWhatComesBackLater) {
   EXPECT_EQ(runtime().allocated_bytes(), 0U) << "too large to be held";
 }
 
-// A program may work in a context of its own, which stays for all of its steps.
+// A program may work in its own context, which stays current in all of its steps.
 TEST_F(PinnedPoolTest, WhatIsTooMuchToHoldIsFreedInItsOwnContext) {
   runtime().choose(0);
   runtime().make_current(FakeRuntime::own_context(0));
@@ -84,7 +84,7 @@ TEST_F(PinnedPoolTest, WhatIsTooMuchToHoldIsFreedInItsOwnContext) {
   EXPECT_EQ(runtime().current_context(), FakeRuntime::own_context(0));
 }
 
-// A program may reset its device, and lock memory of its own at the same address.
+// A program may reset its device, and then lock memory of its own at the same address.
 TEST_F(PinnedPoolTest, WhatADeviceThatWasResetHasNoMore_IsNeitherGivenNorFreed) {
   pool_.give_back(take(kMiB));
   runtime().reset();

@@ -1,5 +1,5 @@
-// Conversions of volumes that lie on a device, on the pretended one: the bytes are those of the same values in the
-// host's memory, which the values do not come to; where the device fails they are read.
+// Conversions of volumes in the memory of a pretended device. The bytes are those of the same values in host memory,
+// and the values are not copied there. If the device fails, they are read.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ namespace {
 using test::FakeRuntime;
 using test::MemoryVolume;
 
-// What it is refused with; empty where it is not.
+// Returns the message with which `action` is refused; empty if it is not refused.
 template <typename Action>
 std::string message_of(const Action& action) {
   try {
@@ -44,7 +44,7 @@ class Resident : public testing::Test {
 
   static void no_failure(const Error& error) { ADD_FAILURE() << error.what(); }
 
-  // `volume` must outlive it.
+  // `volume` must outlive the returned source.
   static std::unique_ptr<VolumeSource> on_device(MemoryVolume& volume,
                                                  std::function<void(const Error&)> failed = no_failure) {
     return open_resident(make_resident_volume(0, volume.values().data(), volume.info().domain(), std::move(failed)),
@@ -75,7 +75,7 @@ TEST_F(Resident, FilesHaveTheBytesOfTheHostWhateverTheBudgetAndTheThreads) {
   }
 }
 
-// So many blocks that a sample of them is looked at first. Nothing is read, of a volume whose background is given.
+// There are so many blocks that a sample of them is surveyed first. Nothing is read if the background is given.
 TEST_F(Resident, ValuesOfALargerVolumeStayOnTheDevice) {
   for (const bool smooth : {true, false}) {
     SCOPED_TRACE(smooth);
@@ -92,8 +92,8 @@ TEST_F(Resident, ValuesOfALargerVolumeStayOnTheDevice) {
   }
 }
 
-// A row of blocks is kept in parts; the device leaves blocks of both to the host: those with NaN, and those that end
-// beyond the volume.
+// A row of blocks is processed in parts. In both parts the device leaves some blocks to the host: those with NaN, and
+// those that extend beyond the volume.
 TEST_F(Resident, ARowOfManyBlocksGivesTheSameFileAsOnTheHost) {
   constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
   MemoryVolume volume({{-3, 5, 130}, {1100, 21, 147}}, [&](const Index3& i) {
@@ -111,7 +111,7 @@ TEST_F(Resident, ARowOfManyBlocksGivesTheSameFileAsOnTheHost) {
   }
 }
 
-// The device's memory is freed once a file is encoded, and got again.
+// The device's memory is freed after a file is encoded, and allocated again.
 TEST_F(Resident, OneVolumeIsConvertedTwice) {
   MemoryVolume volume = turbulence();
   const std::unique_ptr<VolumeSource> source = on_device(volume);
@@ -124,7 +124,7 @@ TEST_F(Resident, OneVolumeIsConvertedTwice) {
   }
 }
 
-// What can be seen has a certificate of its own.
+// The values that the scene shows have their own certificate.
 TEST_F(Resident, ASceneGivesTheSameFileAndTheSameErrorOfWhatIsSeen) {
   MemoryVolume volume = turbulence();
   Scene scene;
@@ -142,7 +142,7 @@ TEST_F(Resident, ASceneGivesTheSameFileAndTheSameErrorOfWhatIsSeen) {
   EXPECT_EQ(result.sidecar.visible->error.rmse, expected.sidecar.visible->error.rmse);
 }
 
-// Budgets that buy all near rungs and floats in order, and those of a window.
+// Budgets that afford all near rungs and ordered floats, and budgets with the near rungs of a window.
 TEST_F(Resident, NearlyLosslessBlocksOfACloudStayOnTheDevice) {
   MemoryVolume volume = cloud({{0, 0, 0}, {272, 208, 160}});
   for (const Budget& budget : {budget_of(Budget::Kind::rate, 3), budget_of(Budget::Kind::psnr, 130)}) {
@@ -227,7 +227,7 @@ TEST_F(Resident, ADeviceThatIsGoneEndsTheConversionAndLeavesNothing) {
   }
 }
 
-// As a push on a device does it: all planes are expected, and come with the end.
+// As a push on a device works: all planes are expected and arrive at the end.
 TEST_F(Resident, APushEndsWithAVolumeOnTheDevice) {
   MemoryVolume volume = cloud({{0, 0, 0}, {61, 40, 33}});
   ConversionOptions options = with(budget_of(Budget::Kind::rate, 7));

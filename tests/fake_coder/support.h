@@ -26,7 +26,7 @@ inline double waves(const Index3& i, int octaves) {
   return sum;
 }
 
-/// No axis is a multiple of 8 long, nor begins at one.
+/// No axis has a length or a beginning that is a multiple of 8.
 inline constexpr Box kOdd{{-3, 5, 130}, {98, 66, 181}};
 
 inline test::MemoryVolume cloud(const Box& domain = kOdd) {
@@ -36,7 +36,7 @@ inline test::MemoryVolume turbulence(const Box& domain = kOdd) {
   return {domain, [](const Index3& i) { return static_cast<float>(40 * waves(i, 7)); }};
 }
 
-/// Blocks whose values the pretended device has given to the host, so far.
+/// Number of blocks whose values the pretended device has given to the host so far.
 inline std::atomic<std::uint64_t>& values_copied() {
   static std::atomic<std::uint64_t> count{0};
   return count;

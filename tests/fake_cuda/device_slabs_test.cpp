@@ -1,4 +1,4 @@
-// Slabs out of the memory of a device, on the pretended one: which pieces arrive, in what memory, and what failures do.
+// Slabs from the memory of a pretended device: which pieces arrive, in what memory, and what failures do.
 #include "gpu/cuda/push/device_slabs.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ namespace {
 
 using test::FakeRuntime;
 
-constexpr Index3 kExtent{300, 200, 90};  // planes of 240,000 bytes, 34 of them in 8 MiB
+constexpr Index3 kExtent{300, 200, 90};  // planes of 240,000 bytes; 34 fit into 8 MiB
 constexpr std::int64_t kPlane = kExtent.x * kExtent.y;
 constexpr std::uint64_t kPlaneBytes = kPlane * sizeof(float);
 
@@ -83,7 +83,7 @@ TEST_F(DeviceSlabsTest, NullStream_IsTheCallersDefaultStreamNotTheThreadsOwn) {
 TEST_F(DeviceSlabsTest, WaitInTheDeviceMemoryThatWasGranted) {
   constexpr std::uint64_t kGranted = 5 * kPlaneBytes;
   DeviceSlabs slabs(kExtent, 4, kGranted, keep());
-  // Two pieces of two planes on the device, and one of the host's: marks of two events beside them.
+  // Two pieces of two planes on the device and one on the host, and two events of one byte each.
   EXPECT_EQ(runtime().allocated_bytes(), 6 * kPlaneBytes + 2);
   slabs.add(0, 90, from(0), nullptr);
   slabs.finish();
@@ -140,7 +140,7 @@ TEST_F(DeviceSlabsTest, RefusesWhatAKernelCannotReadAndTooLittleMemory) {
   odd = from(0);
   odd.stride[1] = 1202;
   EXPECT_EQ(refusal([&] { slabs.add(0, 1, odd, nullptr); }, ErrorKind::usage), message);
-  slabs.add(0, 90, from(0), nullptr);  // it goes on
+  slabs.add(0, 90, from(0), nullptr);  // the work continues
   slabs.finish();
   EXPECT_EQ(arrived_, values_);
 }

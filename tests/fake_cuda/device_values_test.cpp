@@ -1,4 +1,4 @@
-// Values of callers, on the pretended device: where they are, and whether they have gaps.
+// Callers' values on a pretended device: where they are, and whether they have gaps.
 #include "gpu/cuda/push/device_values.h"
 
 #include <gtest/gtest.h>

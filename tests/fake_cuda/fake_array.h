@@ -1,4 +1,4 @@
-// A 3-D array of the pretended device: memory of the host.
+// A 3-D array of the pretended device, in host memory.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace weir::test {
 
-/// The texels, x fastest, follow it in memory.
+/// The texels follow the object in memory, x fastest.
 struct FakeArray {
   std::size_t width = 0;
   std::size_t height = 0;
@@ -36,7 +36,7 @@ struct FakeArray {
   }
 };
 
-/// What a texture or surface object of the pretended device stands for.
+/// What a texture or surface object of the pretended device refers to.
 struct FakeView {
   FakeArray* array = nullptr;
 };

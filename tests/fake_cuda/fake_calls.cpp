@@ -1,4 +1,4 @@
-// The functions of the CUDA runtime themselves, for a program that does not link it.
+// Defines the functions of the CUDA runtime, for a program that does not link the real one.
 #include <cuda_runtime_api.h>
 
 #include <algorithm>
@@ -35,7 +35,7 @@ cudaError_t release(void* memory) {
 
 void* address_of(int context) { return reinterpret_cast<void*>(std::uintptr_t{1} + static_cast<unsigned>(context)); }
 
-// The driver's. A context's address is one more than its number.
+// Functions of the driver. A context's address is its number plus 1.
 int cuCtxGetId(void* context, unsigned long long* id) {
   *id = context == nullptr ? runtime().context() : runtime().context_of(static_cast<int>(number(context)) - 1);
   return *id != 0 ? 0 : 1;
@@ -83,7 +83,7 @@ cudaError_t entry_point(const std::string& symbol, void** function, cudaDriverEn
 
 }  // namespace
 
-// Of a call that works in a context.
+// The beginning of a call that works in a context.
 #define WEIR_ENTER(function)     \
   runtime().make_some_current(); \
   if (const cudaError_t code = runtime().enter(function); code != cudaSuccess) return code
@@ -178,7 +178,7 @@ cudaError_t cudaMemcpyAsync(void* to, const void* from, std::size_t bytes, cudaM
 }
 cudaError_t cudaMemcpy3DAsync(const cudaMemcpy3DParms* parts, cudaStream_t) {
   WEIR_ENTER("cudaMemcpy3DAsync");
-  if (parts->dstArray != nullptr) {  // all of an array, from as many texels in memory
+  if (parts->dstArray != nullptr) {  // fills all of an array from the same number of texels in memory
     auto& array = *reinterpret_cast<weir::test::FakeArray*>(parts->dstArray);
     std::memcpy(&array + 1, parts->srcPtr.ptr, array.bytes());
     return cudaSuccess;
@@ -265,7 +265,7 @@ cudaError_t cudaDeviceSynchronize() {
   WEIR_ENTER("cudaDeviceSynchronize");
   return cudaSuccess;
 }
-// What is given back is free at once: the pool keeps nothing.
+// Freed memory is free at once, because the pool keeps nothing.
 cudaError_t cudaDeviceGetDefaultMemPool(cudaMemPool_t* pool, int) {
   *pool = nullptr;
   return cudaSuccess;

@@ -1,4 +1,4 @@
-// In place of the kernel that gathers planes.
+// Replaces the kernel that gathers planes.
 #include <cstring>
 
 #include "gpu/cuda/push/gather_planes.h"

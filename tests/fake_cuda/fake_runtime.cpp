@@ -30,7 +30,7 @@ FakeRuntime& FakeRuntime::instance() {
 void FakeRuntime::reset() {
   const std::lock_guard lock(mutex_);
   registered_.clear();
-  // What a device that failed for good did not take back.
+  // Frees memory that a device did not take back because it failed for good.
   for (const auto& [address, bytes] : allocated_) std::free(reinterpret_cast<void*>(address));
   allocated_.clear();
   copies_ = copies_ended_ = unlocked_while_copied_ = 0;
@@ -213,7 +213,7 @@ cudaError_t FakeRuntime::take_last_error() {
 
 cudaError_t FakeRuntime::register_range(std::uintptr_t address, std::uint64_t bytes, unsigned flags) {
   const std::lock_guard lock(mutex_);
-  // What the driver does: the memory is mapped read-only and can be written by no one.
+  // The driver does the same: the memory is mapped read-only, so nobody can write to it.
   if ((flags & cudaHostRegisterReadOnly) == 0) return last_ = cudaErrorInvalidValue;
   const auto next = registered_.upper_bound(address);
   const bool overlaps_next = next != registered_.end() && next->first < address + bytes;

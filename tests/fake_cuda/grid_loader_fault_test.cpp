@@ -1,4 +1,4 @@
-// What the loader does when the runtime refuses or fails in the middle, on the pretended device.
+// The loader's behaviour when the runtime of a pretended device refuses or fails in the middle of a load.
 #include <gtest/gtest.h>
 #include <pthread.h>
 
@@ -20,7 +20,7 @@ namespace {
 
 using test::FakeRuntime;
 
-// While it lives no thread starts: its stack would be larger than the address space.
+// While the object lives, no thread starts, because its stack would be larger than the address space.
 class NoMoreThreads {
  public:
   NoMoreThreads() {
@@ -140,12 +140,12 @@ TEST_F(GridLoaderFault, StickyErrorDoesNotFallBackToTheNextWay) {
   }
 }
 
-// An illegal access of earlier work may come out of registration with a code that looks like a refusal.
+// An illegal access of earlier work may surface in registration, with a code that looks like a refusal.
 TEST_F(GridLoaderFault, EarlierAsynchronousErrorDoesNotFallBack) {
   const NvdbFile grid_file = file();
   runtime().fail("cudaHostRegister", 2, cudaErrorNotSupported, true);
   const std::string message = refusal(grid_file);
-  // Whichever thread calls first after the failure sees it, so what it was about to do differs.
+  // The thread that calls first after the failure sees it, so what it was about to do differs.
   EXPECT_EQ(message.find("cannot be brought to the device"), std::string::npos) << message;
   EXPECT_NE(message.find(": cudaErrorNotSupported, pretended"), std::string::npos) << message;
 }
@@ -189,7 +189,7 @@ TEST_F(GridLoaderFault, ZeroCopyFallsBackToACopyInHostMemory) {
   EXPECT_TRUE(holds(grid, grid_file));
 }
 
-// The runtime's context on a device, which cudaSetDevice makes and enters, is another than the caller's own.
+// The runtime's context on a device, which cudaSetDevice makes and enters, differs from the caller's own.
 TEST_F(GridLoaderFault, AllThreadsWorkInTheCallersContext) {
   const NvdbFile grid_file = file();
   for (const LoadPath path : {LoadPath::registered, LoadPath::pinned_ring, LoadPath::pageable}) {

@@ -1,4 +1,4 @@
-// Small volumes for what looks at packed blocks: smooth ones, noise, and each hard case.
+// Small volumes for tests of packed blocks: smooth ones, noise, and each hard case.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace weir::test {
 
-/// Values at voxels of a box, x fastest.
+/// The values of a box of voxels, x fastest.
 struct BlockVolume {
   std::string name;
   Index3 extent;
@@ -19,10 +19,10 @@ struct BlockVolume {
 
 std::vector<BlockVolume> block_volumes();
 
-/// Volumes each of whose blocks has another size, roughness and share of zeros.
+/// Returns volumes with blocks that all differ in magnitude, roughness and share of zeros.
 std::vector<BlockVolume> mixed_volumes();
 
-/// One of them. Throws std::out_of_range where there is none of that name.
+/// Returns one of these volumes. Throws std::out_of_range if none has that name.
 BlockVolume block_volume(const std::string& name);
 
 }  // namespace weir::test

@@ -1,4 +1,4 @@
-// What a process of its own found: a test of memory wants one that did nothing before.
+// Runs a measurement in a process of its own. A test of memory needs a process that did nothing before.
 #pragma once
 
 #include <functional>
@@ -6,7 +6,8 @@
 
 namespace weir {
 
-/// Runs `measure` in a copy of this process and returns its answer, of 200 characters at most, or what it threw.
+/// Runs `measure` in a copy of this process. Returns its answer (at most 200 characters) or the message of its
+/// exception.
 std::string answer_of_child(const std::function<std::string()>& measure);
 
 }  // namespace weir

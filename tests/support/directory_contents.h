@@ -1,4 +1,4 @@
-// What lies in a directory of a test.
+// Lists the files in a directory of a test.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// The bytes of an expanded grid behind a file's head, so that readers of files open it.
+// Puts a file's head before the bytes of an expanded grid, so that readers of files can open it.
 #pragma once
 
 #include <cstring>
@@ -10,7 +10,7 @@
 
 namespace weir::test {
 
-/// `packed` is the file that it was made of.
+/// Returns the file of `grid`, which was expanded from the file `packed`.
 inline PackedBytes expanded_file(std::span<const std::byte> packed, std::span<const std::byte> grid, GridType type) {
   PackedBytes file(packed.begin(), packed.begin() + nvdb::kPage);
   file.insert(file.end(), grid.begin(), grid.end());

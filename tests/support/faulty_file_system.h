@@ -1,5 +1,5 @@
-// A file system over the real one that fails one chosen call, so that a test can
-// try every call of a protocol in turn.
+// A file system over the real one in which one chosen call fails, so that a test can try every call of a protocol in
+// turn.
 #pragma once
 
 #include <atomic>
@@ -14,26 +14,26 @@
 
 namespace weir {
 
-/// Counts the calls that change something or ask for room, files' included, from several threads.
+/// Counts the calls that change something or ask for room, including calls on files. Thread-safe.
 class FaultyFileSystem final : public FileSystem {
  public:
   enum class After {
-    works,  ///< the calls after the one that failed
-    fails   ///< as if the process had been killed: nothing changes any more
+    works,  ///< calls after the failed call work
+    fails   ///< calls after the failed call change nothing, as if the process had been killed
   };
-  /// Call number `fail_at` (0 is the first) fails with `errno_value`; none where it is negative.
+  /// Call number `fail_at` (0 is the first) fails with `errno_value`. If `fail_at` is negative, no call fails.
   FaultyFileSystem(FileSystem& real, int fail_at, int errno_value, After after = After::works);
 
-  /// Instead of a number from the beginning: call number `fail_at` after something got the name `path`.
+  /// Counts from the rename of a file to `path` instead of from the beginning: call number `fail_at` after it fails.
   void fail_after_rename_to(const std::string& path, int fail_at);
 
-  /// From here on as on exFAT: link does nothing.
+  /// From now on link() does nothing, as on exFAT.
   void take_links_away() { has_links_ = false; }
 
-  /// From here on so many bytes are free.
+  /// From now on free_bytes() returns `bytes`.
   void leave_free(std::uint64_t bytes) { free_bytes_ = bytes; }
 
-  /// Names of the counted calls so far, in order: "create", "write", "preallocate", "sync", "rename", ...
+  /// Returns the names of the counted calls so far, in order: "create", "write", "preallocate", "sync", "rename", ...
   std::vector<std::string> calls() const;
   bool failed() const { return failed_; }
 
@@ -53,7 +53,7 @@ class FaultyFileSystem final : public FileSystem {
   bool is_memory(const std::string& directory) override;
   std::uint64_t free_bytes(const std::string& directory) override;
 
-  /// Counts a call, and throws if it is the one to fail.
+  /// Counts a call, and throws if this call is chosen to fail.
   void count(const std::string& call, const std::string& path);
 
  private:

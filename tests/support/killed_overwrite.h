@@ -1,5 +1,5 @@
-// What `weir convert --overwrite` leaves where it is killed between the renames of its commit, of two volumes whose
-// files have one size and one head checksum.
+// The files that `weir convert --overwrite` leaves if it is killed between the renames of its commit. The old and the
+// new file have the same size and the same head checksum.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 
 namespace weir {
 
-/// Noise, and the same planes in reverse order.
+/// The old volume is noise. The new volume has the same planes in reverse order.
 class KilledOverwrite {
  public:
   explicit KilledOverwrite(const TemporaryDirectory& directory)
@@ -39,7 +39,7 @@ class KilledOverwrite {
     write_file(partial, new_volume);
   }
 
-  /// Of the conversion that was killed, without --overwrite.
+  /// Returns the command of the conversion that was killed, without --overwrite.
   std::vector<std::string> command() const {
     return {"convert", source, "-o", output, "--rate", "2", "--encoding", "fpn", "--progress", "never"};
   }
@@ -49,7 +49,7 @@ class KilledOverwrite {
   std::string sidecar = sidecar_path(output);
   std::string previous = sidecar + ".previous";
   std::string partial = output + ".partial";
-  std::string old_volume, old_sidecar;  ///< their bytes
+  std::string old_volume, old_sidecar;  ///< bytes of the files
   std::string new_volume, new_sidecar;
 
  private:

@@ -1,4 +1,4 @@
-// What an action is refused with.
+// Returns the message of the error that an action throws.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// NanoVDB files with packed data, put together field by field: the ground of tests and fuzzers of readers, apart from
-// what the compressor writes. Only streams that need no entropy coder; the tree is root tiles of background.
+// Builds NanoVDB files with packed data field by field, for tests and fuzzers of readers, independently of what the
+// compressor writes. Has only streams that need no entropy coder. The tree consists of root tiles of background.
 #pragma once
 
 #include <array>
@@ -21,21 +21,21 @@ namespace weir::test {
 
 using PackedBytes = std::vector<std::byte>;
 
-/// 512 values as a raw stream (kind 3), index x<<6 | y<<3 | z.
+/// Returns a raw stream (kind 3) of 512 values at index x<<6 | y<<3 | z.
 inline PackedBytes raw_stream(std::span<const float, 512> values) {
   PackedBytes stream(1 + values.size_bytes(), std::byte{3});
   std::memcpy(stream.data() + 1, values.data(), values.size_bytes());
   return stream;
 }
 
-/// One value for all voxels (kind 3).
+/// Returns a stream (kind 3) of one value for all voxels.
 inline PackedBytes constant_stream(float value) {
   PackedBytes stream(1 + sizeof value, std::byte{7});
   std::memcpy(stream.data() + 1, &value, sizeof value);
   return stream;
 }
 
-/// The lowest mean of the region (kind 0) at step field `step`; `code_bytes` as many as its code takes.
+/// Returns a stream (kind 0) of the region's lowest mean at step field `step`. `code_bytes` is the length of its code.
 inline PackedBytes mean_stream(unsigned step, std::size_t code_bytes) {
   PackedBytes stream(1 + code_bytes, std::byte{0});
   stream[0] = static_cast<std::byte>(step << 2U);
@@ -45,22 +45,22 @@ inline PackedBytes mean_stream(unsigned step, std::size_t code_bytes) {
 struct PackedGridOptions {
   Box domain;
   float background = 0;
-  MinMax range{-1000, 1000};  ///< of values; root and macrocells say so
-  MeanRange means{0, 1};      ///< of every region
+  MinMax range{-1000, 1000};  ///< range of the values in the root and in the macrocells
+  MeanRange means{0, 1};      ///< range of the means of every region
   std::int32_t coarsest = 0;
-  bool preview = false;  ///< what the flags say
-  /// Of the block at `block` (voxel / 8) that touches the domain; empty: it has no stream.
+  bool preview = false;  ///< whether the flags announce a preview
+  /// Returns the stream of the block at `block` (voxel / 8), which touches the domain; empty if it has no stream.
   std::function<PackedBytes(const Index3& block)> stream;
-  /// Of the region at `region` (voxel / 128).
+  /// Returns the value of the region at `region` (voxel / 128).
   std::function<float(const Index3& region)> value = [](const Index3&) { return 0.0F; };
 };
 
 struct PackedFile {
   PackedBytes file;
-  std::uint64_t record = 0;                      ///< of packed data, from the file's start
-  std::uint64_t packed = 0;                      ///< first byte of packed data, from the file's start
-  std::uint64_t table = 0;                       ///< of regions, from the file's start
-  std::map<std::int64_t, std::uint64_t> chunks;  ///< by number of the region, from the file's start
+  std::uint64_t record = 0;                      ///< offset of the record of the packed data, from the file's start
+  std::uint64_t packed = 0;                      ///< offset of the packed data, from the file's start
+  std::uint64_t table = 0;                       ///< offset of the region table, from the file's start
+  std::map<std::int64_t, std::uint64_t> chunks;  ///< offset of each chunk from the file's start, by the region's number
 };
 
 class PackedGridBuilder {
@@ -121,7 +121,7 @@ class PackedGridBuilder {
     data_.insert(data_.end(), chunk.begin(), chunk.end());
   }
 
-  // Empty where no block of the region has a stream.
+  // Returns the chunk of a region; empty if no block of the region has a stream.
   PackedBytes chunk_of(const Index3& region) const {
     using namespace packed::chunk;
     PackedBytes chunk(kGroups);

@@ -19,7 +19,7 @@ namespace weir::test {
 inline constexpr MeanRange kKindsMeans{-40, 60};
 inline constexpr std::int32_t kKindsCoarsest = -8;
 
-// The tables of PackedGridBuilder.
+// Returns the tables that PackedGridBuilder uses.
 inline const std::uint16_t* even_tables() {
   static const auto tables = [] {
     std::array<std::uint16_t, std::size_t{kPackedTables} * kPackedSymbols> made{};
@@ -29,7 +29,8 @@ inline const std::uint16_t* even_tables() {
   return tables.data();
 }
 
-// Of codes near each other or far apart, which the predictors suit differently, on a lattice or in the floats' order.
+// Returns an exact stream of codes near each other or far apart, so that different predictors suit them, on a lattice
+// or in the floats' order.
 inline PackedBytes exact_stream(std::minstd_rand& engine) {
   const auto random = [&engine] { return static_cast<std::uint32_t>(engine()) >> 8U; };
   const std::uint32_t shape = random() % 4;
@@ -56,7 +57,7 @@ inline PackedBytes exact_stream(std::minstd_rand& engine) {
   return stream;
 }
 
-// Of all kinds, and of magnitudes that need all the room there is, or more.
+// Returns a stream of a random kind, with magnitudes up to and beyond those that fill all the room of a stream.
 inline PackedBytes stream_of_some_kind(const Index3& block) {
   std::minstd_rand engine(static_cast<std::uint32_t>(block.x * 7919 + block.y * 104729 + block.z * 1299709));
   const auto random = [&engine] { return static_cast<std::uint32_t>(engine()); };

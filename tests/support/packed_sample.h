@@ -1,4 +1,4 @@
-// A packed grid whose voxels are known, for the tests of all readers.
+// A packed grid with known voxels, for the tests of all readers.
 #pragma once
 
 #include <array>
@@ -7,8 +7,8 @@
 
 namespace weir::test {
 
-/// Four regions along x, of which the second has no stream. In the others one block of three is raw, one constant and
-/// one has the region's value. The domain cuts blocks at all faces.
+/// Has four regions along x; the second has no stream. In the other regions a third of the blocks is raw, a third is
+/// constant and a third has the region's value. The domain cuts blocks at all faces.
 struct PackedSample {
   static constexpr Box kDomain{{-5, 3, 10}, {260, 40, 61}};
   static constexpr float kBackground = 0.25F;
@@ -29,12 +29,12 @@ struct PackedSample {
     return kind(block) == 1 ? block_value(block) : voxel_value(i);
   }
 
-  /// 0 raw, 1 constant, 2 without a stream.
+  /// Returns the kind of a block: 0 raw, 1 constant, 2 without a stream.
   static int kind(const Index3& block) {
     return floor_div(block.x, kLowerLeaves) == 0 ? 2 : static_cast<int>((block.x + block.y + block.z + 30) % 3);
   }
 
-  /// Blocks that touch the domain, by kind.
+  /// Returns the number of blocks that touch the domain, by kind.
   static std::array<std::uint64_t, 3> blocks_by_kind() {
     std::array<std::uint64_t, 3> count{};
     const NodeLattice blocks = make_lattice(kDomain, kLeafDim);

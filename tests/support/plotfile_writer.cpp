@@ -45,7 +45,7 @@ void write(const std::string& path, const std::string& content) {
   if (!file.flush()) throw std::runtime_error(path + " cannot be written");
 }
 
-/// Where a box lies, which yt reads.
+/// Returns the text that says where a box lies. yt reads it.
 std::string place_of(const PlotfilePlan& plan, std::size_t level, const Box& box) {
   std::ostringstream text;
   text.precision(17);

@@ -27,7 +27,7 @@ constexpr std::chrono::milliseconds kPollInterval{2};
   throw std::system_error(error, std::generic_category(), action);
 }
 
-/// A file in memory takes the output: unlike a pipe it never blocks the command and may be read at any time.
+/// Makes a file in memory for the output. Unlike a pipe it never blocks the command, and it may be read at any time.
 int make_sink(const char* name) {
   const int sink = memfd_create(name, MFD_CLOEXEC);
   if (sink < 0) fail(errno, "memfd_create");
@@ -50,7 +50,8 @@ std::vector<char*> pointers(std::vector<std::string>& texts) {
   return result;
 }
 
-/// The test's own environment with the settings in `added` ("NAME=VALUE") put in their names' places.
+/// Returns the test's own environment with the settings in `added` ("NAME=VALUE"). They replace settings of the same
+/// name.
 std::vector<std::string> environment_with(const std::vector<std::string>& added) {
   std::vector<std::string> result = added;
   for (char** entry = environ; *entry != nullptr; ++entry) {

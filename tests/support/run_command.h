@@ -1,6 +1,6 @@
-// Runs the real command from outside, as a user would: arguments in, exit code,
-// both output streams and the directory it leaves behind out. One thread per
-// object; nothing here asserts, so that a test says itself what it expects.
+// Runs the real command from outside, as a user does. A test gives arguments and gets the exit code, both output
+// streams and the contents of the directory. One thread per object. Nothing here asserts, so that each test says what
+// it expects.
 #pragma once
 
 #include <sys/types.h>
@@ -18,25 +18,25 @@
 namespace weir {
 
 struct CommandOptions {
-  std::chrono::milliseconds timeout = std::chrono::seconds(120);  ///< then the process group is killed
+  std::chrono::milliseconds timeout = std::chrono::seconds(120);  ///< after it the process group is killed
   std::filesystem::path directory;                                ///< working directory; empty: the test's own
   std::vector<std::string> environment;                           ///< "NAME=VALUE", added to the test's own
 };
 
 struct CommandResult {
-  int exit_code = -1;  ///< the process's own, or 128 + signal where a signal ended it
+  int exit_code = -1;  ///< the process's exit code, or 128 + signal if a signal ended it
   bool timed_out = false;
   std::string out;  ///< all of stdout
   std::string err;  ///< all of stderr
-  /// The kernel's figure (wait4). It starts at the peak of the program that spawned the command, so
-  /// it is an upper bound that a test program of a few MiB does not disturb.
+  /// The kernel's figure (wait4). It starts at the peak of the program that spawned the command, so it is only an upper
+  /// bound. A test program of a few MiB does not disturb it.
   std::uint64_t peak_rss_bytes = 0;
 };
 
-/// A running command in a process group of its own, stdin at end of file. Killed on destruction.
+/// A running command in a process group of its own, with stdin at end of file. The destructor kills it.
 class ChildProcess {
  public:
-  /// `argv[0]` is looked up in PATH. Throws std::system_error where it cannot be started.
+  /// Starts a command; `argv[0]` is looked up in PATH. Throws std::system_error if the command cannot be started.
   explicit ChildProcess(const std::vector<std::string>& argv, CommandOptions options = {});
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;
@@ -44,11 +44,11 @@ class ChildProcess {
 
   pid_t pid() const noexcept { return pid_; }
   bool running();
-  /// Sends `signal` to the command alone; a command that has ended is not an error.
+  /// Sends `signal` to the command alone. It is no error if the command has ended.
   void send_signal(int signal);
-  /// Waits for the end (or the timeout, counted from the start).
+  /// Waits for the command's end, or for the timeout, which counts from the start.
   CommandResult wait();
-  /// What it has written so far.
+  /// Return what the command has written to stdout and stderr so far.
   std::string out_so_far() const;
   std::string err_so_far() const;
 
@@ -64,13 +64,13 @@ class ChildProcess {
 };
 
 CommandResult run_command(const std::vector<std::string>& argv, const CommandOptions& options = {});
-/// run_command of the `weir` this test was built with; `arguments` without argv[0].
+/// Runs the `weir` that this test was built with. `arguments` does not include argv[0].
 CommandResult run_weir(std::vector<std::string> arguments, const CommandOptions& options = {});
 
-/// Everything in `directory` and below, hidden names too: paths relative to it, sorted, directories with a
-/// trailing slash.
+/// Returns everything in `directory` and below, hidden names included, as sorted paths relative to `directory`.
+/// Directories have a trailing slash.
 std::vector<std::string> list_directory(const std::filesystem::path& directory);
-/// Whole file; throws std::system_error where it cannot be read.
+/// Returns the content of a file. Throws std::system_error if it cannot be read.
 std::string read_file(const std::filesystem::path& path);
 void write_file(const std::filesystem::path& path, std::string_view content);
 

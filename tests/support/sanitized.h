@@ -1,8 +1,8 @@
-// What tests do differently in a build with a sanitizer: its memory counts as the process's own, so that no test
-// of a memory ceiling can hold, and it reports what foreign libraries never free.
+// What tests do differently in a build with a sanitizer. The sanitizer's memory counts as the process's own, so that no
+// test of a memory ceiling can pass. It also reports memory that foreign libraries never free.
 #pragma once
 
-// GCC says it by a macro, clang by a feature.
+// GCC announces the sanitizer by a macro, clang by a feature.
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer) && !defined(__SANITIZE_ADDRESS__)
 #define __SANITIZE_ADDRESS__ 1
@@ -24,7 +24,7 @@ inline constexpr bool kSanitized = true;
 inline constexpr bool kSanitized = false;
 #endif
 
-/// While one lives, nothing that this thread allocates is reported as a leak.
+/// While an object lives, no allocation of its thread is reported as a leak.
 #if defined(__SANITIZE_ADDRESS__)
 using LeaksOfLibraries = __lsan::ScopedDisabler;
 #else

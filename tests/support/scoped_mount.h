@@ -15,9 +15,9 @@ class ScopedMount {
   ScopedMount(const ScopedMount&) = delete;
   ScopedMount& operator=(const ScopedMount&) = delete;
 
-  /// Empty where it is mounted, else why not: what a test says when it skips.
+  /// Returns why the file system is not mounted, for a test that skips; empty if it is mounted.
   const std::string& refused() const noexcept { return refused_; }
-  /// From now on nothing can be written, by root either.
+  /// From now on nobody can write, not even root.
   void make_read_only();
 
  private:

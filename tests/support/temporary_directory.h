@@ -1,5 +1,5 @@
-// A directory of one test's own. Its name is unique, because ctest runs the tests of a program at the same time,
-// each in a process of its own, and so do several builds on one machine.
+// A directory for one test alone. Its name is unique, because ctest runs the tests of a program at the same time, each
+// in a process of its own, and several builds may run on one machine.
 #pragma once
 
 #include <cerrno>
@@ -11,7 +11,7 @@
 
 namespace weir {
 
-/// An empty directory below the system's temporary one, removed with all in it on destruction.
+/// An empty directory below the system's temporary directory. The destructor removes it with everything in it.
 class TemporaryDirectory {
  public:
   TemporaryDirectory() {
@@ -27,7 +27,7 @@ class TemporaryDirectory {
   TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
 
   const std::filesystem::path& path() const noexcept { return path_; }
-  /// The path of `name` inside.
+  /// Returns the path of `name` in the directory.
   std::string operator/(std::string_view name) const { return (path_ / name).string(); }
 
  private:

@@ -1,4 +1,4 @@
-// A file that nobody may read, root included, whom modes do not stop.
+// A file that nobody can read, not even root. File modes do not stop root.
 #pragma once
 
 #include <filesystem>
@@ -8,9 +8,9 @@
 
 namespace weir {
 
-/// The path of one; empty where this system has none.
+/// Returns the path of such a file; empty if this system has none.
 inline std::string unreadable_file() {
-  const std::string path = "/sys/bus/cpu/drivers_probe";  // the kernel takes writes alone
+  const std::string path = "/sys/bus/cpu/drivers_probe";  // the kernel accepts only writes
   std::error_code ignored;
   return std::filesystem::exists(path, ignored) && !std::ifstream(path).is_open() ? path : std::string();
 }

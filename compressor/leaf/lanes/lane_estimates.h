@@ -1,4 +1,4 @@
-// The estimated errors of quantised leaves (leaf_quantiser.h), of eight leaves at once that repeat their values.
+// Estimates the errors of quantised leaves (leaf_quantiser.h) for eight leaves at once that repeat their values.
 #pragma once
 
 #include <array>
@@ -9,9 +9,9 @@
 
 namespace weir {
 
-/// The squared errors that estimated_errors finds at 1, 2 and 4 bits, before its gains, to the bit; infinite where it
-/// finds none. Of lanes whose range is as lane_ranges.h says; anything of others. `values`: one of each group, x
-/// fastest.
+/// Sets the squared errors that estimated_errors finds at 1, 2 and 4 bits before it applies its gains, bit for bit;
+/// infinite if it finds none. Lanes with a range outside the limits in lane_ranges.h get undefined results. `values`
+/// has one value of each group, x fastest.
 void estimate_lanes(const Floats8* values, const LaneShape& shape, const LaneRanges& ranges,
                     std::array<Doubles8, 3>& squared_errors);
 

@@ -1,5 +1,5 @@
-// Quantisers fitted to eight leaves at once that repeat their values, one leaf a lane: what Fitter of
-// leaf_quantiser.cpp does, operation by operation. Lanes that are done are computed on, and no longer looked at.
+// Fits quantisers to eight leaves at once that repeat their values, one leaf per lane. Does what Fitter in
+// leaf_quantiser.cpp does, operation by operation. The results of lanes that are done are computed but ignored.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ struct LaneQuantisers {
   Floats8 top;
 };
 
-/// CodeSums of each lane.
+/// The CodeSums of each lane.
 struct LaneCodeSums {
   Doubles8 squares;
   Doubles8 codes;
@@ -30,17 +30,17 @@ struct LaneCodeSums {
   Doubles8 code_values;
 };
 
-/// To be used by functions with WEIR_SIMD alone, which all of it becomes part of.
+/// Only functions with WEIR_SIMD may use this class. All of its code is inlined into them.
 class LaneFitter {
  public:
-  /// `values`: one of each group, x fastest.
+  /// `values` has one value of each group, x fastest.
   [[gnu::always_inline]] LaneFitter(const Floats8* values, const LaneShape& shape, const LaneRanges& ranges)
       : values_(values), shape_(shape), count_(shape.values()), times_(static_cast<double>(shape.times())), r_(ranges) {
     least_ = Doubles8(r_.min);
     most_value_ = Doubles8(r_.max);
     mean_ = Doubles8(r_.mean);
     const Floats8 half = r_.max / 2.0F - r_.min / 2.0F;
-    for (std::size_t l = 0; l < kLeafLanes; ++l) {  // a normal number: its exponent is in its bits
+    for (std::size_t l = 0; l < kLeafLanes; ++l) {  // `half` is a normal number, so its bits hold its exponent
       const float of_lane = half[static_cast<int>(l)];
       std::uint32_t bits;
       std::memcpy(&bits, &of_lane, sizeof bits);
@@ -60,8 +60,8 @@ class LaneFitter {
     sum_terms(squares_);
   }
 
-  /// At the width of codes up to `most`, from levels over `share` of the range: sets the least squared error of so many
-  /// rounds, infinite where there is none.
+  /// Fits levels with codes up to `most`, beginning with levels over `share` of the range. Sets the least squared error
+  /// of `rounds` rounds; infinite if there is none.
   [[gnu::always_inline]] void start(double share, int rounds, float most, Doubles8& squared_error) {
     most_ = most - Floats8{};
     const Doubles8 wide_most(static_cast<double>(most));
@@ -94,7 +94,7 @@ class LaneFitter {
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   static constexpr auto kVoxels = static_cast<double>(kLeafVoxels);
 
-  // `most` in the lanes that have more.
+  // Returns `v`, but `most` in the lanes that have more.
   [[gnu::always_inline]] static Doubles8 at_most(const Doubles8& v, const Doubles8& most) {
     return select(most < v, most, v);
   }
@@ -132,7 +132,7 @@ class LaneFitter {
       code_squares += code * code;
       terms_[i] = code * deviations_[i];
     }
-    // Whole numbers below 2^24: exact in any order.
+    // The sums are whole numbers below 2^24, so they are exact in any order.
     sums.codes = Doubles8(codes) * times_;
     sums.code_squares = Doubles8(code_squares) * times_;
     sum_terms(sums.code_values);
@@ -259,7 +259,7 @@ class LaneFitter {
     }
   }
 
-  // Where `asked`.
+  // Sets the largest quantum for which level `code` does not lie above the range, in the lanes that `asked` selects.
   [[gnu::always_inline]] void quantum_up_to(const Floats8& code, const Floats8& minimum, const Ints8& asked,
                                             Floats8& quantum) const {
     narrow(at_most(most_value_ - Doubles8(minimum), kWidest) / Doubles8(code), quantum);
@@ -301,7 +301,7 @@ class LaneFitter {
   const Floats8* values_;
   const LaneShape& shape_;
   std::size_t count_;
-  double times_;  // voxels of each value
+  double times_;  // number of voxels of each value
   const LaneRanges& r_;
   Doubles8 least_;
   Doubles8 most_value_;
@@ -309,8 +309,8 @@ class LaneFitter {
   Floats8 scale_;
   Doubles8 wide_scale_;
   Doubles8 unscale_;
-  Doubles8 deviation_;  // sum of the deviations: what rounding the mean left
-  Doubles8 squares_;    // sum of their squares
+  Doubles8 deviation_;  // sum of the deviations, which is not 0 because the mean is rounded
+  Doubles8 squares_;    // sum of the squared deviations
   Doubles8 best_;
   Floats8 most_;
   std::array<Floats8, kMostLaneValues> deviations_;

@@ -1,4 +1,5 @@
-// Which of eight lanes something holds of, all bits of a lane set: beside floats as Ints8, beside doubles as Longs8.
+// Masks of eight lanes: all bits of a lane are set if a condition holds for it. A mask is Ints8 for floats and Longs8
+// for doubles.
 #pragma once
 
 #include <array>

@@ -7,8 +7,8 @@
 namespace weir {
 namespace {
 
-// The least and the largest; of -0.0 and 0.0 the one that is met first along the rows, those of one place in their rows
-// before those of the next.
+// Finds the least and the largest value. Of -0.0 and 0.0 it takes the first that it meets, in this order: the first
+// value of every row, then the second value of every row, and so on.
 [[gnu::always_inline]] inline void find_range(const Floats8* values, const LaneShape& shape, Floats8& min,
                                               Floats8& max) {
   const std::size_t count = shape.values();

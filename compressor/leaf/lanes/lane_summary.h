@@ -1,4 +1,4 @@
-// Range, mean, deviations and counts of eight leaves at once that repeat their values.
+// Finds range, mean, deviations and counts of eight leaves at once that repeat their values.
 #pragma once
 
 #include "compressor/leaf/lanes/lane_ranges.h"
@@ -7,15 +7,15 @@
 
 namespace weir {
 
-/// Of each lane, as a LeafRow has them.
+/// The figures of each lane, with the meaning that they have in a LeafRow.
 struct LaneSummary {
   LaneRanges ranges;
   Doubles8 sse;
   Ints8 zeros;
-  Ints8 at_ends;  ///< values that equal the least or the largest
+  Ints8 at_ends;  ///< number of values that equal the least or the largest
 };
 
-/// `values`: one of each group, finite ones, x fastest.
+/// Sets the summary of each lane. `values` has one finite value of each group, x fastest.
 void summarize_lanes(const Floats8* values, const LaneShape& shape, LaneSummary& summary);
 
 }  // namespace weir

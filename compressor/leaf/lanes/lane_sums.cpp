@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::size_t kRowPairs = kLeafDim / 2;
 
-// Of X groups in a row and Y in a column, Z in depth.
+// Sums the terms of a leaf with X groups along x, Y along y and `z_groups` along z.
 template <std::size_t X, std::size_t Y, typename Lanes>
 [[gnu::always_inline]] inline void sum_shape(const Lanes* terms, std::size_t z_groups, Lanes& total) {
   std::array<Lanes, X> sums{};
@@ -24,7 +24,7 @@ template <std::size_t X, std::size_t Y, typename Lanes>
       }
     }
   }
-  // Both rows of a pair, then the lanes of a row, those that lie far apart first.
+  // Adds both rows of a pair, then the lanes of a row; lanes that lie far apart come first.
 #pragma GCC unroll 4
   for (std::size_t x = 0; x < X; ++x) sums[x] += sums[x];
   if constexpr (X == 4) {

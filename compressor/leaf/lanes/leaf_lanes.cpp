@@ -17,7 +17,7 @@ namespace {
 
 using LaneValues = std::array<Floats8, kMostLaneValues>;
 
-// Whether the lanes have what is to be known of the row.
+// Returns whether the results of the lanes are valid for the row.
 bool suits_lanes(const LeafRow& row) {
   const double width = static_cast<double>(row.max) - static_cast<double>(row.min);
   return width >= static_cast<double>(kLeastLaneWidth) && std::fabs(row.min) <= kMostLaneMagnitude &&
@@ -34,7 +34,7 @@ void set_summary(const LaneSummary& summary, int lane, LeafRow& row) {
   row.zeros = static_cast<std::uint32_t>(summary.zeros[lane]) & 0x7FFFU;
 }
 
-// summarize_widths() by what was found of the lane.
+// Does what summarize_widths() does, from what was found for the lane.
 void set_widths(std::span<const float> distinct, std::uint16_t at_ends, const std::array<Doubles8, 3>& squared_errors,
                 int lane, LeafRow& row) {
   if (const auto lattice = find_lattice(distinct, row.min, row.max)) {

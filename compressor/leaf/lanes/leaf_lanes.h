@@ -1,5 +1,5 @@
-// Leaves that repeat their values, surveyed eight at once: what summarize_leaf and summarize_widths find of each, to
-// the bit, from its distinct values.
+// Surveys eight leaves at once that repeat their values. From the distinct values of each leaf it finds, bit for bit,
+// what summarize_leaf and summarize_widths find.
 #pragma once
 
 #include <array>
@@ -11,24 +11,24 @@
 
 namespace weir {
 
-/// Up to kLeafLanes leaves in groups of the same size. One per thread.
+/// Holds up to kLeafLanes leaves with groups of the same size. One object per thread.
 class LeafLanes {
  public:
-  /// Whether a leaf of these values may be added: finite ones of which two differ.
+  /// Returns whether a leaf of these values may be added: all must be finite, and at least two must differ.
   static bool takes(std::span<const float> distinct);
 
-  /// Empties it for leaves in groups of `by` voxels, which suit (LaneShape).
+  /// Removes all leaves and begins anew for leaves in groups of `by` voxels. LaneShape::suits(by) must be true.
   void begin(const Index3& by);
   void clear() { size_ = 0; }
-  /// A leaf of so many `distinct` values, x fastest, that it takes.
+  /// Adds a leaf with these distinct values, x fastest. takes(distinct) must be true, and full() false.
   void add(std::span<const float> distinct);
   std::size_t size() const { return size_; }
   bool full() const { return size_ == kLeafLanes; }
   const Index3& by() const { return by_; }
   std::span<const float> distinct(std::size_t leaf) const { return {rows_[leaf].data(), shape_.values()}; }
 
-  /// Sets all but sample and digest of the rows of the leaves, in the order in which they were added; what
-  /// summarize_widths finds where `widths`.
+  /// Sets the rows of the leaves, in the order of add(), except `sample` and `digest`. If `widths` is true, also sets
+  /// what summarize_widths finds.
   void summarize(bool widths, std::span<LeafRow> rows);
 
  private:

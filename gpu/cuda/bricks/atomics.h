@@ -8,7 +8,7 @@
 
 namespace weir {
 
-/// Each returns what was there before.
+/// The atomic_ functions return the previous value.
 template <class Word>
 WEIR_HOST_DEVICE Word atomic_add(Word* at, Word n) {
 #if defined(__CUDA_ARCH__)
@@ -46,7 +46,7 @@ WEIR_HOST_DEVICE inline std::uint32_t atomic_max(std::uint32_t* at, std::uint32_
 #endif
 }
 
-/// What other threads have made of it lately: past a device's first cache.
+/// Reads the word past a device's first-level cache, so that other threads' recent changes are seen.
 WEIR_HOST_DEVICE inline std::uint32_t load_fresh(const std::uint32_t* at) {
 #if defined(__CUDA_ARCH__)
   return __ldcg(at);
@@ -55,7 +55,7 @@ WEIR_HOST_DEVICE inline std::uint32_t load_fresh(const std::uint32_t* at) {
 #endif
 }
 
-/// For words that all threads set to the same.
+/// For words that all threads set to the same value.
 WEIR_HOST_DEVICE inline void store(std::uint32_t* at, std::uint32_t n) {
 #if defined(__CUDA_ARCH__)
   *at = n;
@@ -64,7 +64,7 @@ WEIR_HOST_DEVICE inline void store(std::uint32_t* at, std::uint32_t n) {
 #endif
 }
 
-/// Puts `n` in the place of `expected`.
+/// Writes `n` if the word is `expected`.
 WEIR_HOST_DEVICE inline std::uint64_t atomic_replace(std::uint64_t* at, std::uint64_t expected, std::uint64_t n) {
 #if defined(__CUDA_ARCH__)
   using Word = unsigned long long;

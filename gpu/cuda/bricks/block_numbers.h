@@ -1,4 +1,5 @@
-// Numbers for blocks as they come, each block once: a hash table with open addressing. For host and device.
+// Numbers blocks in the order in which they come, each block once: a hash table with open addressing. For host and
+// device.
 #pragma once
 
 #include <cstdint>
@@ -9,11 +10,11 @@
 namespace weir {
 
 struct BlockNumbers {
-  std::uint64_t* keys = nullptr;     ///< id + 1; 0: empty. `mask` + 1 of them, of which half stay empty
+  std::uint64_t* keys = nullptr;     ///< id + 1; 0: empty. There are `mask` + 1 keys; half of them stay empty
   std::uint32_t* numbers = nullptr;  ///< of the keys
   std::uint32_t mask = 0;
-  BlockId* blocks = nullptr;       ///< by number
-  std::uint32_t* count = nullptr;  ///< of the blocks
+  BlockId* blocks = nullptr;       ///< blocks by number
+  std::uint32_t* count = nullptr;  ///< number of blocks
 
   WEIR_HOST_DEVICE void add(BlockId id) const {
     for (std::uint32_t at = first(id);; at = (at + 1) & mask) {
@@ -26,7 +27,7 @@ struct BlockNumbers {
       return;
     }
   }
-  /// Of a block that was added by work that is done.
+  /// Returns the number of a block that completed work has added.
   WEIR_HOST_DEVICE std::uint32_t of(BlockId id) const {
     std::uint32_t at = first(id);
     while (keys[at] != id + 1) at = (at + 1) & mask;

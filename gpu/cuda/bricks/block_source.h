@@ -1,4 +1,4 @@
-// Where the voxels of a brick cache come from.
+// The source of a brick cache's voxels.
 #pragma once
 
 #include <cstdint>
@@ -8,21 +8,22 @@
 
 namespace weir {
 
-/// All pointers are to memory of the machine that the cache works on; calls are in the order of its work.
+/// All pointers are to memory of the machine that the cache works on. Calls run in the order of its work.
 class BlockSource {
  public:
   virtual ~BlockSource() = default;
 
   virtual BlockLattice lattice() const = 0;
-  /// Of all regions (host memory): those that are one value together with the seven above them, and missing pages.
+  /// Returns the entries of all regions, in host memory. A region that is one value together with the seven above it
+  /// has this value; any other has a missing page.
   virtual std::vector<RegionEntry> regions() const = 0;
-  /// Fills pages[i] for regions[i], i < count: an entry is missing, or has the one value of its block and the seven
-  /// above it.
+  /// Fills pages[i] for regions[i], i < count. An entry is either missing, or has the one value that its block and
+  /// the seven above it share.
   virtual void fill_pages(const std::uint32_t* regions, const std::uint32_t* pages, std::uint32_t count,
                           const PageTable& table) = 0;
   /// Decodes blocks[i] into values[512 i] (x << 6 | y << 3 | z), i < count.
   virtual void decode(const BlockId* blocks, std::uint32_t count, float* values) = 0;
-  /// Throws Error(input) where something that was decoded is damaged; waits for it.
+  /// Throws Error(input) if a decoded block is damaged. Waits for the decoding first.
   virtual void check() = 0;
 };
 

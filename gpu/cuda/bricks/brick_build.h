@@ -1,4 +1,4 @@
-// Makes bricks of decoded blocks: which blocks they need, and their texels. For host and device.
+// Makes bricks from decoded blocks: finds the blocks that they need, and writes their texels. For host and device.
 #pragma once
 
 #include <cstdint>
@@ -13,11 +13,11 @@ namespace weir {
 /// Largest code of a texel of 16 bits.
 inline constexpr float kMostTexel = 65535;
 
-/// Asks for every brick of a stretch of pages that is missing: for each of their entries.
+/// Requests every missing brick of a range of pages. Runs for each of the pages' entries.
 struct RequestMissing {
   PageTable table;
   std::uint32_t first_page = 1;
-  const std::uint32_t* regions = nullptr;  ///< of the pages, from page 1 on
+  const std::uint32_t* regions = nullptr;  ///< regions of the pages, from page 1 on
 
   WEIR_HOST_DEVICE void operator()(std::uint32_t i) const {
     const std::uint32_t page = first_page + i / kRegionBlocks;
@@ -27,7 +27,7 @@ struct RequestMissing {
   }
 };
 
-/// Counts the entries that are missing, of all from page 1 on.
+/// Counts the missing entries, of all from page 1 on.
 struct CountMissing {
   const BrickEntry* entries = nullptr;
   std::uint32_t* count = nullptr;
@@ -37,7 +37,7 @@ struct CountMissing {
   }
 };
 
-/// Forgets that bricks were asked for: for each of them.
+/// Clears the request flags of bricks. Runs for each brick.
 struct ForgetRequests {
   PageTable table;
   const BlockId* bricks = nullptr;
@@ -48,7 +48,7 @@ struct ForgetRequests {
   }
 };
 
-/// Numbers the blocks that bricks need: for each brick, eight times.
+/// Numbers the blocks that bricks need. Runs eight times for each brick.
 struct NumberBlocks {
   BlockLattice lattice;
   const BlockId* bricks = nullptr;
@@ -59,8 +59,8 @@ struct NumberBlocks {
   }
 };
 
-/// A group of threads a brick: finds its range, takes a slot for it where it has more than one value, writes its texels
-/// and its entry. `Texels` has kSixteenBits, and write(position, code or value).
+/// One group of threads per brick: finds the brick's range, takes a slot for it if it has more than one value, writes
+/// its texels and its entry. `Texels` has kSixteenBits, and write(position, code or value).
 template <class Texels>
 struct BuildBricks {
   struct Shared {
@@ -74,7 +74,7 @@ struct BuildBricks {
   BrickSlots slots;
   BrickCounters* counters = nullptr;
   BlockNumbers numbers;
-  const float* values = nullptr;  ///< 512 of each block, by number
+  const float* values = nullptr;  ///< 512 per block, by number
   const BlockId* bricks = nullptr;
   std::uint32_t turn = 0;
   Texels texels;
@@ -122,7 +122,8 @@ struct BuildBricks {
     return static_cast<std::int32_t>(thread.count());
   }
 
-  // The n-th voxel of a brick, z fastest as in blocks; those outside the domain are the nearest inside.
+  // Returns the n-th voxel of a brick, z fastest as in blocks. For a voxel outside the domain, returns the nearest
+  // voxel inside.
   WEIR_HOST_DEVICE float texel(const Shared& shared, const Int3& block, std::int32_t n) const {
     const BlockLattice& l = table.lattice;
     const Int3 v{clamped(8 * block.x + n / (kBrickEdge * kBrickEdge), l.shift.x, l.shift.x + l.extent.x - 1),
@@ -133,7 +134,7 @@ struct BuildBricks {
                   static_cast<std::size_t>((v.x & 7) << 6 | (v.y & 7) << 3 | (v.z & 7))];
   }
 
-  // Takes a slot where one is needed.
+  // Makes the brick's entry. Takes a slot if the brick needs one.
   WEIR_HOST_DEVICE BrickEntry entry_for(const MinMax& range, bool finite) const {
     if (finite && range.min == range.max) return {range.min, 0, 0, 0};
     BrickEntry entry{0, 1, 0, 0};
@@ -142,11 +143,11 @@ struct BuildBricks {
       entry.span = range.max - range.min;
       if (!finite || !is_finite(entry.span) || !is_finite(kMostTexel / entry.span)) {
         atomic_add(&counters->unfit, 1U);
-        return {0, 0, 0, brick_state::kMissing};  // so that another turn comes, which sees it
+        return {0, 0, 0, brick_state::kMissing};  // missing, so that another turn comes and sees the count
       }
       std::uint32_t bits;
       __builtin_memcpy(&bits, &entry.span, sizeof bits);
-      atomic_max(&counters->worst, bits);  // of numbers above 0, bits are in their order
+      atomic_max(&counters->worst, bits);  // positive floats have the order of their bits
     }
     entry.brick = slots.brick(slots.free[atomic_add(&counters->free_slots, ~0U) - 1]);
     return entry;

@@ -20,11 +20,11 @@ namespace {
 
 constexpr std::uint64_t kPageBytes = kRegionBlocks * sizeof(BrickEntry);
 constexpr std::uint64_t kSlotBytes = 3 * sizeof(std::uint32_t) + sizeof(float);
-// Of a block decoded with others: its values, and its share of the table of numbers.
+// Bytes of a block that is decoded with others: its values, and its share of the table of numbers.
 constexpr std::uint64_t kBlockBytes = 512 * sizeof(float) + 8 * sizeof(BlockId) + 32 * 12;
-constexpr std::uint32_t kMostBlocks = 1U << 17U;  // decoded together: as many as keep a device busy
+constexpr std::uint32_t kMostBlocks = 1U << 17U;  // most blocks decoded together: enough to keep a device busy
 constexpr std::uint32_t kLeastBlocks = 1U << 10U;
-constexpr std::uint64_t kSmallCache = std::uint64_t{128} << 20U;  // below it, room for bricks counts for more than time
+constexpr std::uint64_t kSmallCache = std::uint64_t{128} << 20U;  // below it, room for bricks matters more than time
 constexpr std::uint32_t kMostRequests = 1U << 20U;
 constexpr std::uint32_t kLeastSlots = 1U << 12U;  // some tens for each ray of a tile
 
@@ -33,7 +33,7 @@ using DevicePager = BrickPager<DeviceMachine, SurfaceTexels<Texel>>;
 
 }  // namespace
 
-/// Of either kind of texels.
+/// A pager of either kind of texels.
 class BrickCache::Pager {
  public:
   Pager(TexelType type, BlockSource& source, std::span<const RegionEntry> regions, const BrickPlan& plan,
@@ -66,7 +66,7 @@ BrickCache::BrickCache(std::unique_ptr<BlockSource> source, const BrickBudget& b
 
 BrickCache::~BrickCache() = default;
 
-// Null after a failure.
+// Throws if a failure has left no pager.
 BrickCache::Pager& BrickCache::pager() const {
   if (!pager_) throw Error(ErrorKind::internal, "a cache of bricks is used that is to be restored first");
   return *pager_;
@@ -76,8 +76,8 @@ PageTable BrickCache::pages() {
   return pager().with([](auto& pager) { return pager.table(); });
 }
 
-// What a cache needs that holds only some of the bricks at a time. A turn of decoding takes nearly as long for few
-// blocks as for many.
+// Returns what a cache needs that holds only some of the bricks at a time. A turn of decoding takes nearly as long
+// for few blocks as for many.
 BrickCache::Needs BrickCache::needs() const { return needs(left_ < kSmallCache ? left_ / 8 : left_ / 4); }
 
 BrickCache::Needs BrickCache::needs(std::uint64_t decoding) const {
@@ -86,7 +86,7 @@ BrickCache::Needs BrickCache::needs(std::uint64_t decoding) const {
   const std::uint64_t scratch =
       std::clamp<std::uint64_t>(decoding, kLeastBlocks * kBlockBytes, kMostBlocks * kBlockBytes);
   needs.plan.blocks = static_cast<std::uint32_t>(scratch / kBlockBytes);
-  // All that there may be slots for: what a full list has no room for is drawn for once more.
+  // As many as there may be slots. If a full list leaves something out, the picture is drawn once more.
   needs.plan.most_requests = static_cast<std::uint32_t>(
       std::clamp<std::uint64_t>(left_ / brick_bytes(TexelType::share16), kRegionBlocks, kMostRequests));
   needs.fixed = needs.table + scratch + needs.plan.most_requests * sizeof(BlockId);
@@ -118,7 +118,7 @@ bool BrickCache::shrink(std::uint64_t bytes, const std::string& why) {
   return true;
 }
 
-// With less and less of the budget where the device refuses: others take of it too.
+// Tries with less and less of the budget while the device refuses memory, because other programs use the device too.
 void BrickCache::make(TexelType type) {
   const std::uint64_t before = left_;
   const std::string refused_before = refusal_;
@@ -131,7 +131,7 @@ void BrickCache::make(TexelType type) {
       refusal_ = full.what();
       left_ = std::min(left_ - left_ / 4, free);
       if (kept_ == BricksKept::some && needs().fit(type, left_)) continue;
-      left_ = before;  // there may be room another time
+      left_ = before;  // there may be room at another time
       refusal_ = refused_before;
       throw;
     } catch (...) {
@@ -160,15 +160,15 @@ void BrickCache::make_pager(BrickPlan plan, const TextureShape& shape) {
   pager_ = std::make_unique<Pager>(type_, *source_, regions_, plan, texture_.surface());
 }
 
-// All bricks; false where they do not fit.
+// Makes a cache of all bricks. Returns false if they do not fit.
 bool BrickCache::make_whole() {
   Needs needs = this->needs(left_ / 8);
   const BlockLattice lattice = source_->lattice();
   const auto most = static_cast<std::int32_t>(kFixedPointEnd - 8);
   if (greater(lattice.extent.x, greater(lattice.extent.y, lattice.extent.z)) > most) return false;
-  if (regions_.size() >= 1U << 20U) return false;  // their entries are counted in 32 bits
+  if (regions_.size() >= 1U << 20U) return false;  // entries are counted in 32 bits
   needs.plan.pages = static_cast<std::uint32_t>(regions_.size());
-  needs.fixed += 2 * (regions_.size() + 1) * kPageBytes;  // pages, and the table made of them
+  needs.fixed += 2 * (regions_.size() + 1) * kPageBytes;  // pages, and the table made from them
   if (needs.fixed > left_ / 2) return false;
   needs.plan.slots = 1;
   pager_ = std::make_unique<Pager>(type_, *source_, regions_, needs.plan, 0);
@@ -192,7 +192,7 @@ bool BrickCache::make_whole() {
 }
 
 void BrickCache::fail_too_small(const Needs& needs) const {
-  // Enough for floats, too, and for the eighth or quarter that decodes.
+  // Enough for floats as well, and for the eighth or quarter that decoding takes.
   const std::uint64_t most = needs.least(TexelType::float32);
   const std::uint64_t decoding = most < kSmallCache / 2 ? most / 5 : most / 2;
   std::uint64_t enough = std::max(20 * needs.table, most + decoding) + budget_.taken;
@@ -218,7 +218,7 @@ bool BrickCache::Needs::fit(TexelType type, std::uint64_t bytes) const {
   return table <= bytes / 20 && least(type) <= bytes;
 }
 
-// Places for as many bricks as fit.
+// Makes a cache with places for as many bricks as fit.
 void BrickCache::make_paged() {
   Needs needs = this->needs();
   if (!needs.fit(type_, left_)) {
@@ -250,7 +250,7 @@ PagingTurn BrickCache::serve() {
   try {
     turn = pager().with([](auto& pager) { return pager.serve(); });
   } catch (...) {
-    clear();  // what was brought in is not known
+    clear();  // it is unknown what was brought in
     throw;
   }
   if (turn.unfit) make(TexelType::float32);

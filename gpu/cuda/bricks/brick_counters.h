@@ -1,4 +1,4 @@
-// What the work of a brick cache counts, where it is done. For host and device.
+// What the work of a brick cache counts on the device. For host and device.
 #pragma once
 
 #include <cstdint>
@@ -13,16 +13,16 @@ struct BrickCounters {
   std::uint32_t brick_requests = 0;   ///< in this turn
   std::uint32_t region_requests = 0;  ///< in this turn
   std::uint32_t evicted = 0;          ///< bricks, in this turn
-  std::uint32_t ages[kAges] = {};     ///< slots by the turns since they were last used; the last one: or more
-  std::uint32_t blocks = 0;           ///< of this batch
+  std::uint32_t ages[kAges] = {};     ///< slots by turns since their last use; the last count: that many turns or more
+  std::uint32_t blocks = 0;           ///< blocks of this batch
   std::uint32_t free_slots = 0;
-  std::uint32_t unfit = 0;    ///< bricks that 16 bits do not hold
-  std::uint32_t worst = 0;    ///< largest span of a brick, a float's bits
-  std::uint64_t built = 0;    ///< bricks, in all
-  std::uint64_t decoded = 0;  ///< blocks, in all
+  std::uint32_t unfit = 0;    ///< bricks whose values 16 bits do not hold
+  std::uint32_t worst = 0;    ///< largest span of a brick, as a float's bits
+  std::uint64_t built = 0;    ///< bricks built in total
+  std::uint64_t decoded = 0;  ///< blocks decoded in total
 };
 
-/// Before slots are counted.
+/// Runs before slots are counted.
 struct BeginTurn {
   BrickCounters* counters = nullptr;
   WEIR_HOST_DEVICE void operator()(std::uint32_t) const {
@@ -31,7 +31,7 @@ struct BeginTurn {
   }
 };
 
-/// Once all that was asked for is brought in or forgotten.
+/// Runs after all requests are served or forgotten.
 struct EndTurn {
   BrickCounters* counters = nullptr;
   WEIR_HOST_DEVICE void operator()(std::uint32_t) const {
@@ -45,7 +45,7 @@ struct BeginBatch {
   WEIR_HOST_DEVICE void operator()(std::uint32_t) const { counters->blocks = 0; }
 };
 
-/// After a batch of `bricks`.
+/// Runs after a batch of `bricks`.
 struct EndBatch {
   BrickCounters* counters = nullptr;
   std::uint32_t bricks = 0;

@@ -1,6 +1,6 @@
-// The turns of a brick cache: after a picture's look-ups have noted what they miss, pages and bricks are brought in,
-// the least recently used ones going where there is no room. `Machine` says where the memory is and who works: a device
-// (device_machine.cuh), or the host in tests.
+// The turns of a brick cache. After a picture's look-ups have noted what they miss, a turn brings pages and bricks in
+// and evicts the least recently used ones if there is no room. `Machine` provides the memory and runs the work: a
+// device (device_machine.cuh), or the host in tests.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +27,7 @@ class BrickPager {
   using Array = typename Machine::template Array<T>;
 
  public:
-  /// `source`, whose regions() are `regions`, must outlive the object.
+  /// `source` must outlive the object; `regions` are its regions().
   BrickPager(Machine machine, BlockSource& source, std::span<const RegionEntry> regions, const BrickPlan& plan,
              const Texels& texels)
       : machine_(machine),
@@ -60,7 +60,7 @@ class BrickPager {
     counters.free_slots = plan.slots;
     counters_.upload(std::span(&counters, 1));
     machine_.each(plan.slots, FreeAllSlots{slots()});
-    machine_.wait();  // another thread may use the object
+    machine_.wait();  // another thread may use the object next
   }
 
   PageTable table() {
@@ -72,17 +72,17 @@ class BrickPager {
                          plan_.most_requests, plan_.pages}};
   }
 
-  /// Bytes of what is here, without the texels.
+  /// Returns the bytes of this object's memory, without the texels.
   std::uint64_t bytes() const {
     return regions_.bytes() + entries_.bytes() + page_stamps_.bytes() + owners_.bytes() + stamps_.bytes() +
            free_.bytes() + middles_.bytes() + counters_.bytes() + bricks_.bytes() + wanted_regions_.bytes() +
            listed_regions_.bytes() + listed_pages_.bytes() + keys_.bytes() + numbers_.bytes() + blocks_.bytes() +
            values_.bytes();
   }
-  /// As of the last turn.
+  /// Returns the counters as of the last turn.
   const BrickCounters& counters() const { return seen_; }
 
-  /// Brings in a page for each region, the plan having as many, and says how many bricks are then missing.
+  /// Brings in a page for each region, for which the plan has enough pages. Returns how many bricks are missing then.
   std::uint32_t bring_all_pages() {
     std::vector<std::uint32_t> regions(regions_.size());
     std::iota(regions.begin(), regions.end(), 0U);
@@ -96,7 +96,8 @@ class BrickPager {
     return missing;
   }
 
-  /// Brings in all bricks after all pages; the plan has slots for them. False where 16 bits do not hold one.
+  /// Brings in all bricks after all pages; the plan has slots for them. Returns false if 16 bits do not hold some
+  /// brick.
   bool bring_all_bricks() {
     const std::uint32_t pages = plan_.pages - static_cast<std::uint32_t>(free_pages_.size());
     const std::uint32_t at_once = std::max(1U, plan_.most_requests / kRegionBlocks);
@@ -112,7 +113,7 @@ class BrickPager {
     return seen_.unfit == 0;
   }
 
-  /// Serves what look-ups have asked for since the last turn.
+  /// Serves what look-ups have requested since the last turn.
   PagingTurn serve() {
     ++turn_;
     const std::uint32_t groups = std::clamp(plan_.slots / 4096U, 1U, 1024U);
@@ -133,7 +134,8 @@ class BrickPager {
     return turn;
   }
 
-  /// Gives back all but the entries of all blocks, as BrickTable has them; nothing more can be brought in.
+  /// Frees all memory except the entries of all blocks, which it returns in the layout of BrickTable. Nothing more
+  /// can be brought in.
   Array<BrickEntry> take_table() {
     keys_ = Array<std::uint64_t>(0);
     numbers_ = Array<std::uint32_t>(0);
@@ -154,7 +156,7 @@ class BrickPager {
     return entries;
   }
 
-  /// Throws Error(input) where something that was decoded is damaged; waits for all work.
+  /// Throws Error(input) if a decoded block is damaged. Waits for all work first.
   void check() {
     read_counters();
     source_.check();
@@ -163,7 +165,7 @@ class BrickPager {
  private:
   static constexpr std::uint32_t kNoRegion = ~0U;
 
-  // Places of the hash table: a power of two, at most half of them taken.
+  // Returns the size of the hash table: a power of two, so large that at most half of it is taken.
   static std::size_t number_slots(const BrickPlan& plan) {
     std::size_t size = 16;
     while (size < std::size_t{2} * 8 * plan.blocks) size *= 2;
@@ -176,7 +178,7 @@ class BrickPager {
 
   void read_counters() { counters_.download(std::span(&seen_, 1)); }
 
-  // Brings in the first `asked` regions of those asked for, or as many as find a page.
+  // Brings in the first `asked` of the requested regions, or as many of them as find a page.
   std::uint32_t serve_pages(std::uint32_t asked) {
     if (asked == 0) return 0;
     std::vector<std::uint32_t> regions(asked);
@@ -207,7 +209,7 @@ class BrickPager {
     source_.fill_pages(listed_regions_.data(), listed_pages_.data(), count, table());
   }
 
-  // Frees as many pages, those that were not used the longest, none that was used since the last turn.
+  // Frees `wanted` pages that were unused for the longest time, but none that was used since the last turn.
   void drop_pages(std::uint32_t wanted) {
     const std::uint32_t free_before = seen_.free_slots;
     machine_.each(kRegionBlocks * plan_.pages, StampPages{entries_.data(), page_stamps_.data(), turn_});
@@ -233,7 +235,8 @@ class BrickPager {
     evicted_ += seen_.free_slots - free_before;
   }
 
-  // Evicts bricks until `wanted` slots are free, none that was used since the last turn. Returns how many are free.
+  // Evicts bricks until `wanted` slots are free, but no brick that was used since the last turn. Returns how many are
+  // free.
   std::uint32_t make_room(std::uint32_t wanted) {
     if (wanted <= seen_.free_slots) return seen_.free_slots;
     const std::uint32_t needed = wanted - seen_.free_slots;
@@ -248,7 +251,8 @@ class BrickPager {
     return seen_.free_slots + evicted;
   }
 
-  // Builds the first `count` bricks of those asked for, as many together as their blocks' values have room.
+  // Builds the first `count` of the requested bricks, as many together as there is room for the values of their
+  // blocks.
   void build(std::uint32_t count) {
     for (std::uint32_t first = 0; first < count;) {
       const std::uint32_t some = std::min(batch_, count - first);
@@ -293,18 +297,18 @@ class BrickPager {
   Array<std::uint32_t> free_;
   Array<float> middles_;
   Array<BrickCounters> counters_;
-  Array<BlockId> bricks_;                // asked for
-  Array<std::uint32_t> wanted_regions_;  // asked for
-  Array<std::uint32_t> listed_regions_;  // of a step
-  Array<std::uint32_t> listed_pages_;    // of a step
+  Array<BlockId> bricks_;                // requested
+  Array<std::uint32_t> wanted_regions_;  // requested
+  Array<std::uint32_t> listed_regions_;  // list for one step
+  Array<std::uint32_t> listed_pages_;    // list for one step
   Array<std::uint64_t> keys_;
   Array<std::uint32_t> numbers_;
   Array<BlockId> blocks_;
   Array<float> values_;
-  std::uint32_t batch_;  // bricks whose blocks are likely to fit
+  std::uint32_t batch_;  // number of bricks whose blocks probably fit
   BrickCounters seen_;
   std::uint32_t turn_ = 0;
-  std::uint32_t evicted_ = 0;  // bricks, in this turn
+  std::uint32_t evicted_ = 0;  // bricks evicted in this turn
 };
 
 }  // namespace weir

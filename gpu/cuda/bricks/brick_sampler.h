@@ -1,5 +1,5 @@
-// The volume that kernels render where all of its blocks are bricks of a texture. Look-ups are most of what such
-// kernels do: fixed point numbers save conversions, which a device does a quarter as fast as sums.
+// The volume that kernels render if all of its blocks are bricks of a texture. Look-ups are most of what these
+// kernels do. Fixed point numbers save conversions, which a device does at a quarter of the speed of sums.
 #pragma once
 
 #include "gpu/cuda/bricks/brick_table.h"

@@ -1,4 +1,4 @@
-// The places for bricks on a device, and the steps that hand them out and take them back. For host and device.
+// The places for bricks on a device, and the steps that assign and free them. For host and device.
 #pragma once
 
 #include <cstdint>
@@ -11,30 +11,30 @@ namespace weir {
 struct BrickSlots {
   static constexpr std::uint32_t kFree = ~0U;
 
-  std::uint32_t* owners = nullptr;  ///< numbers of their entries in the page table; kFree
-  std::uint32_t* stamps = nullptr;  ///< turns in which they were last used
-  std::uint32_t* free = nullptr;    ///< counters->free_slots numbers of slots
-  float* middles = nullptr;         ///< of the ranges of their bricks' values
+  std::uint32_t* owners = nullptr;  ///< numbers of the slots' entries in the page table, or kFree
+  std::uint32_t* stamps = nullptr;  ///< turns of the slots' last use
+  std::uint32_t* free = nullptr;    ///< numbers of the counters->free_slots free slots
+  float* middles = nullptr;         ///< middles of the ranges of their bricks' values
   std::uint32_t count = 0;
   std::uint32_t across = 0;  ///< bricks along x of the texture
-  std::uint32_t down = 0;    ///< and along y
+  std::uint32_t down = 0;    ///< bricks along y
 
-  /// As BrickEntry has it. Place (0, 0, 0) is nobody's.
+  /// Returns the slot's place as BrickEntry::brick stores it. Place (0, 0, 0) stays unused.
   WEIR_HOST_DEVICE std::uint32_t brick(std::uint32_t slot) const {
     const std::uint32_t n = slot + 1;
     return BrickEntry::pack(n % across, n / across % down, n / across / down);
   }
-  /// In turns since a slot was last used, as BrickCounters counts them.
+  /// Returns the turns since the slot's last use, limited as BrickCounters counts them.
   WEIR_HOST_DEVICE std::uint32_t age(std::uint32_t slot, std::uint32_t turn) const {
     return lesser(turn - stamps[slot], BrickCounters::kAges - 1);
   }
-  /// Of brick().
+  /// Returns the slot of a place that brick() returned.
   WEIR_HOST_DEVICE std::uint32_t slot(std::uint32_t brick) const {
     return (brick & 2047U) + across * ((brick >> 11U & 2047U) + down * (brick >> 22U)) - 1;
   }
 };
 
-/// For each slot: free at the beginning.
+/// Frees every slot at the beginning. Runs for each slot.
 struct FreeAllSlots {
   BrickSlots slots;
   WEIR_HOST_DEVICE void operator()(std::uint32_t i) const {
@@ -44,8 +44,8 @@ struct FreeAllSlots {
   }
 };
 
-/// Stamps the slots that were used since the last time, and their pages, and counts all slots by age. A group of
-/// threads takes every groups-th stretch.
+/// Stamps the slots that were used since the last call, and their pages, and counts all slots by age. Each group of
+/// threads takes every `groups`-th stretch of slots.
 struct AgeSlots {
   struct Shared {
     std::uint32_t ages[BrickCounters::kAges];
@@ -79,7 +79,7 @@ struct AgeSlots {
   }
 };
 
-/// Takes `wanted` slots back from bricks of at least that age.
+/// Frees `wanted` slots of bricks that are at least `least_age` old.
 struct EvictSlots {
   BrickSlots slots;
   BrickEntry* entries = nullptr;
@@ -98,7 +98,7 @@ struct EvictSlots {
   }
 };
 
-/// Takes pages back from regions, and the slots of their bricks: for each entry of each of the pages.
+/// Takes pages back from regions, and frees the slots of their bricks. Runs for each entry of each page.
 struct DropPages {
   PageTable table;
   BrickSlots slots;
@@ -112,7 +112,7 @@ struct DropPages {
     BrickEntry& entry = table.entries[static_cast<std::size_t>(pages[n]) * kRegionBlocks + i % kRegionBlocks];
     if (entry.brick != 0) {
       const std::uint32_t slot = slots.slot(entry.brick);
-      atomic_add(counters->ages + slots.age(slot, turn), ~0U);  // free, no longer old
+      atomic_add(counters->ages + slots.age(slot, turn), ~0U);  // free, no longer counted by age
       slots.owners[slot] = BrickSlots::kFree;
       slots.free[atomic_add(&counters->free_slots, 1U)] = slot;
     }

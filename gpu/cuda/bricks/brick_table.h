@@ -1,4 +1,4 @@
-// Where the bricks of a grid are, all of which are there: one entry for each block. For host and device.
+// Where the bricks of a grid are if all of them are on the device: one entry per block. For host and device.
 #pragma once
 
 #include <cstdint>
@@ -9,18 +9,18 @@
 namespace weir {
 
 struct BrickTable {
-  const BrickEntry* entries = nullptr;  ///< of the blocks over the domain, x fastest
+  const BrickEntry* entries = nullptr;  ///< of the domain's blocks, x fastest
   std::uint32_t across = 1;             ///< blocks along x
-  std::uint32_t down = 1;               ///< and along y
-  std::uint32_t origin = 0;             ///< what index() makes of the first block's bits
+  std::uint32_t down = 1;               ///< blocks along y
+  std::uint32_t origin = 0;             ///< what index() yields for the first block before `origin` is subtracted
   Float3 first;                         ///< kFixedPoint + voxels from the first block's corner to the domain's
   Float3 last;                          ///< the domain's highest voxel
 
-  /// Counted from the first block's corner.
+  /// Fixed point numbers, counted from the first block's corner.
   using Position = FixedPlace;
 
   BrickTable() = default;
-  /// Over a domain of at most kFixedPointEnd - 8 voxels along each axis.
+  /// The domain has at most kFixedPointEnd - 8 voxels along each axis.
   BrickTable(const BlockLattice& lattice, const BrickEntry* all)
       : entries(all),
         across(static_cast<std::uint32_t>(blocks(lattice).x)),
@@ -33,26 +33,27 @@ struct BrickTable {
             static_cast<float>(lattice.extent.z - 1)};
   }
 
-  /// Blocks along each axis of the table over a lattice.
+  /// Returns the number of blocks along each axis of the table over a lattice.
   WEIR_HOST_DEVICE static Int3 blocks(const BlockLattice& lattice) {
     const Int3 last = lattice.last_block();
     return {last.x - (lattice.shift.x >> 3) + 1, last.y - (lattice.shift.y >> 3) + 1,
             last.z - (lattice.shift.z >> 3) + 1};
   }
 
-  /// Of local voxels, centres at whole numbers; those outside are moved into the domain.
+  /// Returns the position of local voxel coordinates; voxel centres are at whole numbers. Points outside are moved
+  /// into the domain.
   WEIR_HOST_DEVICE Position position(const Float3& q) const { return {q, first, last}; }
   WEIR_HOST_DEVICE std::uint32_t index(const Position& at) const {
     return (at.x >> 11U) + across * ((at.y >> 11U) + down * (at.z >> 11U)) - origin;
   }
-  /// Of the position's block.
+  /// Returns the entry of the position's block.
   WEIR_HOST_DEVICE BrickEntry entry(const Position& at) const { return entries[index(at)]; }
   WEIR_HOST_DEVICE static Float3 texel(const BrickEntry& entry, const Position& at) {
     return entry.texel(at.x, at.y, at.z);
   }
 };
 
-/// Fills a table from pages that are all there: for each of its entries.
+/// Fills a table from pages that are all on the device. Runs for each of the table's entries.
 struct FillBrickTable {
   PageTable pages;
   BrickEntry* entries = nullptr;

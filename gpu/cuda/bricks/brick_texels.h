@@ -1,4 +1,4 @@
-// Texels of bricks in a texture, as kernels write them.
+// Writes texels of bricks to a texture in kernels.
 #pragma once
 
 #include <cuda_runtime_api.h>
@@ -10,7 +10,7 @@
 
 namespace weir {
 
-/// float, or std::uint16_t, which the texture unit reads as a share of the largest.
+/// `Texel` is float, or std::uint16_t, which the texture unit reads as a fraction of its largest value.
 template <class Texel>
 struct SurfaceTexels {
   static constexpr bool kSixteenBits = sizeof(Texel) == 2;

@@ -1,4 +1,4 @@
-// The current device as what a brick cache works on, in the order of the calling thread's default stream.
+// Runs the work of a brick cache on the current device, in the order of the calling thread's default stream.
 #pragma once
 
 #include <cstdint>
@@ -13,12 +13,13 @@ namespace weir {
 
 inline constexpr unsigned kStepThreads = 256;
 
-/// A thread of a group.
+/// One thread of a group.
 struct StepThread {
   __device__ unsigned index() const { return threadIdx.x; }
   __device__ unsigned count() const { return blockDim.x; }
   __device__ void meet() const { __syncthreads(); }
-  /// Bounds of all threads' bounds; the first thread's result is right. `of_warps` has one for each warp.
+  /// Returns the bounds of all threads' bounds. Only the first thread's result is valid. `of_warps` has one element
+  /// per warp.
   __device__ MinMax widest(MinMax own, MinMax* of_warps) const {
     for (int distance = 16; distance > 0; distance /= 2) {
       own.min = lesser(own.min, __shfl_down_sync(~0U, own.min, distance));
@@ -53,20 +54,20 @@ struct DeviceMachine {
   template <class T>
   using Array = DeviceArray<T>;
 
-  /// step(i) for i < count.
+  /// Runs step(i) for each i < count.
   template <class Step>
   void each(std::uint32_t count, const Step& step) const {
     if (count == 0) return;
     launch_kernel(kWorking, {(count + kStepThreads - 1) / kStepThreads, kStepThreads, cudaStreamPerThread},
                   run_each<Step>, step, count);
   }
-  /// step(thread, shared, g) by a group of threads for each g < count.
+  /// Runs step(thread, shared, g) by a group of threads for each g < count.
   template <class Step>
   void groups(std::uint32_t count, const Step& step) const {
     if (count == 0) return;
     launch_kernel(kWorking, {count, kStepThreads, cudaStreamPerThread}, run_groups<Step>, step);
   }
-  /// Until all work is done.
+  /// Waits until all work is done.
   void wait() const { check_cuda(cudaStreamSynchronize(cudaStreamPerThread), kWorking); }
   template <class T>
   void clear(Array<T>& array) const {

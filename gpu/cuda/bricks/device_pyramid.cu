@@ -7,7 +7,7 @@ namespace weir {
 
 namespace {
 
-// A level's texels, unfiltered: a filtered look-up of one next to a NaN is NaN.
+// Reads a level's texels unfiltered, because a filtered look-up next to a NaN is NaN.
 struct SurfaceTexels {
   cudaSurfaceObject_t surface;
 
@@ -18,7 +18,7 @@ struct SurfaceTexels {
 
 }  // namespace
 
-// While a level is copied to its texture, it is there twice.
+// While a level is copied to its texture, it is in memory twice.
 int DevicePyramid::finest_within(const LevelLattice& lattice, int wanted, std::uint64_t bytes) {
   return finest_level_within(lattice, wanted, bytes > kDecodedRegionBytes ? (bytes - kDecodedRegionBytes) / 2 : 0,
                              kMaxTextureEdge);

@@ -1,4 +1,4 @@
-// Levels of detail of a grid on the current device: textures of floats, which it filters.
+// Levels of detail of a grid on the current device, as textures of floats that the texture unit filters.
 #pragma once
 
 #include <cstdint>
@@ -17,15 +17,15 @@ namespace weir {
 
 class DevicePyramid {
  public:
-  /// The finest level from `wanted` on that can be made within `bytes`; 0: none.
+  /// Returns the finest level from `wanted` on that can be made within `bytes`; 0: none.
   static int finest_within(const LevelLattice& lattice, int wanted, std::uint64_t bytes);
-  /// The levels from `first` on of all blocks of `source`, whose regions() are `regions`; `bytes` as above. Throws
-  /// Error(io) where the device has no room, Error(input) where blocks are damaged.
+  /// Makes the levels from `first` on of all blocks of `source` within `bytes`; `regions` are its regions(). Throws
+  /// Error(io) if the device has no room, Error(input) if blocks are damaged.
   DevicePyramid(BlockSource& source, std::span<const RegionEntry> regions, int first, std::uint64_t bytes);
 
   LevelsView<TextureSampler> view() const;
-  /// Of each of `cells`, whose voxels' bounds are `voxels` (device memory), what look-ups of this choice of levels may
-  /// see in it (level_bounds.h); `drafts` as there.
+  /// Returns, for each of `cells`, the bounds of the values that look-ups with this choice of levels may read in it
+  /// (level_bounds.h, also for `drafts`). `voxels` are the bounds of the cells' voxels in device memory.
   DeviceArray<MinMax> bounds(const CellLattice& cells, const MinMax* voxels, const LevelChoice& choice,
                              bool drafts) const;
   int first() const { return first_; }

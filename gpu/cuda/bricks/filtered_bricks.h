@@ -1,5 +1,5 @@
-// The volume that kernels render where its blocks are bricks of a texture. See gpu/volume/volume_sampler.h for what a
-// tracer asks of it.
+// The volume that kernels render if its blocks are bricks of a texture. gpu/volume/volume_sampler.h says what a
+// tracer asks of a volume.
 #pragma once
 
 #include "gpu/cuda/bricks/page_table.h"
@@ -9,8 +9,9 @@
 
 namespace weir {
 
-/// Trilinear by the texture unit, which has 8 bits of each weight; or one voxel. `Table` says where bricks are:
-/// position(q) of local voxels, centres at whole numbers, the entry(position) of its block, and texel(entry, position).
+/// Reads one voxel, or filters trilinearly by the texture unit, with weights of 8 bits. `Table` finds the bricks:
+/// position(q) for local voxel coordinates with centres at whole numbers, entry(position) of its block, and
+/// texel(entry, position).
 template <class Table, Filter kFilter>
 struct FilteredBricks {
   using Blocks = Table;
@@ -20,7 +21,8 @@ struct FilteredBricks {
 
   WEIR_HOST_DEVICE float sample(const Float3& p, [[maybe_unused]] Random& random) const {
     if constexpr (kFilter == Filter::stochastic) {
-      // One of the eight voxels around p, drawn by its weight: the one that covers p, moved by up to half a voxel.
+      // Picks one of the eight voxels around p with the probability of its weight: the voxel that covers p after p
+      // moves by up to half a voxel.
       const Float3 moved{p.x - 0.5F + random.uniform(), p.y - 0.5F + random.uniform(), p.z - 0.5F + random.uniform()};
       return look_up({std::floor(moved.x), std::floor(moved.y), std::floor(moved.z)});
     } else {
@@ -28,7 +30,7 @@ struct FilteredBricks {
     }
   }
 
-  /// Of a table that may miss entries.
+  /// Only for a table that may miss entries.
   WEIR_HOST_DEVICE static bool missed() requires requires { Table::missed(); }
   { return Table::missed(); }
   WEIR_HOST_DEVICE static void set_missed(bool missed) requires requires { Table::missed(); }

@@ -1,4 +1,4 @@
-// Positions with as many bits as the texture unit takes. For host and device.
+// Positions with as many bits as the texture unit uses.
 #pragma once
 
 #include <cstdint>
@@ -7,20 +7,20 @@
 
 namespace weir {
 
-/// Floats from here to 2^16 have 8 bits below the point: the sum of this and a position, less than 2^14, is a fixed
-/// point number, and its bits are kFixedPointBits more than 256 times the position.
+/// Floats from kFixedPoint to 2^16 have 8 bits below the point. The sum of kFixedPoint and a position less than 2^14
+/// is therefore a fixed point number: its bits are kFixedPointBits plus 256 times the position.
 inline constexpr float kFixedPoint = 49152;
 inline constexpr std::uint32_t kFixedPointBits = 0x47400000U;
-inline constexpr std::uint32_t kFixedPointEnd = 1U << 14U;  ///< of positions
+inline constexpr std::uint32_t kFixedPointEnd = 1U << 14U;  ///< end of the positions
 
-/// A place as fixed point bits: voxels from some block's lowest corner.
+/// A place as fixed point bits: voxels from the lowest corner of some block.
 struct FixedPlace {
   std::uint32_t x;
   std::uint32_t y;
   std::uint32_t z;
 
-  /// Of local voxels, centres at whole numbers, those outside moved into the domain: `first` is kFixedPoint and the
-  /// voxels from that corner to the domain's, `last` the domain's highest voxel.
+  /// `q` are local voxel coordinates with centres at whole numbers; points outside are moved into the domain. `first`
+  /// is kFixedPoint plus the voxels from that corner to the domain's corner. `last` is the domain's highest voxel.
   WEIR_HOST_DEVICE FixedPlace(const Float3& q, const Float3& first, const Float3& last)
       : x(bits(clamped(q.x, 0.0F, last.x) + first.x)),
         y(bits(clamped(q.y, 0.0F, last.y) + first.y)),

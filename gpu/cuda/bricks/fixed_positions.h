@@ -1,4 +1,4 @@
-// Where a look-up lies in a page table, and in a brick, by fixed point numbers. For host and device.
+// Where a look-up lies in a page table and in a brick, in fixed point numbers. For host and device.
 #pragma once
 
 #include <cstdint>
@@ -8,12 +8,12 @@
 
 namespace weir {
 
-/// In domains of at most kMost voxels along each axis; the same places as BrickTable's.
+/// For domains of at most kMost voxels along each axis. Finds the same places as BrickTable.
 class FixedPositions {
  public:
   static constexpr std::int32_t kMost = static_cast<std::int32_t>(kFixedPointEnd) - 136;
 
-  /// Counted from the first region's corner.
+  /// Fixed point numbers, counted from the first region's corner.
   using Position = FixedPlace;
 
   FixedPositions() = default;
@@ -27,16 +27,17 @@ class FixedPositions {
              static_cast<float>(lattice.extent.z - 1)};
   }
 
-  /// Of local voxels, centres at whole numbers; those outside are moved into the domain.
+  /// Returns the position of local voxel coordinates; voxel centres are at whole numbers. Points outside are moved
+  /// into the domain.
   WEIR_HOST_DEVICE Position at(const Float3& q) const { return {q, first_, last_}; }
   WEIR_HOST_DEVICE std::uint32_t region(const Position& at) const {
     return (at.x >> 15U) + across_ * ((at.y >> 15U) + down_ * (at.z >> 15U)) - origin_;
   }
-  /// Position of the block in its region.
+  /// Returns the position of the block in its region.
   WEIR_HOST_DEVICE static std::uint32_t in_region(const Position& at) {
     return (at.x >> 3U & 0xF00U) | (at.y >> 7U & 0xF0U) | (at.z >> 11U & 15U);
   }
-  /// Coordinates in the texture, in the brick of the block's entry.
+  /// Returns the texture coordinates in the brick of the block's entry.
   WEIR_HOST_DEVICE static Float3 texel(const BrickEntry& entry, const Position& at) {
     return entry.texel(at.x, at.y, at.z);
   }
@@ -44,7 +45,7 @@ class FixedPositions {
  private:
   std::uint32_t across_ = 0;  // regions along x
   std::uint32_t down_ = 0;    // regions along y
-  std::uint32_t origin_ = 0;  // what region() makes of the first region's bits
+  std::uint32_t origin_ = 0;  // what region() yields for the first region before `origin_` is subtracted
   Float3 first_;              // kFixedPoint + voxels from the first region's corner to the domain's
   Float3 last_;               // the domain's highest voxel
 };

@@ -1,4 +1,4 @@
-// Levels of detail of the blocks of a source. `Machine` as of BrickPager.
+// Makes levels of detail of a source's blocks. `Machine` is as for BrickPager.
 #pragma once
 
 #include <algorithm>
@@ -12,16 +12,16 @@
 
 namespace weir {
 
-/// Of a region that is decoded: its blocks' values and names.
+/// Bytes of a decoded region: its blocks' values and ids.
 inline constexpr std::uint64_t kDecodedRegionBytes = kRegionBlocks * (512 * sizeof(float) + sizeof(BlockId));
 
-/// The finest of them; decodes as many regions together as `scratch` bytes hold, at least one. `regions` are
+/// Makes the finest level. Decodes as many regions together as `scratch` bytes hold, at least one. `regions` are
 /// source.regions().
 template <class Machine>
 typename Machine::template Array<float> finest_level_of(const Machine& machine, BlockSource& source,
                                                         std::span<const RegionEntry> regions,
                                                         const LevelLattice& levels, int level, std::uint64_t scratch) {
-  constexpr std::size_t kMostTogether = 32;  // as many as keep a device busy
+  constexpr std::size_t kMostTogether = 32;  // enough to keep a device busy
   using Numbers = typename Machine::template Array<std::uint32_t>;
   using Floats = typename Machine::template Array<float>;
   const BlockLattice lattice = source.lattice();
@@ -74,7 +74,7 @@ typename Machine::template Array<float> finest_level_of(const Machine& machine, 
   return texels;
 }
 
-/// Level `level` + 1.
+/// Makes level `level` + 1 from level `level`.
 template <class Machine>
 typename Machine::template Array<float> coarser_level_of(const Machine& machine, const LevelLattice& levels, int level,
                                                          const float* finer) {

@@ -1,4 +1,4 @@
-// Makes levels of detail of decoded blocks, a batch of regions at a time. For host and device.
+// Makes levels of detail from decoded blocks, one batch of regions at a time. For host and device.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,8 @@
 
 namespace weir {
 
-/// Names the blocks of regions, those outside the domain being the nearest inside: for each block of each of them.
+/// Lists the blocks of regions. A block outside the domain is replaced by the nearest block inside. Runs for each
+/// block of each region.
 struct ListRegionBlocks {
   BlockLattice lattice;
   const std::uint32_t* regions = nullptr;
@@ -25,16 +26,16 @@ struct ListRegionBlocks {
   }
 };
 
-/// The finest level's texels that lie in regions.
+/// The finest level's texels in a list of regions.
 struct RegionTexels {
   BlockLattice lattice;
   LevelLattice levels;
   int level = 1;  ///< at most kMostFinest
   const std::uint32_t* regions = nullptr;
 
-  /// Of each region.
+  /// Returns the number of texels per region.
   WEIR_HOST_DEVICE static std::uint32_t count(int level) { return 1U << (3 * (7 - level)); }
-  /// The i-th of all, counted from the level's first; false where it is outside the domain.
+  /// Finds the i-th of all texels, counted from the level's first. Returns false if it is outside the domain.
   WEIR_HOST_DEVICE bool at(std::uint32_t i, Int3& texel) const {
     const Int3 region = lattice.region_at(regions[i / count(level)]);
     const auto k = static_cast<std::int32_t>(i % count(level));
@@ -48,10 +49,10 @@ struct RegionTexels {
   }
 };
 
-/// For each of RegionTexels, from the values of the regions' blocks as ListRegionBlocks names them.
+/// Runs for each of RegionTexels. Uses the values of the regions' blocks in the order of ListRegionBlocks.
 struct FillFinest {
   RegionTexels of;
-  const float* values = nullptr;  ///< 512 of each block
+  const float* values = nullptr;  ///< 512 per block
   float* texels = nullptr;
 
   WEIR_HOST_DEVICE void operator()(std::uint32_t i) const {
@@ -75,10 +76,10 @@ struct FillFinest {
   }
 };
 
-/// For each of RegionTexels, of regions that have one value each.
+/// Runs for each of RegionTexels, for regions that have one value each.
 struct FillFinestPlain {
   RegionTexels of;
-  const float* values = nullptr;  ///< one of each region
+  const float* values = nullptr;  ///< one per region
   float* texels = nullptr;
 
   WEIR_HOST_DEVICE void operator()(std::uint32_t i) const {
@@ -90,7 +91,7 @@ struct FillFinestPlain {
   }
 };
 
-/// Level `level` + 1: for each of its texels.
+/// Makes level `level` + 1. Runs for each of its texels.
 struct FillCoarser {
   LevelLattice levels;
   int level = 1;

@@ -1,4 +1,4 @@
-// The pages of a packed grid: which blocks need a brick. For host and device.
+// Fills the pages of a packed grid: finds the blocks that need a brick. For host and device.
 #pragma once
 
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace weir {
 
-/// For FillPages.
+/// The `Blocks` of FillPages.
 struct PackedBlocks {
   PackedView view;
 
@@ -21,7 +21,7 @@ struct PackedBlocks {
   }
 };
 
-/// BlockSource::regions() of a packed grid.
+/// Returns BlockSource::regions() of a packed grid.
 inline std::vector<RegionEntry> packed_regions(const PackedData& packed) {
   return region_entries(packed.regions(), [&](const Index3& at) {
     const PackedRegion region = packed.region(at);

@@ -23,7 +23,7 @@ class PackedSource : public BlockSource {
   const PackedData& packed_;
   BlockLattice lattice_;
   BlockDecoder decoder_;
-  std::uint64_t damaged_ = 0;  // blocks, so far
+  std::uint64_t damaged_ = 0;  // damaged blocks so far
 };
 
 }  // namespace weir

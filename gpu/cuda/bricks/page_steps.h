@@ -1,4 +1,4 @@
-// Steps that put pages in their place and tell which are in use. For host and device.
+// Steps that assign pages and find out which are in use. For host and device.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace weir {
 
-/// Names the pages of regions: for each of them.
+/// Writes the page numbers into the entries of regions. Runs for each region.
 struct PlacePages {
   RegionEntry* entries = nullptr;
   std::uint32_t* stamps = nullptr;
@@ -22,7 +22,7 @@ struct PlacePages {
   }
 };
 
-/// Forgets that regions were asked for: for each of them.
+/// Clears the request flags of regions. Runs for each region.
 struct ForgetRegions {
   RegionEntry* entries = nullptr;
   const std::uint32_t* regions = nullptr;
@@ -30,8 +30,8 @@ struct ForgetRegions {
   WEIR_HOST_DEVICE void operator()(std::uint32_t i) const { entries[regions[i]].page &= ~RegionEntry::kRequested; }
 };
 
-/// Stamps the pages of which something but a brick was used or asked for since the last time, after AgeSlots has
-/// stamped those of bricks: for each entry, from page 1 on.
+/// Stamps the pages with an entry without a brick that was used or requested since the last time. AgeSlots has
+/// stamped the pages of used bricks before. Runs for each entry, from page 1 on.
 struct StampPages {
   BrickEntry* entries = nullptr;
   std::uint32_t* stamps = nullptr;
@@ -45,14 +45,14 @@ struct StampPages {
   }
 };
 
-/// A block as pages see it.
+/// What a page needs to know of a block.
 struct PlainBlock {
   bool one_value = false;
-  float value = 0;  ///< that, or one near enough to go on with
+  float value = 0;  ///< the one value, or an approximation
 };
 
-/// Fills the pages of regions: for each entry of each of them. `Blocks` says what a block of a lattice is: at(lattice,
-/// block).
+/// Fills the pages of regions. Runs for each entry of each page. `Blocks` describes the blocks of a lattice by
+/// at(lattice, block).
 template <class Blocks>
 struct FillPages {
   Blocks blocks;

@@ -1,4 +1,4 @@
-// The volume that kernels render where its blocks are bricks of a texture, and some of them are missing.
+// The volume that kernels render if its blocks are bricks of a texture and some bricks are missing.
 #pragma once
 
 #include "gpu/cuda/bricks/brick_position.h"
@@ -9,7 +9,8 @@
 
 namespace weir {
 
-/// Tells the thread what it missed. `Positions`: FixedPositions, or WidePositions where those do not reach.
+/// Notes for the thread what it missed. `Positions` is FixedPositions, or WidePositions for domains that are too
+/// large for it.
 template <class Positions, Noting kNoting>
 struct PagedTable {
   using Position = typename Positions::Position;
@@ -24,7 +25,8 @@ struct PagedTable {
     if ((found.state & brick_state::kMissing) != 0) set_thread_missed(true);
     return found;
   }
-  /// Whether the thread's look-ups have missed something since it was last set to false; on the host always false.
+  /// Returns whether the thread's look-ups have missed something since the flag was last set to false. Always false
+  /// on the host.
   WEIR_HOST_DEVICE static bool missed() { return thread_missed(); }
   WEIR_HOST_DEVICE static void set_missed(bool missed) { set_thread_missed(missed); }
   WEIR_HOST_DEVICE static Float3 texel(const BrickEntry& entry, const Position& at) {
@@ -32,7 +34,7 @@ struct PagedTable {
   }
 };
 
-/// With the values of BrickSampler.
+/// Has the same values as BrickSampler.
 template <Filter kFilter, Noting kNoting, class Positions = FixedPositions>
 using PagedSampler = FilteredBricks<PagedTable<Positions, kNoting>, kFilter>;
 

@@ -10,7 +10,8 @@
 
 namespace weir {
 
-/// BlockSource::regions(): `look` says of the region at a lattice position what FillPages asks of blocks.
+/// Returns the entries for BlockSource::regions(). `look` says of the region at a lattice position what FillPages
+/// asks of blocks.
 template <class Look>
 std::vector<RegionEntry> region_entries(const NodeLattice& regions, const Look& look) {
   std::vector<RegionEntry> entries(static_cast<std::size_t>(regions.size()));

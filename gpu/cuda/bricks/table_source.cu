@@ -7,7 +7,7 @@ namespace weir {
 
 namespace {
 
-/// Position in the table of a block of the lattice.
+/// Returns the position in the table of a block of the lattice.
 template <class Block>
 __device__ std::uint32_t table_position(const BlockTable<Block>& table, const BlockLattice& lattice,
                                         const Int3& block) {
@@ -15,7 +15,7 @@ __device__ std::uint32_t table_position(const BlockTable<Block>& table, const Bl
       {block.x - (lattice.shift.x >> 3), block.y - (lattice.shift.y >> 3), block.z - (lattice.shift.z >> 3)});
 }
 
-/// For FillPages.
+/// The `Blocks` of FillPages.
 template <class Block>
 struct TableBlocks {
   BlockTable<Block> source;
@@ -26,7 +26,7 @@ struct TableBlocks {
   }
 };
 
-/// For each voxel of each block.
+/// Copies voxels. Runs for each voxel of each block.
 template <class Block>
 struct CopyVoxels {
   BlockTable<Block> source;

@@ -1,4 +1,4 @@
-// The blocks of a grid whose voxels the current device reads in place, through its block table.
+// The blocks of a grid that the current device reads in place, through the grid's block table.
 #pragma once
 
 #include "format/nanovdb/nvdb_grid.h"
@@ -10,7 +10,7 @@ namespace weir {
 template <class Block>
 class TableSource : public BlockSource {
  public:
-  /// `grid` and what `table` points to must outlive the object.
+  /// `grid` and the memory that `table` points to must outlive the object.
   TableSource(const NvdbGrid& grid, const BlockTable<Block>& table);
 
   BlockLattice lattice() const override { return lattice_; }

@@ -15,7 +15,7 @@ inline std::uint64_t brick_bytes(TexelType type) {
 /// Bricks along each axis of a texture.
 struct TextureShape {
   static constexpr std::uint32_t kMaxAcross = kMaxTextureEdge / kBrickEdge;  ///< along x and y
-  static constexpr std::uint32_t kMaxLayers = 1023;                          ///< along z: an entry's bits
+  static constexpr std::uint32_t kMaxLayers = 1023;                          ///< along z: limited by an entry's bits
 
   std::uint32_t x = 1;
   std::uint32_t y = 1;
@@ -28,7 +28,8 @@ struct TextureShape {
   }
 };
 
-/// As near to a cube as the limits allow; at least `bricks`, or the largest there is.
+/// Returns a shape as near to a cube as the limits allow, for at least `bricks` bricks, or the largest possible
+/// shape.
 inline TextureShape shape_for(std::uint64_t bricks) {
   TextureShape shape;
   while (shape.size() < bricks) {
@@ -45,7 +46,7 @@ inline TextureShape shape_for(std::uint64_t bricks) {
   return shape;
 }
 
-/// At most that many bytes of bricks.
+/// Returns a shape with at most `bytes` bytes of bricks.
 inline TextureShape shape_within(std::uint64_t bytes, TexelType type) {
   const std::uint64_t bricks = bytes / brick_bytes(type);
   TextureShape shape = shape_for(bricks);

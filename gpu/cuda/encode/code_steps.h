@@ -1,5 +1,5 @@
-// How a warp quantises a block at its step, finds what each value is coded as, and makes the values that the stream
-// will decode to: the first step of encoding. For host and device.
+// The first step of encoding: how a warp quantises a block at its step, finds the code of each value, and makes the
+// values that the stream decodes to. For host and device.
 #pragma once
 
 #include <cstddef>
@@ -15,22 +15,22 @@ namespace encode_detail {
 
 using decode_detail::Quad;
 
-// Parts of a code: context | bits beside the symbol << kExtraShift | magnitude << kMagnitudeShift.
+// Parts of a code: context | extra bits << kExtraShift | magnitude << kMagnitudeShift.
 inline constexpr unsigned kExtraShift = 7;
 inline constexpr unsigned kMagnitudeShift = 12;
-// Larger magnitudes, of steps that no ladder has, are left to the host.
+// Larger magnitudes, which no ladder's steps have, are left to the host.
 inline constexpr std::uint32_t kMostCoded = (1U << (32 - kMagnitudeShift)) - 1;
 static_assert(kPackedBands * kPackedLevels <= 1U << kExtraShift);
 static_assert(kMostCoded > kMostMagnitude && kMostCoded <= kMostOfNeighbour);
 
-// What a warp has of shared memory.
+// A warp's shared memory.
 struct alignas(16) CodeStage {
   float values[kStageWords];
-  std::uint32_t magnitudes[520];  // by index; 512 stands for no neighbour
+  std::uint32_t magnitudes[520];  // by index; index 512 stands for a missing neighbour
   std::uint32_t signs[17];
 };
 
-// Places of a lane: one after the other.
+// Consecutive places of a lane.
 inline constexpr unsigned kOwnPlaces = 512 / kLanes;
 
 WEIR_HOST_DEVICE inline bool is_negative(float v) {
@@ -39,7 +39,7 @@ WEIR_HOST_DEVICE inline bool is_negative(float v) {
   return bits >> 31U != 0;
 }
 
-// Fills the magnitudes. Returns the last place that is not zero, or more than any place where one is too large.
+// Fills the magnitudes. Returns the last place that is not zero, or more than any place if a magnitude is too large.
 template <class Warp>
 WEIR_HOST_DEVICE std::uint32_t fill_magnitudes(const Warp& warp, const CostTables& tables, float step,
                                                CodeStage& stage) {
@@ -62,7 +62,7 @@ WEIR_HOST_DEVICE std::uint32_t fill_magnitudes(const Warp& warp, const CostTable
   return warp.of_all(last, [](std::uint32_t a, std::uint32_t b) { return b > a ? b : a; });
 }
 
-// The sum of the magnitudes beside those at a place (block_scan.h); that of index 0 is 0.
+// Returns the sum of the magnitudes beside the one at a place (block_scan.h). The magnitude at index 0 counts as 0.
 WEIR_HOST_DEVICE inline std::uint32_t sum_beside(const CodeStage& stage, unsigned place, unsigned index) {
   const std::uint32_t* m = stage.magnitudes;
   if (place < 4) return (place > 1 ? m[1] : 0) + (place > 2 ? m[8] : 0);
@@ -80,7 +80,7 @@ WEIR_HOST_DEVICE inline std::uint32_t code_of(const CostTables& tables, const Co
   return context | extra_bits(t) << kExtraShift | stage.magnitudes[index] << kMagnitudeShift;
 }
 
-// Writes codes of places below `limit`, and their signs one after the other; returns how many there are.
+// Writes the codes of places below `limit`, and joins their signs. Returns the number of signs.
 template <class Warp>
 WEIR_HOST_DEVICE std::uint32_t write_codes(const Warp& warp, const CostTables& tables, unsigned limit, CodeStage& stage,
                                            std::uint32_t* codes) {
@@ -110,7 +110,7 @@ WEIR_HOST_DEVICE std::uint32_t write_codes(const Warp& warp, const CostTables& t
   return join_signs(warp, signs, count, stage.signs);
 }
 
-// Coefficients become what is decoded of the stream, and these values.
+// Turns coefficients into those that the stream decodes to, and these into values.
 template <class Warp>
 WEIR_HOST_DEVICE void decode_stage(const Warp& warp, const BlockConstants& constants, float step, float mean,
                                    CodeStage& stage, float* out) {
@@ -139,7 +139,7 @@ WEIR_HOST_DEVICE void decode_stage(const Warp& warp, const BlockConstants& const
 
 }  // namespace encode_detail
 
-/// The state, codes and decoded values of an ask of the call that is of a transform.
+/// Makes the state, codes and decoded values of ask `i` of the call if it is of a transform.
 template <class Warp>
 WEIR_HOST_DEVICE void code_block(const Warp& warp, const EncodeCall& call, const CostTables& tables, std::uint32_t i,
                                  encode_detail::CodeStage& stage) {

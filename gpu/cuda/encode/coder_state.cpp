@@ -12,7 +12,8 @@ struct EncoderTables {
   CodeTables codes;
 };
 
-// Made once: a step of a simulation is saved in some ten times that.
+// The tables are made once, because saving one step of a simulation takes only about ten times as long as making
+// them.
 const EncoderTables& built_in_encoder_tables() {
   static const auto* const tables = [] {
     auto* const made = new EncoderTables;

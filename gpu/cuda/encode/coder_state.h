@@ -1,4 +1,4 @@
-// What all boxes share whose blocks a device surveys and encodes: its tables, memory that is used again, and whether it
+// What all boxes share that a device surveys and encodes: the coder's tables, reused memory, and whether the device
 // has failed.
 #pragma once
 
@@ -20,7 +20,7 @@
 
 namespace weir {
 
-/// What a box that is loaded takes.
+/// The memory of a loaded box.
 struct BoxMemory {
   BackgroundStream stream;
   GrowingArray<float> values;
@@ -28,13 +28,13 @@ struct BoxMemory {
   GrowingArray<RungCost> costs;
   GrowingArray<NearCost> near;
   GrowingPinned pinned;
-  // Of resident blocks.
+  // Only for resident blocks.
   GrowingArray<BlockSummary> summaries;
   GrowingArray<std::uint32_t> wanted;
   GrowingPinned wanted_values;
 };
 
-/// What a call that encodes takes.
+/// The memory of a call that encodes.
 struct StreamMemory {
   BackgroundStream stream;
   GrowingArray<StreamAsk> asks;
@@ -44,13 +44,13 @@ struct StreamMemory {
   GrowingArray<float> decoded;
   GrowingArray<std::byte> out;
   GrowingArray<std::uint8_t> made;
-  // Of resident blocks.
+  // Only for resident blocks.
   GrowingArray<LeafRecord> records;
   GrowingArray<Digest> sources;
   GrowingPinned pinned;
 
-  /// Room for the streams of so many blocks, of so many bytes, but for what comes back to the host; `resident`: also
-  /// for their records. Throws Error(io).
+  /// Makes room for the streams of `blocks` blocks with `bytes` bytes together, except for what comes back to the
+  /// host. If `resident` is set, also for their records. Throws Error(io).
   void hold(std::size_t blocks, std::size_t bytes, bool resident) {
     asks.at_least(blocks);
     states.at_least(blocks);
@@ -63,14 +63,15 @@ struct StreamMemory {
     records.at_least(blocks);
     sources.at_least(blocks);
   }
-  /// The same for most regions of a resident volume: one has more streams than the next, and it seldom grows.
+  /// Minimum room for a resident volume. Regions have different numbers of streams; most fit into this room, so the
+  /// memory seldom grows.
   static constexpr std::size_t kRegionBlocks = 4096;
   static constexpr std::size_t kRegionBytes = std::size_t{2} << 20U;  // four bits a voxel
 };
 
 struct CoderState {
-  /// On `device`, the current one, and in the calling thread's context, whichever thread calls later. `most_boxes` are
-  /// worked on at a time, at most. What goes wrong is told to `say`, once. Throws Error(io).
+  /// Uses `device`, the current device, and the calling thread's context, whichever thread calls later. At most
+  /// `most_boxes` boxes are worked on at a time. Passes the first failure to `say`, once. Throws Error(io).
   CoderState(int device, std::size_t most_boxes, std::function<void(const Error&)> say);
   ~CoderState() {
     free_on(context, [&] {
@@ -87,7 +88,7 @@ struct CoderState {
   void fail(const Error& error) {
     if (!broken.exchange(true) && failed) failed(error);
   }
-  /// What `call` returns, or nothing where it or an earlier one has failed.
+  /// Returns what `call` returns, or nothing if it or an earlier call has failed.
   template <class Call>
   auto attempt(const Call& call) -> decltype(call()) {
     if (broken) return {};
@@ -110,7 +111,7 @@ struct CoderState {
   MemoryPool<StreamMemory> streams;
 };
 
-/// Memory of `context` that goes back to its pool, once its stream has no more work.
+/// Memory of `context` that goes back to its pool as soon as its stream has no more work.
 template <class Memory>
 class Lent {
  public:

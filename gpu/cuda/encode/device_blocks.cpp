@@ -14,7 +14,7 @@ void copy_back(std::span<T> to, const T* from, cudaStream_t stream, const char* 
   check_cuda(cudaMemcpyAsync(to.data(), from, to.size_bytes(), cudaMemcpyDeviceToHost, stream), what);
 }
 
-// Parts of one piece of memory, one after the other, each where its type may lie.
+// Hands out parts of one piece of memory, one after the other, each aligned for its type.
 class Parts {
  public:
   template <class T>
@@ -36,14 +36,14 @@ class Parts {
 
 class DeviceStreams final : public PendingStreams {
  public:
-  /// `place` of resident blocks, whose decoded values stay on the device. What comes back lies in `pinned`, or where
-  /// that is null in memory of its own.
+  /// `place` is given for resident blocks; their decoded values stay on the device. Results come back to `pinned` or,
+  /// if that is null, to the object's own memory.
   DeviceStreams(std::shared_ptr<CoderState> coder, const BlockBox& box, const std::optional<BlockPlace>& place,
                 std::span<const StreamAsk> asks, const BlockConstants& constants, GrowingPinned* pinned)
       : coder_(std::move(coder)), memory_(coder_->context, coder_->streams, coder_->streams.take()) {
     const std::size_t count = asks.size();
     const std::size_t bytes = std::size_t{asks.back().offset} + asks.back().bytes;
-    // Resident blocks come by regions.
+    // Resident blocks come region by region.
     memory_->hold(place ? std::max(count, StreamMemory::kRegionBlocks) : count,
                   place ? std::max(bytes, StreamMemory::kRegionBytes) : bytes, place.has_value());
     EncodeCall call;
@@ -133,7 +133,7 @@ DeviceBlocks::DeviceBlocks(std::shared_ptr<CoderState> coder, std::unique_ptr<Bo
   const cudaStream_t stream = memory_->stream.get();
   check_cuda(cudaMemcpyAsync(to, values.data(), values.size_bytes(), cudaMemcpyHostToDevice, stream),
              "copying to the device");
-  // Other streams read them, and the caller may change them.
+  // Other streams read the values, and the caller may change its copy.
   check_cuda(cudaStreamSynchronize(stream), "copying to the device");
 }
 
@@ -189,7 +189,8 @@ std::optional<SurveyedBlocks> DeviceBlocks::end_survey() {
 
 std::unique_ptr<PendingStreams> DeviceBlocks::encode(std::span<const StreamAsk> asks, const BlockConstants& constants) {
   return coder_->attempt([&]() -> std::unique_ptr<PendingStreams> {
-    // Of resident blocks a box has one region's streams, after the survey.
+    // A box of resident blocks has the streams of one region, encoded after the survey, so both share the box's
+    // memory.
     GrowingPinned* const pinned = place_ ? &memory_->pinned : nullptr;
     return std::make_unique<DeviceStreams>(coder_, box_, place_, asks, constants, pinned);
   });

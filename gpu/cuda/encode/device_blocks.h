@@ -1,4 +1,4 @@
-// The blocks of a box, on a device: what is found of them, and their streams (format/packed/block_coder.h).
+// The blocks of a box on a device: surveys them and encodes their streams (format/packed/block_coder.h).
 #pragma once
 
 #include <cstdint>
@@ -13,15 +13,16 @@
 
 namespace weir {
 
-/// Where a box of blocks lies in one of voxels; nullopt where the device's whole numbers are too short.
+/// Returns the position of the box `blocks` within the box `voxels`, or nullopt if the numbers do not fit the
+/// device's integers.
 std::optional<BlockBox> block_box(const Box& voxels, const Box& blocks);
 
 class DeviceBlocks final : public ResidentBlocks {
  public:
-  /// `memory` is one of coder->boxes. `values` of the host are copied to the device. Throws Error(io).
+  /// `memory` comes from coder->boxes. Copies `values` from the host to the device. Throws Error(io).
   DeviceBlocks(std::shared_ptr<CoderState> coder, std::unique_ptr<BoxMemory> memory, std::span<const float> values,
                const BlockBox& box);
-  /// Of a box whose values are there already, at that place of their volume.
+  /// For a box whose values are on the device already, at `place` of their volume.
   DeviceBlocks(std::shared_ptr<CoderState> coder, std::unique_ptr<BoxMemory> memory, const BlockBox& box,
                const BlockPlace& place);
 
@@ -34,7 +35,7 @@ class DeviceBlocks final : public ResidentBlocks {
   std::shared_ptr<CoderState> coder_;
   Lent<BoxMemory> memory_;
   BlockBox box_;
-  std::optional<BlockPlace> place_;  // where they are resident
+  std::optional<BlockPlace> place_;  // of the blocks, if their volume is resident
   std::optional<SurveyedBlocks> begun_;
 };
 

@@ -9,10 +9,10 @@
 namespace weir {
 namespace {
 
-// Boxes that are loaded at once. More would not keep the device busier, and each takes page-locked memory.
+// Most boxes that are loaded at once. More boxes would not keep the device busier, and each takes page-locked memory.
 constexpr std::size_t kMostBoxes = 4;
-// Of each, at most: figures and costs of 4,096 blocks, and two batches of their streams and decoded values. A box of
-// more blocks, of which there is one at a time, takes less than all of these.
+// Most host bytes per box: figures and costs of 4,096 blocks, and two batches of their streams and decoded values. A
+// box of more blocks takes less than all kMostBoxes boxes together, and there is only one at a time.
 constexpr std::uint64_t kBoxHostBytes = std::uint64_t{32} << 20U;
 
 class DeviceCoder final : public BlockCoder {

@@ -1,4 +1,4 @@
-// A CUDA device as what surveys and encodes packed blocks for a conversion (format/packed/block_coder.h).
+// A CUDA device that surveys and encodes packed blocks for a conversion (format/packed/block_coder.h).
 #pragma once
 
 #include <functional>
@@ -9,10 +9,10 @@
 
 namespace weir {
 
-/// Uses `device`, by the built-in tables, and takes memory there as it needs it: 70 bytes or so for each voxel of a box
-/// that is encoded, 4.7 for one that is surveyed, of as many boxes as there are threads at work. What goes wrong, room
-/// that there is not among it, ends its work and is said to `failed`, once. Throws Error as use_device() does, and
-/// Error(io) where there is no room for the tables.
+/// Makes a coder that uses `device` and the built-in tables. It takes device memory as it needs it: about 70 bytes
+/// for each voxel of a box that is encoded and 4.7 for each voxel that is surveyed, for as many boxes as threads are
+/// at work. A failure of the device, including a lack of memory, ends the coder's work and is passed to `failed`
+/// once. Throws the errors of use_device(), and Error(io) if there is no room for the tables.
 std::unique_ptr<BlockCoder> make_device_coder(int device, std::function<void(const Error&)> failed);
 
 }  // namespace weir

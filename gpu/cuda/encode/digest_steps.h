@@ -1,5 +1,5 @@
-// The digest of a block's 2048 bytes by a warp: xxh3-128 without a seed, of an input of that length (xxHash's
-// specification, version 0.8: "XXH3 Algorithm Overview"). For host and device.
+// How a warp calculates the digest of a block's 2048 bytes: xxh3-128 without a seed, for an input of this length
+// (xxHash's specification, version 0.8: "XXH3 Algorithm Overview"). For host and device.
 #pragma once
 
 #include <cstdint>
@@ -24,9 +24,9 @@ struct alignas(16) DigestTables {
 
 namespace encode_detail {
 
-inline constexpr unsigned kStripeWords = 8;  // of 64 bits, one for each of the hash's lanes
-inline constexpr unsigned kStripes = 16;     // between two scrambles; a block has twice as many
-// Where the secret is read, in bytes.
+inline constexpr unsigned kStripeWords = 8;  // 64-bit words, one for each of the hash's lanes
+inline constexpr unsigned kStripes = 16;     // between two scrambles; a block has twice as many stripes
+// Byte offsets in the secret.
 inline constexpr unsigned kScrambleSecret = 128;
 inline constexpr unsigned kLastSecret = 121;
 inline constexpr unsigned kLowSecret = 11;
@@ -42,7 +42,7 @@ inline constexpr std::uint64_t kPrime64_4 = 0x85EBCA77C2B2AE63ULL;
 inline constexpr std::uint64_t kPrime64_5 = 0x27D4EB2F165667C5ULL;
 inline constexpr std::uint64_t kBlockBytes = 2048;
 
-// Where value i, x fastest, lies on a stage.
+// Returns where value i, x fastest, lies on a stage.
 WEIR_HOST_DEVICE constexpr unsigned stage_of_x_fastest(unsigned i) {
   return stage_of((i & 7U) << 6U | (i >> 3U & 7U) << 3U | i >> 6U);
 }
@@ -53,7 +53,7 @@ WEIR_HOST_DEVICE inline std::uint32_t bits_of(float v) {
   return bits;
 }
 
-// Word `at` of the block's bytes.
+// Returns word `at` of the block's bytes.
 WEIR_HOST_DEVICE inline std::uint64_t word_of(const float* stage, unsigned at) {
   return bits_of(stage[stage_of_x_fastest(2 * at)]) | std::uint64_t{bits_of(stage[stage_of_x_fastest(2 * at + 1)])}
                                                           << 32U;
@@ -107,7 +107,7 @@ WEIR_HOST_DEVICE inline std::uint64_t merged(const DigestTables& tables, const s
   return start ^ start >> 32U;
 }
 
-// Into `bytes`, 16 of them in canonical form. `lanes` is shared memory of the warp.
+// Writes the digest to `bytes`: 16 bytes in canonical form. `lanes` is the warp's shared memory.
 template <class Warp>
 WEIR_HOST_DEVICE void digest_stage(const Warp& warp, const DigestTables& tables, const float* stage,
                                    std::uint64_t (&lanes)[kStripeWords], std::uint8_t* bytes) {

@@ -17,17 +17,17 @@ using namespace encode_detail;
 
 constexpr std::string_view kSurveying = "surveying blocks on the device";
 constexpr std::string_view kEncoding = "encoding blocks on the device";
-constexpr unsigned kWarps = 8;  // of a group
+constexpr unsigned kWarps = 8;  // per group
 constexpr unsigned kThreads = kWarps * kLanes;
-constexpr unsigned kSurveyGroups = 4;  // a multiprocessor, at least
+constexpr unsigned kSurveyGroups = 4;  // least number per multiprocessor
 constexpr unsigned kLatticeWarps = 4;
 constexpr unsigned kLatticeGroups = 7;
 constexpr unsigned kCodeGroups = 5;
 constexpr unsigned kWordThreads = 128;
 constexpr unsigned kStatisticsWarps = 4;
-constexpr std::uint32_t kMostGroups = 132 * 16;  // so many fill every device; each of their warps takes several blocks
+constexpr std::uint32_t kMostGroups = 132 * 16;  // fill every device; each warp takes several blocks
 
-// All of a group's threads.
+// Called by all threads of a group.
 template <class T>
 __device__ void load_tables(T& to, const T* from) {
   static_assert(sizeof(T) % sizeof(Quad) == 0);
@@ -124,7 +124,7 @@ __global__ void __launch_bounds__(kThreads) count_values(CountCall call) {
   for (std::uint64_t first = std::uint64_t{blockIdx.x} * blockDim.x; first < call.count; first += step) {
     const std::uint64_t i = first + threadIdx.x;
     const std::uint32_t bin = i < call.count ? bin_of_value(call, call.values[i]) : kMostCountedBins;
-    // Of empty space all lanes have one bin.
+    // In empty space all lanes have the same bin.
     if (__all_sync(~0U, bin == __shfl_sync(~0U, bin, 0))) {
       if (threadIdx.x % kLanes == 0 && bin < kMostCountedBins) atomicAdd(&counts[bin], kLanes);
     } else if (bin < kMostCountedBins) {

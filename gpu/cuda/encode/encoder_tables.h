@@ -1,5 +1,5 @@
-// What the encoder's steps look up: costs and codes of symbols, levels of contexts, and what is known of each
-// coefficient. Made on the host, once; kernels have a copy in their shared memory. For host and device.
+// The tables of the encoder's steps: costs and codes of symbols, levels of contexts, and facts about each
+// coefficient. Made once on the host; kernels copy them to shared memory. For host and device.
 #pragma once
 
 #include <algorithm>
@@ -15,13 +15,13 @@
 
 namespace weir {
 
-/// Symbols of transformed blocks, by band, level and symbol.
+/// Number of symbols of transformed blocks, by band, level and symbol.
 inline constexpr unsigned kTransformSymbols = kPackedBands * kPackedLevels * kPackedSymbols;
-/// The first one of lattice blocks, by level and symbol, and those of both.
+/// Position of the first symbol of lattice blocks, by level and symbol; then the number of symbols of both.
 inline constexpr unsigned kLatticeSymbol = kTransformSymbols;
 inline constexpr unsigned kCodedSymbols = kPackedTables * kPackedSymbols;
 
-/// Of contexts and costs.
+/// Contexts and costs.
 struct alignas(16) CostTables {
   std::uint16_t cost[kCodedSymbols] = {};  ///< in 1/256 bits
   std::uint16_t place[512] = {};           ///< by index: place | weight << 9 | band << 12
@@ -31,8 +31,8 @@ struct alignas(16) CostTables {
   WEIR_HOST_DEVICE unsigned level_of(std::uint32_t t) const { return level[t < kLevelSums ? t : kLevelSums - 1]; }
 };
 
-/// Of what writes streams: a symbol of frequency f from `low` on. x / f is x * inverse >> 44 for every state that takes
-/// it.
+/// Codes a symbol of frequency f that begins at `low`. x / f equals x * inverse >> 44 for every state x that takes
+/// the symbol.
 struct SymbolCode {
   std::uint64_t inverse = 0;
   std::uint32_t frequency = 0;
@@ -49,7 +49,7 @@ struct alignas(16) CodeTables {
   SymbolCode lattice[kPackedLevels * kPackedSymbols] = {};
 };
 
-/// By the tables of a file's constants, on the host.
+/// Fills the tables from those of a file's constants, on the host.
 inline void make_encoder_tables(const std::uint16_t* tables, CostTables& costs, CodeTables& codes) {
   const SymbolCosts symbol_bits = symbol_costs(tables);
   for (unsigned context = 0; context < kPackedTables; ++context) {

@@ -1,5 +1,5 @@
-// How a warp codes a block whose values are rounded, or kept as floats in order, and makes the values that the stream
-// will decode to: RoundedBlock::encode() of rounded_block.h and encode_exact() of lattice_block.h, word by word. For
+// How a warp codes a block whose values are rounded, or kept as ordered floats, and makes the values that the stream
+// decodes to. Word by word as RoundedBlock::encode() of rounded_block.h and encode_exact() of lattice_block.h. For
 // host and device.
 #pragma once
 
@@ -14,17 +14,17 @@
 namespace weir {
 namespace encode_detail {
 
-// How the codes of a stage are coded.
+// How the codes of a stage are written.
 struct LatticeCoding {
   unsigned predictor = 0;
   std::uint32_t number = 0;
   unsigned number_bits = 0;
-  std::uint32_t last = 0;  // place that has a residual; 0: none has
+  std::uint32_t last = 0;  // last place with a residual; 0: no place has one
   float minimum = 0;
   float quantum = 0;
 };
 
-// Codes of the values in multiples of a quantum, then residuals; false where there is no such lattice.
+// Makes codes of the values in multiples of a quantum, then residuals. Returns false if no such lattice exists.
 template <class Warp>
 WEIR_HOST_DEVICE bool code_rounded(const Warp& warp, const EncodeCall& call, const CostTables& tables,
                                    const NearValues& values, std::int32_t exponent, LatticeStage& stage, float* decoded,
@@ -49,7 +49,8 @@ WEIR_HOST_DEVICE bool code_rounded(const Warp& warp, const EncodeCall& call, con
   return true;
 }
 
-// Floats in order, then residuals; false where the values may lie on a lattice, which takes fewer bytes.
+// Makes codes of the values as ordered floats, then residuals. Returns false if the values may lie on a lattice,
+// which takes fewer bytes.
 template <class Warp>
 WEIR_HOST_DEVICE bool code_ordered(const Warp& warp, const CostTables& tables, const NearValues& values,
                                    LatticeStage& stage, float* decoded, LatticeCoding& coding) {
@@ -72,7 +73,7 @@ WEIR_HOST_DEVICE bool code_ordered(const Warp& warp, const CostTables& tables, c
 
 }  // namespace encode_detail
 
-/// The state, words and decoded values of an ask of the call that is not of a transform.
+/// Makes the state, words and decoded values of ask `i` of the call, which is not of a transform.
 template <class Warp>
 WEIR_HOST_DEVICE void code_lattice_block(const Warp& warp, const EncodeCall& call, const CostTables& tables,
                                          std::uint32_t i, encode_detail::LatticeStage& stage) {

@@ -1,5 +1,5 @@
-// Whether a block's values may lie on a lattice of their own (compressor/leaf/leaf_lattice.h): never "no" of those that
-// do, and hardly ever "yes" of others. For host and device.
+// Whether a block's values may lie on a lattice of their own (compressor/leaf/leaf_lattice.h). The answer is never
+// "no" for values that do, and hardly ever "yes" for others. For host and device.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +9,10 @@
 
 namespace weir::encode_detail {
 
-// The largest code on such a lattice.
+// The largest code on a lattice of a block's own.
 inline constexpr std::uint64_t kLargestLatticeCode = 65535;
 
-// 2^exponent, of a normal float.
+// Returns 2^exponent as a normal float.
 WEIR_HOST_DEVICE inline float power_of_two(std::int32_t exponent) {
   const auto bits = static_cast<std::uint32_t>(127 + exponent) << 23U;
   float power;
@@ -20,7 +20,7 @@ WEIR_HOST_DEVICE inline float power_of_two(std::int32_t exponent) {
   return power;
 }
 
-// The unit that find_lattice() counts values of that magnitude in is 1 / this.
+// Returns the inverse of the unit in which find_lattice() counts values of magnitude `magnitude`.
 WEIR_HOST_DEVICE inline float lattice_scale(float magnitude) {
   std::uint32_t bits;
   __builtin_memcpy(&bits, &magnitude, sizeof bits);
@@ -37,7 +37,7 @@ WEIR_HOST_DEVICE inline std::uint32_t common_divisor(std::uint32_t a, std::uint3
   return a;
 }
 
-// `stage` has the values as they are.
+// Returns whether the values may lie on a lattice. `stage` holds the values unchanged.
 template <class Warp>
 WEIR_HOST_DEVICE bool may_lie_on_lattice(const Warp& warp, const ValueRange8& range, const float* stage) {
   const float below = range.low < 0 ? -range.low : range.low;
@@ -68,7 +68,7 @@ WEIR_HOST_DEVICE bool may_lie_on_lattice(const Warp& warp, const ValueRange8& ra
   if (warp.of_all(found, either) != 0) return false;
   const auto lowest = static_cast<std::int32_t>(range.low * scale);
   const auto span = static_cast<std::uint32_t>(static_cast<std::int32_t>(range.high * scale) - lowest);
-  // All steps divide what is common to the range and any value: few values tell of most blocks.
+  // The lattice's step divides all differences between values. A few values decide for most blocks.
   warp.each([&](unsigned lane) {
     const float v = stage[stage_of(17 * lane % 512)];
     const auto step = common_divisor(span, static_cast<std::uint32_t>(static_cast<std::int32_t>(v * scale) - lowest));

@@ -1,5 +1,5 @@
-// How a warp finds what a block's near rungs take and lose: RoundedBlock::set() and cost() of rounded_block.h,
-// operation by operation. For host and device.
+// How a warp finds the bytes and errors of a block's near rungs. Operation by operation as RoundedBlock::set() and
+// cost() of rounded_block.h. For host and device.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@
 namespace weir {
 namespace encode_detail {
 
-// 2^exponent, of a normal number.
+// Returns 2^exponent as a normal double.
 WEIR_HOST_DEVICE inline double wide_power_of_two(std::int32_t exponent) {
   const auto bits = static_cast<std::uint64_t>(1023 + exponent) << 52U;
   double power;
@@ -24,7 +24,7 @@ WEIR_HOST_DEVICE inline double wide_power_of_two(std::int32_t exponent) {
   return power;
 }
 
-// The whole number nearest to a value in quanta.
+// Returns the integer nearest to a value in quanta.
 WEIR_HOST_DEVICE inline std::int32_t multiple_of(double scaled) {
   return static_cast<std::int32_t>(scaled + (scaled < 0 ? -0.5 : 0.5));
 }
@@ -35,7 +35,7 @@ struct NearValues {
   float high = 0;
   std::uint32_t zeros = 0;
   std::int32_t exponent = 0;
-  bool finite = false;  // all are; else the rest means nothing
+  bool finite = false;  // all values are finite; otherwise the rest means nothing
 };
 
 template <class Warp>
@@ -72,11 +72,11 @@ WEIR_HOST_DEVICE NearValues near_values(const Warp& warp, const float* stage) {
   return values;
 }
 
-// The values in quanta.
+// How the values are counted in quanta.
 struct NearQuantum {
-  double scale = 0;  // quanta of 1
+  double scale = 0;  // quanta per 1
   std::int32_t lowest = 0;
-  bool fits = false;  // there is such a lattice
+  bool fits = false;  // the lattice exists
 };
 
 WEIR_HOST_DEVICE inline NearQuantum near_quantum(const NearValues& values, std::int32_t exponent) {
@@ -102,7 +102,7 @@ WEIR_HOST_DEVICE void fill_codes(const Warp& warp, const NearQuantum& quantum, L
   });
 }
 
-// The best predictor where values have the usual bits. Leaves codes on the stage.
+// Returns the best predictor for the values rounded to the usual number of bits. Leaves codes on the stage.
 template <class Warp>
 WEIR_HOST_DEVICE unsigned rounded_predictor(const Warp& warp, const NearValues& values, LatticeStage& stage) {
   const NearQuantum usual = near_quantum(values, values.exponent - kUsualRoundedBits);
@@ -111,7 +111,7 @@ WEIR_HOST_DEVICE unsigned rounded_predictor(const Warp& warp, const NearValues& 
   return choose_predictor<std::int32_t>(warp, stage.codes, false);
 }
 
-// Bytes of a stream of those residuals, whose last one that is not 0 is at place `last` > 0.
+// Returns the bytes of a stream of the residuals. The last residual that is not 0 is at place `last` > 0.
 template <class Warp>
 WEIR_HOST_DEVICE std::uint32_t rounded_bytes(const Warp& warp, const CostTables& tables, const std::uint32_t* residuals,
                                              std::uint32_t last) {
@@ -147,7 +147,8 @@ WEIR_HOST_DEVICE std::uint32_t rounded_bytes(const Warp& warp, const CostTables&
   return kRoundedFrontBytes + (bits + 7) / 8;
 }
 
-// Squared errors of near rungs [first, first + kRungsAtOnce) in squared quanta, one a group of lanes.
+// Calculates the squared errors of near rungs [first, first + kRungsAtOnce) in squared quanta, one rung per group of
+// lanes.
 template <class Warp>
 WEIR_HOST_DEVICE void near_errors(const Warp& warp, const LatticeStage& stage, const NearValues& values,
                                   std::int32_t coarsest, std::uint32_t first,
@@ -171,7 +172,7 @@ WEIR_HOST_DEVICE void near_errors(const Warp& warp, const LatticeStage& stage, c
 
 }  // namespace encode_detail
 
-/// Costs of the near rungs of a block of the call that the survey has found to have some.
+/// Calculates the costs of the near rungs of a block of the call, if the survey has found some.
 template <class Warp>
 WEIR_HOST_DEVICE void survey_near_rungs(const Warp& warp, const NearCall& call, const CostTables& tables,
                                         std::uint32_t block, encode_detail::LatticeStage& stage) {
@@ -193,9 +194,9 @@ WEIR_HOST_DEVICE void survey_near_rungs(const Warp& warp, const NearCall& call, 
   const std::uint32_t first = ask.first(coarsest);
   constexpr std::uint32_t kAtOnce = kLanes / kGroup;
   typename Warp::template Own<double> errors;
-  std::uint32_t first_error = most;  // of the kAtOnce rungs whose errors the lanes have
+  std::uint32_t first_error = most;  // first of the kAtOnce rungs whose errors the lanes hold
   const auto look_at = [&](std::uint32_t k) {
-    warp.each([](unsigned) {});  // all have read the costs, one of which is written now
+    warp.each([](unsigned) {});  // waits until all lanes have read the costs; one cost is written next
     if (k - first_error >= kAtOnce) {
       first_error = k < most - kAtOnce ? k / kAtOnce * kAtOnce : most - kAtOnce;
       near_errors(warp, stage, values, coarsest, first + first_error, errors);

@@ -8,15 +8,15 @@
 namespace weir {
 namespace {
 
-// What was locked in a context that is gone is not locked any more.
+// Unlocks a piece. Memory that was locked in a context that is gone is no longer locked.
 void unlock(PinnedPool::Piece piece) {
-  if (piece.context == current_context_id()) {  // maybe one that the caller made
+  if (piece.context == current_context_id()) {  // may be a context that the caller made
     const PinnedMemory unlocked = std::move(piece.memory);
     return;
   }
   if (!has_context(piece.device)) return piece.memory.forget();
   free_on(piece.device, [&] {
-    void* const callers = current_context();  // maybe another one of that device
+    void* const callers = current_context();  // may be another context of this device
     set_current_context(primary_context(piece.device));
     if (current_context_id() == piece.context) {
       const PinnedMemory unlocked = std::move(piece.memory);
@@ -30,7 +30,7 @@ void unlock(PinnedPool::Piece piece) {
 }  // namespace
 
 PinnedPool& PinnedPool::of_process() {
-  static auto* const pool = new PinnedPool;  // the runtime may be gone when static objects are
+  static auto* const pool = new PinnedPool;  // never destroyed: the CUDA runtime may be gone before static objects are
   return *pool;
 }
 
@@ -39,7 +39,7 @@ std::optional<PinnedPool::Piece> PinnedPool::take(std::size_t bytes, std::string
   if (std::optional<Piece> held = take_held(bytes, context)) return held;
   std::optional<PinnedMemory> memory = PinnedMemory::make(bytes, refusal);
   if (!memory) return std::nullopt;
-  // The context is there at the latest now.
+  // At this point at the latest, the context exists.
   return Piece{std::move(*memory), bytes, current_device(), context == 0 ? current_context_id() : context};
 }
 
@@ -60,7 +60,7 @@ void PinnedPool::give_back(Piece piece) noexcept {
   while (held_.bytes() + bytes > kMostHeld) free_oldest();
   try {
     held_.add(bytes, std::move(piece));
-  } catch (const std::exception&) {  // no memory: it is freed
+  } catch (const std::exception&) {  // no memory for the list: the piece is freed
     return;
   }
 }

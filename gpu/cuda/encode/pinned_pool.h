@@ -1,5 +1,5 @@
-// Page-locked memory that has served, for whoever needs some next: a system locks a few MiB a millisecond, and a
-// simulation saves one step after the other.
+// Keeps used page-locked memory for its next user. A system locks only a few MiB per millisecond, and a simulation
+// saves one step after the other.
 #pragma once
 
 #include <cstddef>
@@ -22,17 +22,17 @@ class PinnedPool {
     int device;
     std::uint64_t context;  ///< current_context_id() when it was locked
   };
-  /// What it holds at most: what came back first is freed.
+  /// Most bytes that the pool holds. Beyond this, it frees the piece that came back first.
   static constexpr std::size_t kMostHeld = std::size_t{96} << 20U;
 
-  /// The process's. It stays until the process ends, and with it what it holds.
+  /// Returns the pool of the process. It and the memory that it holds stay until the process ends.
   static PinnedPool& of_process();
 
-  /// The smallest piece held that has so many bytes, and at most four times as many, or a new one, in place of one that
-  /// is held; otherwise as PinnedMemory::make.
+  /// Returns the smallest held piece that has at least `bytes` and at most four times as many. Otherwise frees the
+  /// oldest held piece and returns a new one, as PinnedMemory::make does.
   std::optional<Piece> take(std::size_t bytes, std::string& refusal);
   void give_back(Piece piece) noexcept;
-  /// Frees what it holds.
+  /// Frees all held pieces.
   void clear();
   std::size_t held_bytes() const;
 

@@ -1,5 +1,6 @@
-// How records of written streams are made of what they decode to (compressor/encode/record_batch.h, sum by sum): the
-// statistics by a thread a block, the rest by a warp a block. For host and device.
+// How records of written streams are made from the values that the streams decode to, sum by sum as in
+// compressor/encode/record_batch.h. One thread per block makes the statistics, one warp per block the rest. For host
+// and device.
 #pragma once
 
 #include <cstdint>
@@ -13,16 +14,17 @@
 namespace weir {
 namespace encode_detail {
 
-// Values of 32 blocks, 32 of each at a time, without two lanes in one bank.
+// Values of 32 blocks, 32 per block at a time, arranged so that no two lanes use the same bank.
 struct StatisticsTile {
   float values[kLanes][kLanes + 1];
 };
 
-// Layers of a block that its macrocell's neighbours see: across x, across y, the edge of both, and all of it.
+// Layers of a block that the neighbours of its macrocell read: across x, across y, the edge of both, and the whole
+// block.
 inline constexpr unsigned kLayers = 4;
 inline constexpr float kNoLow = 3.402823466e+38F;
 
-// What a warp has of shared memory.
+// A warp's shared memory.
 struct alignas(16) RecordStage {
   float values[kStageWords];  // of the source
   float low[kLayers][kGroup];
@@ -30,7 +32,7 @@ struct alignas(16) RecordStage {
   std::uint64_t lanes[kStripeWords];
 };
 
-// The bounds of a layer at all places along z.
+// Returns the bounds of a layer at all places along z.
 WEIR_HOST_DEVICE inline MinMax layer_bounds(const RecordStage& stage, unsigned layer) {
   MinMax bounds{stage.low[layer][0], stage.high[layer][0]};
   for (unsigned z = 1; z < kGroup; ++z) {
@@ -40,7 +42,7 @@ WEIR_HOST_DEVICE inline MinMax layer_bounds(const RecordStage& stage, unsigned l
   return bounds;
 }
 
-// Of a block that faces out of its macrocell at 0 or 7 of each axis.
+// For a block that lies at its macrocell's surface, on side 0 or 7 of each axis.
 template <class Warp>
 WEIR_HOST_DEVICE void bound_stage_layers(const Warp& warp, const float* decoded, const unsigned (&side)[3],
                                          RecordStage& stage) {
@@ -67,8 +69,8 @@ WEIR_HOST_DEVICE void bound_stage_layers(const Warp& warp, const float* decoded,
 
 }  // namespace encode_detail
 
-/// Mean, squared deviations and bounds of the values of asks [first, first + 32), as far as there are any: one after
-/// the other, as NodeStatistics adds them.
+/// Calculates mean, squared deviations and bounds of the values of asks [first, first + 32), as far as they exist.
+/// Adds one value after the other, as NodeStatistics does.
 template <class Warp>
 WEIR_HOST_DEVICE void add_statistics(const Warp& warp, const RecordCall& call, std::uint32_t first,
                                      encode_detail::StatisticsTile& tile) {
@@ -110,7 +112,7 @@ WEIR_HOST_DEVICE void add_statistics(const Warp& warp, const RecordCall& call, s
   });
 }
 
-/// Bounds of the outer layers of ask `i`, its errors, and the digest of its source.
+/// Makes the bounds of the outer layers of ask `i`, its errors, and the digest of its source.
 template <class Warp>
 WEIR_HOST_DEVICE void make_record(const Warp& warp, const RecordCall& call, const DigestTables& tables, std::uint32_t i,
                                   encode_detail::RecordStage& stage) {

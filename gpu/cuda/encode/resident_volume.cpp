@@ -65,7 +65,7 @@ class DeviceVolume final : public ResidentVolume {
       }
       for (std::unique_ptr<StreamMemory>& memory : taken) state_->streams.give_back(std::move(memory));
     } catch (const std::exception&) {
-      // Whoever needs it will see.
+      // The next call that needs the memory reports the failure.
     }
   }
 

@@ -1,4 +1,4 @@
-// How a warp predicts the codes of a block on a lattice, or of floats in order: residuals.h, operation by operation.
+// How a warp predicts the codes of a block on a lattice, or of ordered floats. Operation by operation as residuals.h.
 // For host and device.
 #pragma once
 
@@ -16,7 +16,7 @@ using decode_detail::kStageX;
 using decode_detail::kStageY;
 using decode_detail::stage_of;
 
-// What a warp has of shared memory; what is by index lies where stage_of() says.
+// A warp's shared memory. Arrays that are by index are laid out as stage_of() says.
 struct alignas(16) LatticeStage {
   float values[kStageWords];         // by index
   std::uint32_t codes[kStageWords];  // by index; then residuals
@@ -24,7 +24,7 @@ struct alignas(16) LatticeStage {
   std::uint32_t signs[17];
 };
 
-// Of a voxel: its code less what is predicted of those before it; 0 of the first.
+// Returns a voxel's residual: its code minus the prediction from voxels before it; 0 for the first voxel.
 template <class Sum>
 WEIR_HOST_DEVICE inline std::uint32_t residual_at(const std::uint32_t* codes, unsigned predictor, bool ordered,
                                                   unsigned index) {
@@ -38,7 +38,7 @@ WEIR_HOST_DEVICE inline std::uint32_t size_of_residual(std::uint32_t residual) {
   return residual >> 31U != 0 ? 0U - residual : residual;
 }
 
-// The sum of the magnitudes before that at an index along each axis, each at most `most`.
+// Returns the sum of the three magnitudes just before an index along each axis, each limited to `most`.
 WEIR_HOST_DEVICE inline std::uint32_t sizes_beside(const std::uint32_t* residuals, unsigned index, std::uint32_t most) {
   const std::uint32_t* at = residuals + stage_of(index);
   const auto size = [&](std::uint32_t residual) {
@@ -49,7 +49,7 @@ WEIR_HOST_DEVICE inline std::uint32_t sizes_beside(const std::uint32_t* residual
          ((index & 7U) != 0 ? size(*(at - 1)) : 0U);
 }
 
-// best_predictor(). Sum has room for three codes' sum.
+// Returns what best_predictor() returns. `Sum` has room for the sum of three codes.
 template <class Sum, class Warp>
 WEIR_HOST_DEVICE unsigned choose_predictor(const Warp& warp, const std::uint32_t* codes, bool ordered) {
   unsigned best = 0;
@@ -76,14 +76,14 @@ WEIR_HOST_DEVICE unsigned choose_predictor(const Warp& warp, const std::uint32_t
 }
 
 struct FoundResiduals {
-  std::uint32_t last = 0;  // place of the scan that is not zero; 0 where all are
-  std::uint32_t bits = 0;  // all that are set in any magnitude
+  std::uint32_t last = 0;  // last place of the scan that is not zero; 0 if all are zero
+  std::uint32_t bits = 0;  // all bits that are set in any magnitude
 };
 struct OwnResiduals {
   std::uint32_t of[16];
 };
 
-// Codes become residuals.
+// Turns codes into residuals.
 template <class Sum, class Warp>
 WEIR_HOST_DEVICE FoundResiduals find_residuals(const Warp& warp, const CostTables& tables, unsigned predictor,
                                                bool ordered, std::uint32_t* codes) {

@@ -1,5 +1,5 @@
-// How a warp codes the residuals of a block on a lattice, or of floats in order: its lanes find what each is coded as,
-// and one of them runs the entropy coder. ValueEncoder::encode() of value_encoder.h, word by word. For host and device.
+// How a warp codes the residuals of a block on a lattice, or of ordered floats: all lanes find the symbols, and one
+// lane runs the entropy coder. Word by word as ValueEncoder::encode() of value_encoder.h. For host and device.
 #pragma once
 
 #include <cstdint>
@@ -12,16 +12,16 @@
 
 namespace weir::encode_detail {
 
-// Parts of a symbol: 16 levels of symbols | bits beside it << kRawShift.
+// Parts of a symbol: 16 levels of symbols | extra bits << kRawShift.
 inline constexpr unsigned kRawShift = 9;
 static_assert(kPackedLevels * kPackedSymbols <= 1U << kRawShift);
 
-// Symbols of residuals at places below `limit`, and their signs one after the other; returns how many there are.
+// Finds the symbols of residuals at places below `limit`, and joins their signs. Returns the number of signs.
 template <class Warp>
 WEIR_HOST_DEVICE std::uint32_t find_symbols(const Warp& warp, const CostTables& tables, unsigned limit,
                                             LatticeStage& stage) {
   typename Warp::template Own<std::uint32_t> signs, count;
-  constexpr unsigned kOwn = 512 / kLanes;  // places of a lane, one after the other
+  constexpr unsigned kOwn = 512 / kLanes;  // consecutive places of a lane
   warp.each([&](unsigned lane) {
     if (lane < 17) stage.signs[lane] = 0;
     std::uint32_t held = 0;
@@ -54,7 +54,7 @@ WEIR_HOST_DEVICE std::uint32_t find_symbols(const Warp& warp, const CostTables& 
   return join_signs(warp, signs, count, stage.signs);
 }
 
-// From the last place to the first.
+// Puts the residuals from the last place to the first.
 template <bool kTwo>
 WEIR_HOST_DEVICE void put_residuals(const CostTables& tables, const CodeTables& codes, const LatticeStage& stage,
                                     unsigned end, std::uint32_t& first, std::uint32_t& second, WordWriter& words) {
@@ -67,7 +67,7 @@ WEIR_HOST_DEVICE void put_residuals(const CostTables& tables, const CodeTables& 
   }
 }
 
-// By one lane: words and states of a stream whose state has all but these.
+// Called by one lane: makes the words and states of a stream. The rest of `state` is complete.
 WEIR_HOST_DEVICE inline void code_residuals(const CostTables& tables, const CodeTables& codes,
                                             const LatticeStage& stage, const StreamParts& parts, StreamState& state,
                                             WordWriter& words) {
@@ -84,7 +84,7 @@ WEIR_HOST_DEVICE inline void code_residuals(const CostTables& tables, const Code
   state.words = static_cast<std::uint16_t>(words.count());
 }
 
-// Codes of the values as floats in order.
+// Makes codes of the values as ordered floats.
 template <class Warp>
 WEIR_HOST_DEVICE void fill_ordered(const Warp& warp, LatticeStage& stage) {
   warp.each([&](unsigned lane) {
@@ -96,8 +96,8 @@ WEIR_HOST_DEVICE void fill_ordered(const Warp& warp, LatticeStage& stage) {
   });
 }
 
-// Bytes of the stream of the stage's values as floats in order, on no lattice and not all the same, at most
-// kRawStreamBytes: encode_exact() of lattice_block.h.
+// Returns the bytes of the stream of the stage's values as ordered floats, at most kRawStreamBytes. The values lie on
+// no lattice and are not all the same. As encode_exact() of lattice_block.h.
 template <class Warp>
 WEIR_HOST_DEVICE std::uint32_t ordered_bytes(const Warp& warp, const CostTables& tables, const CodeTables& codes,
                                              LatticeStage& stage) {

@@ -1,4 +1,4 @@
-// Memory of a device and page-locked memory that calls use one after the other, and grow where one needs more.
+// Device memory and page-locked memory that calls use one after the other. It grows when a call needs more.
 #pragma once
 
 #include <algorithm>
@@ -17,11 +17,11 @@
 
 namespace weir {
 
-/// Of T on the current device.
+/// An array of T on the current device.
 template <class T>
 class GrowingArray {
  public:
-  /// Room for so many, whose values are lost where there was less. Throws Error(io).
+  /// Returns room for `size` values. If there was less, the old values are lost. Throws Error(io).
   T* at_least(std::size_t size) {
     if (size > array_.size()) {
       array_ = DeviceArray<T>();
@@ -37,7 +37,7 @@ class GrowingArray {
 
 class GrowingPinned {
  public:
-  /// Pages are locked a few MiB a millisecond: seldom, then.
+  /// Locking pages takes a millisecond per few MiB, so this minimum makes it rare.
   static constexpr std::size_t kLeastPinned = std::size_t{1} << 21U;
 
   GrowingPinned() = default;
@@ -45,7 +45,7 @@ class GrowingPinned {
   GrowingPinned(const GrowingPinned&) = delete;
   GrowingPinned& operator=(const GrowingPinned&) = delete;
 
-  /// As GrowingArray::at_least.
+  /// Returns room for `bytes`, as GrowingArray::at_least does.
   std::byte* at_least(std::size_t bytes) {
     if (!piece_ || bytes > piece_->bytes) {
       give_back();
@@ -68,13 +68,13 @@ class GrowingPinned {
   std::optional<PinnedPool::Piece> piece_;
 };
 
-/// Memories that are lent, `most` of them at a time, and kept for the next. Thread-safe.
+/// Lends memory, at most `most` pieces at a time, and keeps returned memory for the next call. Thread-safe.
 template <class Memory>
 class MemoryPool {
  public:
   explicit MemoryPool(std::size_t most = std::numeric_limits<std::size_t>::max()) : most_(most) {}
 
-  /// One that was given back, else a new one; null where as many are lent as may be.
+  /// Returns memory that was given back, otherwise new memory; null if the maximum is lent already.
   std::unique_ptr<Memory> take() {
     const std::lock_guard lock(mutex_);
     if (lent_ == most_) return nullptr;
@@ -93,7 +93,7 @@ class MemoryPool {
     free_.push_back(std::move(memory));
     --lent_;
   }
-  /// Frees what is not lent.
+  /// Frees all memory that is not lent.
   void clear() {
     const std::lock_guard lock(mutex_);
     free_.clear();

@@ -1,7 +1,8 @@
-// How far the device looks at the rungs of a block, where it is known between which keys the cut lies: as far as the
-// search of compressor/packed/ladder_window.h comes, or a little further. Of a block whose voxels all lie in the
-// volume: of others the search goes by the error of those that do, which the device does not know. Nothing depends on
-// it but time: a block whose search comes to a rung that was not looked at is the host's. For host and device.
+// How far the device looks at the rungs of a block if it knows the keys between which the cut lies: as far as the
+// search of compressor/packed/ladder_window.h comes, or a little further. Only for a block whose voxels all lie in
+// the volume: for others the search uses the error of the voxels inside, which the device does not know. Only the
+// time depends on this: if the search comes to a rung that was not looked at, the host takes the block. For host and
+// device.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +13,7 @@
 
 namespace weir::encode_detail {
 
-// A rung, as far as it is known: what it takes in bytes, and the squared error that it leaves.
+// The known facts about a rung: its bytes, and the squared error that it leaves.
 struct KnownRung {
   enum class State : std::uint8_t { not_looked_at, none, there };
   State state = State::not_looked_at;
@@ -35,12 +36,13 @@ WEIR_HOST_DEVICE inline KnownRung known_rung(const NearCost& cost) {
   return {KnownRung::State::there, static_cast<double>(cost.bytes), cost.squared_error};
 }
 
-// A rung costs more than the best one where it does so by more bytes than the search's one: its shares are rounded.
+// A rung ends this search if it costs this many bytes more than the best one. The search of ladder_window.h ends at
+// one byte, but its shares are rounded; with two bytes the device looks at least as far.
 inline constexpr double kSureBytes = 2;
 inline constexpr std::uint32_t kNoRung = ~0U;
 
-// The first rung that a search comes to without it having been looked at, or kNoRung. Of rungs [0, count), from coarse
-// to fine; it begins at `start`, and what lies beyond them is none of its. `energy`: the error of the mean alone.
+// Returns the first rung that a search reaches before it was looked at, or kNoRung. The rungs [0, count) go from
+// coarse to fine; the search begins at `start` and ignores other rungs. `energy` is the error of the mean alone.
 template <class At>
 WEIR_HOST_DEVICE std::uint32_t next_rung(const SearchKeys& keys, double energy, std::uint32_t start,
                                          std::uint32_t count, const At& at) {
@@ -72,8 +74,8 @@ WEIR_HOST_DEVICE std::uint32_t next_rung(const SearchKeys& keys, double energy, 
   return kNoRung;
 }
 
-// Whether `ahead` is so much the better buy that the search about `behind` is left out: is_far_ahead() of
-// ladder_window.h, and somewhat more.
+// Returns whether `ahead` is so much better than `behind` that the search around `behind` is left out. The condition
+// is that of is_far_ahead() of ladder_window.h, and slightly stricter.
 WEIR_HOST_DEVICE inline bool is_sure_to_lead(const SearchKeys& keys, const KnownRung& ahead, const KnownRung& behind) {
   if (!keys.compares || !ahead.there() || !behind.there()) return false;
   constexpr double kBitAValue = 512 / 8.0;

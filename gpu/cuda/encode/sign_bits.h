@@ -1,4 +1,4 @@
-// How a warp puts the signs that its lanes hold behind each other. For host and device.
+// How a warp joins the sign bits that its lanes hold. For host and device.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,8 @@
 
 namespace weir::encode_detail {
 
-/// Of each lane the lowest `count` bits of `signs`, at most 32, lane by lane into `words`, which are zero, and one more
-/// than they can fill. Returns how many there are.
+/// Writes the lowest `count` bits (at most 32) of each lane's `signs` to `words`, lane after lane. `words` are zero,
+/// and there is one more than the bits can fill. Returns the number of bits.
 template <class Warp>
 WEIR_HOST_DEVICE std::uint32_t join_signs(const Warp& warp, typename Warp::template Own<std::uint32_t>& signs,
                                           typename Warp::template Own<std::uint32_t>& count, std::uint32_t* words) {

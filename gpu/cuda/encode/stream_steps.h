@@ -1,5 +1,5 @@
-// How streams are written of the codes of their values: a thread a block runs the entropy coder, then a warp a block
-// puts its bytes in place. ValueEncoder::encode() of value_encoder.h, word by word. For host and device.
+// How streams are written from the codes of their values: one thread per block runs the entropy coder, then one warp
+// per block puts its bytes in place. Word by word as ValueEncoder::encode() of value_encoder.h. For host and device.
 #pragma once
 
 #include <cstddef>
@@ -21,7 +21,7 @@ WEIR_HOST_DEVICE inline void put_code(const TransformCodes& codes, std::uint32_t
   words.put_value(x, m, extra, codes.of[kPackedSymbols * context + (high < kEscape ? high : kEscape)]);
 }
 
-// From the last place to the first.
+// Puts the values from the last place to the first.
 template <bool kTwo>
 WEIR_HOST_DEVICE void put_values(const TransformCodes& codes, const Quad* coded, unsigned end, std::uint32_t& first,
                                  std::uint32_t& second, WordWriter& words) {
@@ -38,13 +38,13 @@ WEIR_HOST_DEVICE void put_values(const TransformCodes& codes, const Quad* coded,
   }
 }
 
-// Byte `at` of a stream's bits, which begin behind its first byte: a front of `bits`, then the early signs.
+// Returns byte `at` of a stream's bits, which begin after its first byte: a front of `bits`, then the early signs.
 WEIR_HOST_DEVICE inline std::uint32_t front_byte(std::uint64_t head, std::uint32_t bits, const StreamState& state,
                                                  std::uint32_t early, std::uint32_t at) {
   const std::uint32_t first = 8 * at;
   std::uint32_t byte = first < 64 ? static_cast<std::uint32_t>(head >> first) & 0xFFU : 0U;
   if (first + 8 <= bits) return byte;
-  const std::uint32_t skipped = first < bits ? bits - first : 0U;  // bits of the byte that are the head's
+  const std::uint32_t skipped = first < bits ? bits - first : 0U;  // bits of this byte that belong to the head
   const std::uint32_t sign = first + skipped - bits;
   const std::uint32_t left = early > sign ? early - sign : 0U;
   const std::uint32_t room = 8 - skipped;
@@ -54,7 +54,7 @@ WEIR_HOST_DEVICE inline std::uint32_t front_byte(std::uint64_t head, std::uint32
 
 }  // namespace encode_detail
 
-/// Words and states of an ask of a transform that code_block() has not left.
+/// Makes the words and states of ask `i`, if it is of a transform and code_block() has not left it to the host.
 WEIR_HOST_DEVICE inline void put_words(const EncodeCall& call, const TransformCodes& codes, std::uint32_t i) {
   using namespace encode_detail;
   StreamState& state = call.states[i];
@@ -76,7 +76,7 @@ WEIR_HOST_DEVICE inline void put_words(const EncodeCall& call, const TransformCo
   state.words = static_cast<std::uint16_t>(words.count());
 }
 
-/// Its bytes; where they are more than was asked for, it is left.
+/// Writes the bytes of ask `i`. If they are more than was asked for, the ask is left to the host.
 template <class Warp>
 WEIR_HOST_DEVICE void put_bytes(const Warp& warp, const EncodeCall& call, std::uint32_t i) {
   using namespace encode_detail;
@@ -88,7 +88,7 @@ WEIR_HOST_DEVICE void put_bytes(const Warp& warp, const EncodeCall& call, std::u
   const auto head_byte = static_cast<std::byte>(
       transformed ? static_cast<unsigned>(kind) | static_cast<unsigned>(ask.step - call.constants.coarsest) << 2U
                   : unsigned{state.head});
-  // Minimum and quantum lie in front of the bits.
+  // Minimum and quantum lie before the bits.
   const std::uint32_t bits_at = ask.kind == StreamAskKind::rounded ? kRoundedFrontBytes : 1;
   std::uint64_t head = state.number;
   std::uint32_t bits = state.number_bits;

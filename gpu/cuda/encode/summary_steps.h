@@ -1,5 +1,5 @@
-// How a warp summarises a block of finite values: summarize_leaf() of compressor/leaf/leaf_summary.h, sum by sum. How
-// values are counted in bins, and copied block by block. For host and device.
+// How a warp summarises a block of finite values, sum by sum as summarize_leaf() of compressor/leaf/leaf_summary.h
+// does; how values are counted in bins, and copied block by block. For host and device.
 #pragma once
 
 #include <cstdint>
@@ -13,10 +13,10 @@
 namespace weir {
 namespace encode_detail {
 
-// Values of a block are summed in so many lanes, and their extremes found in half as many.
+// The number of lanes that sum a block's values. Half as many find the extremes.
 inline constexpr unsigned kSumLanes = 16;
 
-// What a warp has of shared memory.
+// A warp's shared memory.
 struct alignas(16) SummaryStage {
   float values[kStageWords];
   float low[kGroup];
@@ -24,9 +24,9 @@ struct alignas(16) SummaryStage {
   std::uint64_t lanes[kStripeWords];
 };
 
-// What bits tell of a block's values.
+// What the bits of a block's values tell.
 struct ScannedBits {
-  std::uint32_t differ = 0;  // bits in which any value differs from the first
+  std::uint32_t differ = 0;  // bits that differ from the first value in any value
   std::uint32_t non_finite = 0;
   std::uint32_t zeros = 0;
 };
@@ -51,7 +51,7 @@ WEIR_HOST_DEVICE ScannedBits scan_stage(const Warp& warp, const float* stage) {
   return scan;
 }
 
-// The first least and the first largest of each of eight lanes, as the CPU has them in a vector.
+// Finds the first least and the first largest value of each of eight lanes, as the CPU has them in a vector.
 template <class Warp>
 WEIR_HOST_DEVICE void find_extremes(const Warp& warp, SummaryStage& stage) {
   warp.each([&](unsigned lane) {
@@ -68,7 +68,7 @@ WEIR_HOST_DEVICE void find_extremes(const Warp& warp, SummaryStage& stage) {
   });
 }
 
-// The sum of what `of` makes of each value.
+// Returns the sum of of(value) over all values.
 template <class Warp, class Of>
 WEIR_HOST_DEVICE double sum_stage(const Warp& warp, const float* stage, const Of& of) {
   typename Warp::template Own<double> own;
@@ -84,8 +84,8 @@ WEIR_HOST_DEVICE double sum_stage(const Warp& warp, const float* stage, const Of
 
 }  // namespace encode_detail
 
-/// The summary of a block of the call that lies wholly in its volume; of one whose values are not all finite, how many
-/// are.
+/// Summarises a block of the call that lies wholly in its volume. If not all values are finite, only their number is
+/// written.
 template <class Warp>
 WEIR_HOST_DEVICE void summarize_block(const Warp& warp, const SummaryCall& call, const DigestTables& tables,
                                       std::uint32_t block, encode_detail::SummaryStage& stage) {
@@ -137,7 +137,7 @@ WEIR_HOST_DEVICE void summarize_block(const Warp& warp, const SummaryCall& call,
   });
 }
 
-/// The values of the call's block number `i`.
+/// Copies the values of the call's block number `i`.
 template <class Warp>
 WEIR_HOST_DEVICE void copy_block(const Warp& warp, const ValuesCall& call, std::uint32_t i, float* stage) {
   using namespace encode_detail;
@@ -147,7 +147,7 @@ WEIR_HOST_DEVICE void copy_block(const Warp& warp, const ValuesCall& call, std::
   });
 }
 
-/// The bin of a value; none, kMostCountedBins, where it is not finite.
+/// Returns the bin of a value, or kMostCountedBins if the value is not finite or lies in no bin.
 WEIR_HOST_DEVICE inline std::uint32_t bin_of_value(const CountCall& call, float v) {
   if (!(v - v == 0)) return kMostCountedBins;
   const double bin = ::floor(static_cast<double>(v) * call.scale) - call.base;

@@ -1,5 +1,6 @@
-// How a warp surveys a block: its transform, and for rungs of the ladder bits and squared error, four rungs at a time,
-// a group of eight lanes each: TransformBlock::cost() of block_encode.h, operation by operation. For host and device.
+// How a warp surveys a block: its transform, then bits and squared error of rungs of the ladder, four rungs at a
+// time, one per group of eight lanes. Operation by operation as TransformBlock::cost() of block_encode.h. For host
+// and device.
 #pragma once
 
 #include <cstddef>
@@ -18,21 +19,21 @@ namespace encode_detail {
 
 inline constexpr unsigned kRungsAtOnce = kLanes / kGroup;
 
-// What a group counts a rung with.
+// The rung that a group counts.
 struct GroupRung {
   float step = 0;
   float scale = 0;
-  bool counted = false;  // there is such a rung, and it is fine enough and not too fine
+  bool counted = false;  // the rung exists and is neither too coarse nor too fine
   bool coded = false;    // its largest magnitude is not too large
 };
 
-// Magnitude of a coefficient, any sign.
+// Returns the magnitude of a coefficient of any sign.
 WEIR_HOST_DEVICE inline std::uint32_t magnitude_at(float coefficient, float scale) {
   const float size = coefficient < 0 ? -coefficient : coefficient;
   return static_cast<std::uint32_t>(magnitude_of(size * scale));
 }
 
-// Of a lane's column of coefficients, those at places [4, limit).
+// Adds the coefficients at places [4, limit) of a lane's column.
 WEIR_HOST_DEVICE inline SymbolSums add_column(const CostTables& tables, const float* stage, unsigned z, float scale,
                                               unsigned limit) {
   SymbolSums sums;
@@ -59,8 +60,8 @@ WEIR_HOST_DEVICE inline SymbolSums add_column(const CostTables& tables, const fl
   return sums;
 }
 
-// Squared error of a lane's column in squared steps, what rows without a magnitude add to the block's, and the last
-// place that is not zero.
+// The squared error of a lane's column in squared steps, the error that rows without a magnitude add to the block's,
+// and the last place that is not zero.
 struct ColumnError {
   float sum = 0;
   double dropped = 0;
@@ -89,8 +90,8 @@ WEIR_HOST_DEVICE inline ColumnError quantise_column(const CostTables& tables, co
   return error;
 }
 
-// Rungs that are looked at together, one by each group of lanes: group g looks at rung first + g, and from group
-// `before_gap` on `gap` rungs further.
+// Rungs that are looked at together, one per group of lanes. Group g looks at rung first + g; groups from
+// `before_gap` on look `gap` rungs further.
 struct RungBatch {
   std::uint32_t first = 0;
   std::uint32_t before_gap = kRungsAtOnce;
@@ -99,8 +100,8 @@ struct RungBatch {
   WEIR_HOST_DEVICE std::uint32_t rung(unsigned group) const { return first + group + (group < before_gap ? 0U : gap); }
 };
 
-// Costs of a batch's rungs, as far as there are any before `end`, counted from the first one asked for; returns
-// whether finer ones are of use.
+// Calculates the costs of a batch's rungs that lie before `end`, counted from the first rung asked for. Returns
+// whether finer rungs are of use.
 template <class Warp>
 WEIR_HOST_DEVICE bool cost_rungs(const Warp& warp, const CostTables& tables, const BlockStage& stage,
                                  const BlockFigures& figures, double finest, const RungBatch& batch, std::uint32_t end,
@@ -164,7 +165,8 @@ WEIR_HOST_DEVICE bool cost_rungs(const Warp& warp, const CostTables& tables, con
       }
     }
     costs[batch.rung(lane / kGroup)] = cost;
-    // As far as a search that ends where raw values are shorter, and no bits fall back by so many, may go.
+    // Finer rungs are of no use beyond this: a search ends where raw values (2049 bytes) are shorter, and the bits of
+    // finer rungs never fall back by 2048.
     constexpr std::uint32_t kMostUseful = 8 * 2049 + 2048;
     useful(lane) = cost.bits <= kMostUseful ? 1U : 0U;
   });
@@ -173,7 +175,7 @@ WEIR_HOST_DEVICE bool cost_rungs(const Warp& warp, const CostTables& tables, con
 
 }  // namespace encode_detail
 
-/// The figures of a block of the call and its rungs' costs.
+/// Calculates the figures of a block of the call and the costs of its rungs.
 template <class Warp>
 WEIR_HOST_DEVICE void survey_block(const Warp& warp, const SurveyCall& call, const CostTables& tables,
                                    std::uint32_t block, encode_detail::BlockStage& stage) {
@@ -208,7 +210,8 @@ WEIR_HOST_DEVICE void survey_block(const Warp& warp, const SurveyCall& call, con
         std::uint32_t rung = 0;
         while (rung < most && look_at({rung})) rung += kRungsAtOnce;
       } else {
-        // Nearly every search ends among the first four; the others are `first` coarser ones, and finer ones.
+        // Nearly every search ends among the first four. The other rungs are the `first` coarser ones and the finer
+        // ones.
         const std::uint32_t start = call.ask.start(figures.first_step) - figures.first_rung;
         const std::uint32_t coarser = start < 2 ? 0U : start - 2;
         const std::uint32_t first = coarser < most - kRungsAtOnce ? coarser : most - kRungsAtOnce;

@@ -1,5 +1,5 @@
-// What coded values take together, but for the constant parts: RowCosts::of() of row_costs.h, value by value. For host
-// and device.
+// What coded values take together, without the constant parts. Value by value as RowCosts::of() of row_costs.h. For
+// host and device.
 #pragma once
 
 #include <cstdint>
@@ -15,12 +15,12 @@ struct SymbolSums {
   std::uint32_t nonzero = 0;
 };
 
-// Bits of the part of a magnitude that its extra bits leave, where that is not below an escape.
+// Returns the bits of the part of a magnitude that remains above its extra bits. This part `high` is kEscape or more.
 WEIR_HOST_DEVICE inline std::uint32_t bits_of_escape(std::uint32_t high) {
   return 5 + 31U - static_cast<unsigned>(__builtin_clz(high - (kEscape - 1)));
 }
 
-// One whose neighbours' weighed sum is t, in a context that begins at `first` of the costs.
+// Adds value `m`, for a weighted sum `t` of its neighbours, in a context whose costs begin at `first`.
 WEIR_HOST_DEVICE inline void add_value(const CostTables& tables, std::uint32_t first, std::uint32_t t, std::uint32_t m,
                                        SymbolSums& sums) {
   if ((t | m) == 0) {
@@ -35,8 +35,8 @@ WEIR_HOST_DEVICE inline void add_value(const CostTables& tables, std::uint32_t f
   sums.nonzero += m != 0 ? 1U : 0U;
 }
 
-// Those at places 1 to 3, which look at each other: at(index) is a magnitude, first_of(known) where the costs of a
-// place's contexts begin, by what the tables know of it.
+// Adds the values at places 1 to 3, whose contexts depend on each other. at(index) returns a magnitude.
+// first_of(known) returns where the costs of a place's contexts begin; `known` is the table's entry for the place.
 template <class At, class FirstOf>
 WEIR_HOST_DEVICE inline void add_first_places(const CostTables& tables, const At& at, const FirstOf& first_of,
                                               SymbolSums& sums) {

@@ -1,5 +1,5 @@
-// How a warp gathers a block out of a box of values and transforms it: TransformBlock::set() of block_encode.h,
-// operation by operation. For host and device.
+// How a warp gathers a block from a box of values and transforms it. Operation by operation as TransformBlock::set()
+// of block_encode.h. For host and device.
 #pragma once
 
 #include <cstdint>
@@ -17,22 +17,22 @@ namespace weir::encode_detail {
 using decode_detail::for_lane_lines;
 using decode_detail::stage_of;
 
-// A row of eight coefficients along z lies on a stage at that place.
+// Returns where a row of eight coefficients along z begins on a stage.
 WEIR_HOST_DEVICE constexpr unsigned stage_row(unsigned row) { return 9 * row; }
 
-// What a warp has of shared memory.
+// A warp's shared memory.
 struct alignas(16) BlockStage {
-  float values[kStageWords];  // where stage_of() says
+  float values[kStageWords];  // laid out as stage_of() says
   float row_largest[64];
   double row_energy[64];
 };
 
-// What is known of a block's values as they are.
+// What is known of a block's values before the transform.
 struct ValueRange8 {
   float low = 0;
   float high = 0;
   float mean = 0;
-  bool transformed = false;  // they can be
+  bool transformed = false;  // the values can be transformed
 };
 
 template <class Warp>
@@ -53,7 +53,7 @@ WEIR_HOST_DEVICE void gather_block(const Warp& warp, const BlockBox& box, std::u
   });
 }
 
-// Sums run in eight lanes, each over the rows in order, as the CPU's do.
+// Calculates sums in eight lanes, each over the rows in order, as the CPU does.
 template <class Warp>
 WEIR_HOST_DEVICE ValueRange8 range_of_block(const Warp& warp, const float* stage) {
   typename Warp::template Own<float> low, high;
@@ -85,13 +85,13 @@ WEIR_HOST_DEVICE ValueRange8 range_of_block(const Warp& warp, const float* stage
   return range;
 }
 
-// What the coefficients are together.
+// Largest size and total energy of the coefficients.
 struct CoefficientSizes {
   float largest = 0;
   double energy = 0;
 };
 
-// Values less their mean become coefficients, that of the mean 0.
+// Turns the values minus their mean into coefficients. The coefficient of the mean becomes 0.
 template <class Warp>
 WEIR_HOST_DEVICE void transform_stage(const Warp& warp, float mean, float* stage) {
   warp.each([&](unsigned lane) {

@@ -1,5 +1,5 @@
-// A warp that works on one block: what its lanes do between two points at which they wait for each other, and what they
-// tell each other there. On the host one thread takes the lanes in turn. For host and device.
+// A warp that works on one block: what its lanes do between two synchronisation points, and what they exchange there.
+// On the host one thread runs the lanes in turn. For host and device.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ inline constexpr unsigned kLanes = 32;
 /// Lanes in groups of eight, as the CPU has them in a vector.
 inline constexpr unsigned kGroup = 8;
 
-/// What each lane has of a T.
+/// A T of each lane.
 template <class T>
 class HostOwn {
  public:
@@ -32,14 +32,14 @@ class HostWarp {
   void each(const Work& work) const {
     for (unsigned lane = 0; lane < kLanes; ++lane) work(lane);
   }
-  /// Of all lanes; `two(a, b)` in any order.
+  /// Combines the values of all lanes by `two(a, b)`, in any order.
   template <class T, class Two>
   T of_all(Own<T>& own, const Two& two) const {
     T all = own(0);
     for (unsigned lane = 1; lane < kLanes; ++lane) all = two(all, own(lane));
     return all;
   }
-  /// The same of each group.
+  /// Combines the values of each group in the same way.
   template <class T, class Two>
   void of_groups(Own<T>& own, const Two& two) const {
     for (unsigned group = 0; group < kLanes; group += kGroup) {
@@ -48,7 +48,7 @@ class HostWarp {
       for (unsigned lane = 0; lane < kGroup; ++lane) own(group + lane) = all;
     }
   }
-  /// 0.0 + the first + the second ... of each group, in that order.
+  /// Computes 0.0 + the first + the second ... of each group, in this order.
   template <class T>
   void add_in_order(Own<T>& own, Own<double>& sums) const {
     for (unsigned group = 0; group < kLanes; group += kGroup) {
@@ -57,7 +57,7 @@ class HostWarp {
       for (unsigned lane = 0; lane < kGroup; ++lane) sums(group + lane) = sum;
     }
   }
-  /// Sums over the lanes of the same place in each group.
+  /// Sums over the lanes that have the same place in each group.
   void add_across_groups(Own<std::uint64_t>& own) const {
     for (unsigned at = 0; at < kGroup; ++at) {
       std::uint64_t sum = 0;
@@ -65,14 +65,14 @@ class HostWarp {
       for (unsigned lane = at; lane < kLanes; lane += kGroup) own(lane) = sum;
     }
   }
-  /// The sum over the first 16 lanes: each with that 8 further on, then 4, 2 and 1.
+  /// Returns the sum over the first 16 lanes: adds to each lane the lane 8 further on, then 4, 2 and 1.
   double add_pairwise(Own<double>& own) const {
     for (unsigned away = kLanes / 4; away > 0; away /= 2) {
       for (unsigned lane = 0; lane < away; ++lane) own(lane) += own(lane + away);
     }
     return own(0);
   }
-  /// What the lanes before have together; the sum of all is returned.
+  /// Replaces each lane's number by the sum of the lanes before it. Returns the sum of all lanes.
   std::uint32_t add_before(Own<std::uint32_t>& own) const {
     std::uint32_t sum = 0;
     for (unsigned lane = 0; lane < kLanes; ++lane) {
@@ -82,7 +82,7 @@ class HostWarp {
     }
     return sum;
   }
-  /// Adds bits to a word that several lanes write.
+  /// Sets bits in a word that several lanes write.
   void set_bits(std::uint32_t* word, std::uint32_t bits) const { *word |= bits; }
 };
 
@@ -114,7 +114,7 @@ class DeviceWarp {
     T all = own(0);
     for (unsigned away = kLanes / 2; away > 0; away /= 2) all = two(all, __shfl_xor_sync(~0U, all, away));
     return __shfl_sync(~0U, all,
-                       0);  // of NaN and of zeros of both signs lanes may find others, and must not part for it
+                       0);  // lanes may find different NaNs or zeros; all must go on with one
   }
   template <class T, class Two>
   __device__ void of_groups(Own<T>& own, const Two& two) const {

@@ -1,5 +1,5 @@
-// What a stream of coded values is made of: words of the entropy coder, states, signs and a number. ValueEncoder of
-// value_encoder.h, word by word. For host and device.
+// The parts of a stream of coded values: words of the entropy coder, states, signs and a number. Word by word as
+// ValueEncoder of value_encoder.h. For host and device.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace weir::encode_detail {
 
-// `count` <= 32 bits of words from bit `first` on, which may lie beyond the last of the 16 words: zeros then.
+// Returns `count` <= 32 bits of words from bit `first` on. Bits beyond the last of the 16 words are zero.
 WEIR_HOST_DEVICE inline std::uint32_t sign_bits(const std::uint32_t* words, std::uint32_t first, std::uint32_t count) {
   const std::uint32_t at = first / 32;
   const std::uint32_t low = at < 16 ? words[at] : 0U;
@@ -18,12 +18,12 @@ WEIR_HOST_DEVICE inline std::uint32_t sign_bits(const std::uint32_t* words, std:
   return static_cast<std::uint32_t>(two >> (first % 32) & ((std::uint64_t{1} << count) - 1));
 }
 
-// What lies where in a stream that has values.
+// The layout of a stream that has values.
 struct StreamParts {
   unsigned states;
-  std::uint32_t late;   // signs that the states begin with, and
-  std::uint32_t moved;  // low bits of the number
-  std::uint32_t early;  // signs in front
+  std::uint32_t late;   // number of signs in the initial states
+  std::uint32_t moved;  // number of low bits of the number in the initial states
+  std::uint32_t early;  // number of signs in front
 };
 
 WEIR_HOST_DEVICE inline StreamParts parts_of(const StreamState& state) {
@@ -37,18 +37,18 @@ WEIR_HOST_DEVICE inline StreamParts parts_of(const StreamState& state) {
   return parts;
 }
 
-// The states that a stream begins to be coded with.
+// Returns the states with which the coding of a stream begins.
 WEIR_HOST_DEVICE inline void begin_states(const StreamState& state, const StreamParts& parts, std::uint32_t& first,
                                           std::uint32_t& second) {
   std::uint32_t payload = sign_bits(state.signs, parts.early, parts.late);
-  // Of none of the late signs all 32 bits may be the number's.
+  // Without late signs, all 32 bits may belong to the number.
   if (parts.moved == 32) payload = state.number;
   if (parts.moved > 0 && parts.moved < 32) payload |= (state.number & ((1U << parts.moved) - 1U)) << parts.late;
   first = kLeastState | (payload & 0xFFFFU);
   second = kLeastState | payload >> 16U;
 }
 
-// Words in the order in which they are made, as many as there is room for.
+// Writes words in the order in which they are made, as many as fit.
 class WordWriter {
  public:
   WEIR_HOST_DEVICE WordWriter(std::uint16_t* words, std::uint32_t most) : words_(words), most_(most) {}
@@ -71,14 +71,14 @@ class WordWriter {
     put_raw(x, rest & 0xFFFFU, length < 16 ? length : 16U);
     put_raw(x, length, 5);
   }
-  /// A magnitude, of which `extra` bits are as they are: what is decoded last of it first.
+  /// Puts a magnitude with `extra` raw bits. The part that is decoded last is put first.
   WEIR_HOST_DEVICE void put_value(std::uint32_t& x, std::uint32_t m, unsigned extra, const SymbolCode& symbol) {
     const std::uint32_t high = m >> extra;
     put_raw(x, m & ((1U << extra) - 1U), extra);
     if (high >= kEscape) put_escape(x, high);
     put_symbol(x, symbol);
   }
-  /// More than there is room for where it is not fits().
+  /// Returns the number of words that were made. It exceeds the room if fits() is false.
   WEIR_HOST_DEVICE std::uint32_t count() const { return count_; }
   WEIR_HOST_DEVICE bool fits() const { return count_ <= most_; }
 

@@ -15,9 +15,9 @@ namespace weir {
 
 namespace {
 
-constexpr std::size_t kBlocksTogether = std::size_t{1} << 17U;  // as many as keep a device busy, 256 MiB of values
+constexpr std::size_t kBlocksTogether = std::size_t{1} << 17U;  // enough to keep a device busy; 256 MiB of values
 
-/// Gathers neighbouring pieces of a grid's bytes, so that they cross the bus in large ones.
+/// Collects neighbouring pieces of a grid's bytes, so that they cross the bus in large copies.
 class GridUpload {
  public:
   explicit GridUpload(std::byte* grid) : grid_(grid) { bytes_.reserve(kPiece); }
@@ -47,7 +47,7 @@ class GridUpload {
   std::vector<std::byte> bytes_;
 };
 
-/// Writes the leaves; returns their statistics.
+/// Writes the leaves. Returns their statistics.
 std::vector<LeafStatistics> write_leaves(const NvdbGrid& grid, const std::byte* packed, const ExpandedTree& tree,
                                          bool quantised, std::byte* leaves) {
   const DeviceMachine machine;

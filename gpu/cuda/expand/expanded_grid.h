@@ -1,18 +1,19 @@
-// A packed grid as a grid that every NanoVDB reader knows, in device memory: for renderers of others.
+// Expands a packed grid in device memory to a grid that every NanoVDB reader can read, for other renderers.
 #pragma once
 
 #include "gpu/cuda/grid_loader.h"
 
 namespace weir {
 
-/// As load_grid, but decodes a packed grid on the device, into leaves of floats (`as` float32: every decoded bit) or of
-/// 16 bits between each leaf's least and largest value (`as` fp16). Its nodes have the statistics and the grid the head
-/// checksum that NanoVDB's tools look at. Until it returns, the device holds the packed grid and up to 256 MiB beside
-/// it. A grid that is not packed is copied where it is of that type already. options.zero_copy is of the packed grid
-/// alone.
+/// Loads a grid as load_grid() does, but decodes a packed grid on the device. Its leaves hold floats (`as` float32:
+/// every decoded bit), or 16 bits between each leaf's least and largest value (`as` fp16). The nodes have the
+/// statistics, and the grid the head checksum, that NanoVDB's tools read. Until the call returns, the device also
+/// holds the packed grid and up to 256 MiB. A grid that is not packed is copied if its type is `as` already.
+/// options.zero_copy applies only to the packed grid.
 ///
-/// Throws Error(usage) where `as` is another type, Error(input) where the grid is of another type and not packed, where
-/// blocks are damaged, and where fp16 is to hold values that are not finite; and as load_grid.
+/// Throws Error(usage) if `as` is another type. Throws Error(input) if a grid that is not packed has another type, if
+/// blocks are damaged, or if fp16 would have to hold values that are not finite. Also throws the errors of
+/// load_grid().
 DeviceGrid load_grid_as(const NvdbFile& file, GridType as, DeviceBuffer&& buffer, const LoadOptions& options = {},
                         cudaStream_t stream = nullptr);
 

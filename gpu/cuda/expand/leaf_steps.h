@@ -1,4 +1,4 @@
-// Makes leaves of decoded blocks, as NanoVDB has them. For host and device.
+// Makes NanoVDB leaves from decoded blocks. For host and device.
 #pragma once
 
 #include <cmath>
@@ -11,8 +11,8 @@
 
 namespace weir {
 
-/// A group of threads a leaf. Voxels outside the domain are inactive, and the background, or what of a leaf's range is
-/// nearest to it.
+/// One group of threads per leaf. Voxels outside the domain are inactive. Their value is the background, or the value
+/// in the leaf's range nearest to it.
 struct WriteLeaves {
   struct Shared {
     LeafStatistics statistics;
@@ -21,11 +21,11 @@ struct WriteLeaves {
   BlockLattice lattice;
   Int3 corner;  ///< of the first region: index of its lowest voxel
   float background = 0;
-  bool quantised = false;  ///< 16 bits between each leaf's least and largest value, else floats
+  bool quantised = false;  ///< true: 16 bits between each leaf's least and largest value; false: floats
   const BlockId* blocks = nullptr;
-  const float* values = nullptr;         ///< 512 of each block
+  const float* values = nullptr;         ///< 512 per block
   std::byte* leaves = nullptr;           ///< at a multiple of 32
-  LeafStatistics* statistics = nullptr;  ///< of each
+  LeafStatistics* statistics = nullptr;  ///< one per leaf
 
   template <class Thread>
   WEIR_HOST_DEVICE void operator()(const Thread& thread, Shared& shared, std::uint32_t i) const {
@@ -62,7 +62,7 @@ struct WriteLeaves {
     *reinterpret_cast<T*>(at) = value;
   }
 
-  // `edge` 0 or 8: the block's lowest or highest voxel in the domain, from its own lowest.
+  // Returns the block's lowest (`edge` 0) or highest (`edge` 8) voxel in the domain, relative to the block's lowest.
   WEIR_HOST_DEVICE Int3 inside(const Int3& block, std::int32_t edge) const {
     const auto along = [edge](std::int32_t b, std::int32_t shift, std::int32_t extent) {
       return clamped(edge == 0 ? shift - 8 * b : shift + extent - 8 * b, 0, 8);
@@ -71,7 +71,7 @@ struct WriteLeaves {
             along(block.z, lattice.shift.z, lattice.extent.z)};
   }
 
-  // In the order and with the arithmetic of NodeStatistics.
+  // Uses the order and the arithmetic of NodeStatistics.
   WEIR_HOST_DEVICE static LeafStatistics statistics_of(const float* values, const Int3& low, const Int3& high) {
     LeafStatistics s{3.402823466e38F, -3.402823466e38F, 0, 0};
     double count = 0;
@@ -92,7 +92,7 @@ struct WriteLeaves {
   }
 
   WEIR_HOST_DEVICE static float quantum_of(const LeafStatistics& s) { return (s.max - s.min) / 65535; }
-  // Zero where all values are one.
+  // Returns zero if all values are equal.
   WEIR_HOST_DEVICE static std::uint16_t in_quanta(float value, float quantum) {
     if (!(quantum > 0)) return 0;
     return static_cast<std::uint16_t>(clamped(value / quantum + 0.5F, 0.0F, 65535.0F));

@@ -1,4 +1,4 @@
-// Marks a copy's point in a stream, to wait for it without spinning.
+// Marks a copy's point in a stream, so that the host can wait for it without spinning.
 #pragma once
 
 #include <string_view>
@@ -22,12 +22,12 @@ class CopyEvent {
     return *this;
   }
 
-  /// Marks the point after all that `stream` was given so far.
+  /// Marks the point after all work given to `stream` so far.
   void record(cudaStream_t stream) { check_cuda(cudaEventRecord(event_, stream), "recording an event"); }
-  /// Waits until what was recorded is done; returns at once where nothing was. Throws Error(io), beginning with `what`,
-  /// where a copy failed.
+  /// Waits until the recorded work is done. Returns at once if nothing was recorded. Throws Error(io), beginning with
+  /// `what`, if a copy failed.
   void wait(std::string_view what = "copying to the device") const { check_cuda(cudaEventSynchronize(event_), what); }
-  /// Whether it is done, or nothing was recorded; what failed is for wait() to say.
+  /// Returns whether the recorded work is done, or nothing was recorded. Only wait() reports a failure.
   bool done() const { return cudaEventQuery(event_) == cudaSuccess; }
 
  private:

@@ -1,4 +1,4 @@
-// What every way of loading is given and what it returns.
+// The input and the result of every way of loading.
 #pragma once
 
 #include <cuda_runtime_api.h>
@@ -15,19 +15,19 @@
 
 namespace weir {
 
-/// Bytes [offset, offset + bytes) of a file to `target` on `device`, after the work queued in `stream`.
+/// Copies bytes [offset, offset + bytes) of a file to `target` on `device`, after the work queued in `stream`.
 struct CopyTask {
   const FileMapping& file;
   std::uint64_t offset = 0;
   std::uint64_t bytes = 0;
   std::byte* target = nullptr;
-  int device = 0;  ///< the current one
+  int device = 0;  ///< the current device
   cudaStream_t stream = nullptr;
   std::uint64_t chunk_bytes = 0;
   int threads = 1;
   const std::atomic<bool>* cancel = nullptr;
 
-  /// Throws Error(interrupted) where cancel is set.
+  /// Throws Error(interrupted) if `cancel` is set.
   void check_cancelled() const {
     if (cancel != nullptr && cancel->load(std::memory_order_relaxed)) {
       throw Error(ErrorKind::interrupted, "interrupted while loading " + file.path());
@@ -35,13 +35,13 @@ struct CopyTask {
   }
 };
 
-/// Done where `refusal` is empty; else it says why this way does not work here, and another may.
+/// The copy is done if `refusal` is empty. Otherwise `refusal` says why this way does not work here; another way may.
 struct CopyOutcome {
   std::string refusal;
   LoadStages stages;
 };
 
-/// Adds the seconds of its life to a sum.
+/// Adds the seconds of its lifetime to a sum.
 class StageClock {
  public:
   explicit StageClock(double& sum) : sum_(sum) {}

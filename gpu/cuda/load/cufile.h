@@ -1,5 +1,5 @@
-// What weir uses of NVIDIA's cuFile library, declared as in its documentation ("cuFile API Reference Guide"), because
-// neither the library nor its header need be there where weir is built.
+// The part of NVIDIA's cuFile library that weir uses, declared as in its documentation ("cuFile API Reference
+// Guide"). weir builds without the library and its header.
 #pragma once
 
 #include <sys/types.h>
@@ -12,7 +12,7 @@ namespace weir::cufile {
 
 struct Status {
   int code;       ///< CUfileOpError, 0: success
-  int cuda_code;  ///< CUresult, where code says that the CUDA driver failed
+  int cuda_code;  ///< CUresult, if `code` says that the CUDA driver failed
 };
 
 inline constexpr int kDescriptorHandle = 1;  ///< CU_FILE_HANDLE_TYPE_OPAQUE_FD
@@ -32,17 +32,18 @@ using DriverOpen = Status (*)();
 using DriverClose = Status (*)();
 using HandleRegister = Status (*)(Handle*, FileDescription*);
 using HandleDeregister = void (*)(Handle);
-/// Bytes read; -1 with errno, or less: minus a CUfileOpError.
+/// Returns the bytes read, -1 with errno set, or a smaller number: minus a CUfileOpError.
 using Read = ssize_t (*)(Handle, void* device_base, std::size_t bytes, off_t file_offset, off_t device_offset);
 
-/// Why a read at byte `at` of the file returned `got`, which is no bytes; of -1, errno says it.
+/// Returns why a read at byte `at` of the file returned `got`, which is 0 or less. For -1 the reason comes from
+/// errno.
 std::string read_failure(ssize_t got, std::uint64_t at);
 
 }  // namespace weir::cufile
 
 namespace weir {
 
-/// The library's functions and, where it is `opened`, its driver.
+/// The library's functions. The destructor closes the library's driver if `opened` is set.
 struct CuFile {
   CuFile() = default;
   ~CuFile() {

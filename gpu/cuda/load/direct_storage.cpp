@@ -19,7 +19,7 @@
 namespace weir {
 namespace {
 
-// Ends the reads of all threads.
+// Thrown to end the reads of all threads.
 class ReadRefused : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -30,7 +30,7 @@ std::string status_text(const cufile::Status& status) {
                                : cat("cuFile error ", status.code, ", CUDA driver error ", status.cuda_code);
 }
 
-// The file once more, for reads past the page cache; the same file, whatever has its path now.
+// Opens the file again for reads past the page cache. It is the same file even if its path names another one now.
 Descriptor open_direct(const FileMapping& file) {
   const std::string path = cat("/proc/self/fd/", file.descriptor());
   return Descriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_DIRECT));
@@ -70,7 +70,7 @@ std::string cufile::read_failure(ssize_t got, std::uint64_t at) {
 bool DirectStorage::offered() { return ::access("/proc/driver/nvidia-fs/version", F_OK) == 0; }
 
 std::optional<DirectStorage> DirectStorage::open(std::string& refusal) {
-  // Never unloaded: it has threads of its own.
+  // The library is never unloaded, because it has its own threads.
   void* const library = ::dlopen("libcufile.so.0", RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
   if (library == nullptr) {
     const char* const reason = ::dlerror();

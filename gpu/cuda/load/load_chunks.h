@@ -6,7 +6,7 @@
 
 namespace weir {
 
-/// Pages [begin, end) of the mapping, of which bytes [copy_begin, copy_end) are wanted; all are bytes from the
+/// Pages [begin, end) of the mapping. Bytes [copy_begin, copy_end) of them are copied. All are bytes from the
 /// mapping's start.
 struct LoadChunk {
   std::uint64_t begin = 0;
@@ -17,9 +17,9 @@ struct LoadChunk {
   friend bool operator==(const LoadChunk&, const LoadChunk&) = default;
 };
 
-/// Covers bytes [offset, offset + bytes) with chunks of whole pages that share none. The first ones are short
-/// (an eighth of `chunk_bytes`, then twice the last), so that the first copy starts early; the others have
-/// `chunk_bytes` rounded up to pages. Empty where `bytes` is 0. `page` is a power of two.
+/// Covers bytes [offset, offset + bytes) with chunks of whole pages that share no page. The first chunk has an eighth
+/// of `chunk_bytes`, and each next one twice the size of the last, so that the first copy starts early. The others
+/// have `chunk_bytes` rounded up to pages. Returns nothing if `bytes` is 0. `page` is a power of two.
 std::vector<LoadChunk> plan_load_chunks(std::uint64_t offset, std::uint64_t bytes, std::uint64_t page,
                                         std::uint64_t chunk_bytes);
 

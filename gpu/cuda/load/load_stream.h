@@ -1,4 +1,4 @@
-// The stream of one load, which runs after the work queued in another stream.
+// The stream of one load. It starts after the work that is queued in another stream.
 #pragma once
 
 #include "gpu/cuda/runtime/caller_stream.h"
@@ -6,7 +6,7 @@
 
 namespace weir {
 
-/// A stream of its own, since the default stream may be another one in each of the threads that share a load.
+/// A separate stream, because the default stream may be a different one in each thread that shares a load.
 class LoadStream {
  public:
   explicit LoadStream(cudaStream_t behind) {

@@ -13,7 +13,7 @@
 namespace weir {
 namespace {
 
-constexpr std::uint64_t kReadAhead = 128ULL << 20U;  // bytes asked from the disk before a piece is read
+constexpr std::uint64_t kReadAhead = 128ULL << 20U;  // bytes requested from the disk before a piece is read
 
 }  // namespace
 
@@ -31,7 +31,7 @@ void for_each_piece(const CopyTask& task, std::uint64_t piece_bytes, int threads
   };
   const auto run = [&](int thread) {
     try {
-      if (thread > 0) context.enter();  // the caller is in it
+      if (thread > 0) context.enter();  // the caller's thread is in the context already
       for (std::uint64_t k = next++; k < pieces; k = next++) {
         task.check_cancelled();
         prefetch(k * piece_bytes + kReadAhead, piece_bytes);
@@ -50,7 +50,7 @@ void for_each_piece(const CopyTask& task, std::uint64_t piece_bytes, int threads
       others.emplace_back(run, thread);
     }
   } catch (const std::system_error&) {
-    // Fewer threads do the same.
+    // Fewer threads read the same pieces.
   }
   run(0);
   for (std::thread& thread : others) thread.join();

@@ -11,14 +11,14 @@ namespace weir {
 
 class PinnedMemory {
  public:
-  /// Nothing, with the reason in `refusal`, where the system has none to lock. Throws Error(io) for other failures,
-  /// those of earlier work among them.
+  /// Returns nothing, with the reason in `refusal`, if the system cannot lock the memory. Throws Error(io) for other
+  /// failures, including failures of earlier work.
   static std::optional<PinnedMemory> make(std::uint64_t bytes, std::string& refusal);
 
   std::byte* data() const { return memory_.get(); }
-  /// It is not freed: a device that was reset has none.
+  /// Gives the memory up without freeing it, because a device that was reset has already lost it.
   void forget() { static_cast<void>(memory_.release()); }
-  /// Where the device sees it. Throws Error(io).
+  /// Returns the device's address of the memory. Throws Error(io).
   const std::byte* device_address() const;
 
  private:

@@ -11,19 +11,19 @@
 
 namespace weir {
 
-/// Buffers of `piece_bytes`, two a thread: one is filled while the other copies. Locking memory takes longer than
-/// reading it, so keep the ring for the next load. One load at a time.
+/// Two buffers of `piece_bytes` per thread: one is filled while the other copies. Locking memory takes longer than
+/// reading it, so keep the ring for the next load. It serves one load at a time.
 class PinnedRing {
  public:
   static constexpr std::uint64_t kPieceBytes = 4ULL << 20U;
   static constexpr int kThreads = 8;
 
-  /// As PinnedMemory::make.
+  /// Returns nothing, or throws, as PinnedMemory::make does.
   static std::optional<PinnedRing> make(std::uint64_t piece_bytes, int threads, std::string& refusal);
 
   std::uint64_t piece_bytes() const { return piece_bytes_; }
-  /// Every thread takes the next piece of the file, reads it by pread and queues its copy. Returns when all is
-  /// there; nothing copies then, nor after a throw. Throws Error(input, io, interrupted).
+  /// Each thread takes the next piece of the file, reads it by pread and queues its copy. Returns when all is copied.
+  /// No copy runs after the return or after a throw. Throws Error(input, io, interrupted).
   LoadStages copy(const CopyTask& task);
 
  private:

@@ -25,8 +25,8 @@
 namespace weir {
 namespace {
 
-constexpr std::size_t kChunksBeyondThreads = 3;  // copied, unlocked, waiting to be copied
-constexpr std::size_t kRegisterAhead = 4;        // chunks asked from the disk before one is prepared
+constexpr std::size_t kChunksBeyondThreads = 3;  // one copies, one is unlocked, one waits for its copy
+constexpr std::size_t kRegisterAhead = 4;        // chunks requested from the disk before a chunk is prepared
 
 class Pipeline {
  public:
@@ -54,7 +54,7 @@ class Pipeline {
     stages_.copy_wait_s = copy_wait_s;
     stages_.drain_s = drain_s;
     if (!stopped_) return {"", stages_};
-    // What still copies must end before its pages are unlocked; a failure of the device is known already.
+    // Running copies must end before their pages are unlocked. A failure of the device has been reported already.
     if (cudaStreamSynchronize(task_.stream) != cudaSuccess) cudaGetLastError();
     copying_.clear();
     locked_.clear();
@@ -72,7 +72,7 @@ class Pipeline {
     CopyEvent done;
   };
 
-  // Fewer threads that prepare do the same; without one of each kind, another way may work.
+  // Fewer preparing threads do the same work. Without one thread of each kind, another way may work.
   void begin(std::vector<std::thread>& threads) {
     try {
       threads.emplace_back([this] { run_stage(&Pipeline::retire); });
@@ -91,7 +91,7 @@ class Pipeline {
     }
   }
 
-  // The first that stops the pipeline says why.
+  // The first caller that stops the pipeline gives the reason.
   template <class Reason>
   void stop(Reason give_reason) {
     const std::lock_guard lock(mutex_);
@@ -133,7 +133,7 @@ class Pipeline {
     stages_.register_s += mine.register_s;
   }
 
-  // The next chunk to prepare, as soon as one more may be locked.
+  // Claims the next chunk to prepare, as soon as one more may be locked.
   std::optional<std::size_t> claim() {
     std::unique_lock lock(mutex_);
     const auto all_claimed = [this] { return stopped_ || claimed_ == chunks_.size(); };
@@ -142,7 +142,7 @@ class Pipeline {
     return claimed_++;
   }
 
-  // Queues every copy; returns the seconds it waited for chunks.
+  // Queues every copy. Returns the seconds that it waited for chunks.
   double copy() {
     double waited_s = 0;
     for (std::size_t copied = 0; copied < chunks_.size(); ++copied) {
@@ -159,7 +159,7 @@ class Pipeline {
                                  cudaMemcpyHostToDevice, task_.stream),
                  "copying to the device");
       done.record(task_.stream);
-      // Only now: where recording fails, the pages stay locked until run() has waited for the stream.
+      // Moved only now: if recording fails, the pages stay locked until run() has waited for the stream.
       copying_.push_back({std::move(locked_.front().range), std::move(done)});
       locked_.pop_front();
       changed_.notify_all();
@@ -172,7 +172,7 @@ class Pipeline {
       std::unique_lock lock(mutex_);
       changed_.wait(lock, [this] { return stopped_ || !copying_.empty(); });
       if (stopped_) return;
-      CopyingChunk& chunk = copying_.front();  // stays where it is while others are appended
+      CopyingChunk& chunk = copying_.front();  // stays at its address while others are appended
       lock.unlock();
       chunk.done.wait();
       double unregister_s = 0;
@@ -193,7 +193,7 @@ class Pipeline {
   const std::vector<LoadChunk> chunks_;
   const std::size_t most_locked_;
 
-  std::mutex mutex_;  // guards what follows, but for the front of copying_, which is retire's
+  std::mutex mutex_;  // guards the members below, except the front of copying_, which belongs to retire()
   std::condition_variable changed_;
   std::size_t claimed_ = 0;
   std::size_t retired_ = 0;

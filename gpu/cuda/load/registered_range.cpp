@@ -18,7 +18,8 @@ bool has_attribute(cudaDeviceAttr attribute) {
   return value != 0;
 }
 
-// What says that this memory cannot be page-locked here, not that the device or earlier work failed.
+// Returns whether `code` says that this memory cannot be page-locked here, not that the device or earlier work
+// failed.
 bool is_refusal(cudaError_t code) {
   switch (code) {
     case cudaErrorNotSupported:
@@ -50,7 +51,7 @@ std::optional<RegisteredRange> RegisteredRange::make(std::span<const std::byte> 
   const std::string what = cat("registering ", format_bytes(range.size()), " of the file");
   if (is_refusal(code)) {
     cudaGetLastError();
-    // A fault of earlier work that has one of these codes too comes again, from any call.
+    // A failure of earlier work may have one of these codes too. It is reported again by any later call.
     check_cuda(cudaFree(nullptr), what);
     refusal = cat(what, ": ", cuda_text(code));
     return std::nullopt;

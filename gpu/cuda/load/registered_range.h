@@ -8,24 +8,24 @@
 
 namespace weir {
 
-/// Unlocks on destruction: no copy from it may be under way then.
+/// Unlocks the range on destruction. No copy from it may be running then.
 class RegisteredRange {
  public:
   enum class Use {
-    copied,   ///< by cudaMemcpyAsync
-    in_place  ///< read by kernels too, at device_address()
+    copied,   ///< read by cudaMemcpyAsync
+    in_place  ///< also read by kernels, at device_address()
   };
-  /// Locks `range`, whole pages that may be mapped read-only. Nothing, with the reason in `refusal`, where the system
-  /// does not lock this memory: the device or the system cannot, a limit is reached, or part of it is locked already.
-  /// Throws Error(io) for other failures, those of earlier work among them.
+  /// Locks `range`, which has whole pages that may be mapped read-only. Returns nothing, with the reason in
+  /// `refusal`, if the system does not lock this memory: the device or the system cannot, a limit is reached, or part
+  /// of it is locked already. Throws Error(io) for other failures, including failures of earlier work.
   static std::optional<RegisteredRange> make(std::span<const std::byte> range, Use use, std::string& refusal);
   ~RegisteredRange();
   RegisteredRange(RegisteredRange&& other) noexcept;
   RegisteredRange& operator=(RegisteredRange&& other) noexcept;
 
-  /// Where the device sees the range's first byte. Throws Error(io).
+  /// Returns the device's address of the range's first byte. Throws Error(io).
   const std::byte* device_address() const;
-  /// Unlocks now. Throws Error(io).
+  /// Unlocks the range now. Throws Error(io).
   void release();
 
  private:

@@ -11,7 +11,7 @@
 namespace weir {
 namespace {
 
-// Calls take(piece) for all of the range, in parallel; its seconds are added to `sum`.
+// Calls take(piece) for all of the task's range, in parallel. Adds the seconds of all calls to `sum`.
 template <class Take>
 void for_each_piece_timed(const CopyTask& task, double& sum, Take take) {
   std::mutex mutex;

@@ -12,15 +12,16 @@
 
 namespace weir {
 
-/// Page-locks the file's own pages, or copies. The mapping must outlive it.
+/// Page-locks the file's own pages, or a copy of them. The mapping must outlive the object.
 class ZeroCopyRange {
  public:
-  /// The task's range, its target unused. The pages of the file where `own_pages`, else a copy. Nothing, with the
-  /// reason in `refusal`, where the system does not lock that. Throws Error(input, io, interrupted).
+  /// Locks the task's range; the task's target is unused. Locks the pages of the file if `own_pages` is set,
+  /// otherwise a copy in page-locked memory. Returns nothing, with the reason in `refusal`, if the system does not
+  /// lock the memory. Throws Error(input, io, interrupted).
   static std::optional<ZeroCopyRange> make(const CopyTask& task, bool own_pages, std::string& refusal,
                                            LoadStages& stages);
 
-  /// The device's address of the range's first byte.
+  /// Returns the device's address of the range's first byte.
   const std::byte* data() const { return data_; }
 
  private:

@@ -12,13 +12,13 @@ namespace weir {
 namespace {
 
 constexpr std::string_view kDecoding = "decoding blocks";
-// Of those that are decoded at a time.
+// Most blocks that are decoded at a time.
 constexpr std::size_t kBatch = std::size_t{1} << 18U;
 constexpr unsigned kSortThreads = 256;
-constexpr unsigned kNarrowThreads = 768;  // more leave the cache too little for their streams
+constexpr unsigned kNarrowThreads = 768;  // more threads leave the cache too little room for their streams
 constexpr unsigned kWideThreads = 512;
 constexpr unsigned kValueThreads = 256;
-constexpr unsigned kValueGroups = 4;  // a multiprocessor
+constexpr unsigned kValueGroups = 4;  // per multiprocessor
 
 __constant__ ScanSteps scan_steps;
 __device__ BlockScan device_scan;
@@ -72,7 +72,7 @@ int attribute(cudaDeviceAttr wanted, int device) {
   return value;
 }
 
-// As many threads as the device's shared memory has room for.
+// Returns the most threads, up to `most`, that the device's shared memory has room for.
 template <class Slot, class Kernel>
 unsigned fitting_threads(Kernel kernel, unsigned most, int device) {
   const auto shared = static_cast<unsigned>(attribute(cudaDevAttrMaxSharedMemoryPerBlockOptin, device));
@@ -146,7 +146,7 @@ void BlockDecoder::decode(const BlockId* blocks, std::size_t most, const std::ui
         kDecoding,
         {groups(kWarp, processors_), narrow_threads_, stream, magnitude_bytes<std::uint16_t>(narrow_threads_)},
         take_narrow, call);
-    // A few wide blocks take nearly as long as many.
+    // A few wide blocks take nearly as long as many, so they run beside the narrow ones.
     side_.leave(stream);
     launch_kernel(
         kDecoding,

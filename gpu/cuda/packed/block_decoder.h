@@ -1,4 +1,4 @@
-// Decodes blocks of a packed grid on the device, many at a time, to the bits that the host decodes.
+// Decodes many blocks of a packed grid at a time on the device, to exactly the bits that the host decodes.
 #pragma once
 
 #include <cuda_runtime_api.h>
@@ -14,40 +14,40 @@
 
 namespace weir {
 
-/// Holds the packed data of one grid on the device that was current when it was made. One stream at a time uses it.
+/// Holds the packed data of one grid on the device that is current at construction. One stream at a time may use it.
 class BlockDecoder {
  public:
-  /// Copies all of it. Throws Error(io) where the device has no room.
+  /// Copies all data to the device. Throws Error(io) if the device has no room.
   explicit BlockDecoder(const PackedData& packed) : BlockDecoder(packed, nullptr) {}
-  /// `data` is a copy of its bytes that the device reads, up to a multiple of 16, and must outlive the object; null, or
-  /// at no multiple of 16: it copies.
+  /// `data` is a copy of the packed bytes that the device reads, rounded up to a multiple of 16. It must outlive the
+  /// object. If it is null or not at a multiple of 16, the constructor makes a copy.
   BlockDecoder(const PackedData& packed, const std::byte* data);
 
   const PackedView& view() const { return view_; }
-  /// Of device memory, beside the data.
+  /// Bytes of device memory besides the data.
   static constexpr std::uint64_t kFixedBytes = std::uint64_t{32} << 20U;
 
-  /// Decodes blocks[i] into values[512 i], i < count, in the order of a leaf (x << 6 | y << 3 | z); both
-  /// lie on the device, `values` at a multiple of 16 bytes. A block without a stream gets its region's value, one whose
-  /// directory or stream is damaged NaN. Asynchronous on `stream`.
+  /// Decodes blocks[i] into values[512 i], i < count, in the order of a leaf (x << 6 | y << 3 | z). Both arrays lie
+  /// on the device, `values` at a multiple of 16 bytes. A block without a stream gets its region's value; a block
+  /// with a damaged directory or stream gets NaN. Asynchronous on `stream`.
   void decode(const BlockId* blocks, std::size_t count, float* values, cudaStream_t stream) {
     decode(blocks, count, nullptr, values, stream);
   }
-  /// The same of min(most, *count_on_device) blocks, or `most` where that is null.
+  /// Decodes min(most, *count_on_device) blocks, or `most` if `count_on_device` is null.
   void decode(const BlockId* blocks, std::size_t most, const std::uint32_t* count_on_device, float* values,
               cudaStream_t stream);
 
-  /// What all calls have met since the last question; waits for `stream`.
+  /// What all calls since the last counts() have met.
   struct Counts {
     std::uint32_t damaged = 0;
-    std::uint32_t wide = 0;  ///< whose magnitudes have needed more than 16 bits
+    std::uint32_t wide = 0;  ///< blocks with magnitudes of more than 16 bits
   };
   Counts counts(cudaStream_t stream);
 
  private:
   DeviceArray<std::byte> data_;
   DeviceArray<std::uint16_t> frequencies_;
-  DeviceArray<unsigned char> tables_;  // of the entropy coder, as groups of threads load them
+  DeviceArray<unsigned char> tables_;  // of the entropy coder, in the layout that groups of threads load
   DeviceArray<decode_detail::BlockTask> tasks_;
   DeviceArray<std::uint32_t> order_;
   DeviceArray<std::uint32_t> overflown_;

@@ -1,8 +1,8 @@
-// How threads decode packed blocks together, in four steps, each of which begins when all threads are done with the one
-// before: look_at_blocks, order_blocks, take_magnitudes and make_values; the last two once more for the blocks whose
-// magnitudes need more than 16 bits.
+// How threads decode packed blocks together. There are four steps: look_at_blocks, order_blocks, take_magnitudes and
+// make_values. Each begins when all threads have finished the step before. The last two run once more for the blocks
+// whose magnitudes need more than 16 bits.
 //
-// For host and device: a Thread says who runs, and lets the others of its warp or group catch up.
+// For host and device: a Thread tells which thread runs, and waits for the other threads of its warp or group.
 #pragma once
 
 #include "gpu/cuda/packed/magnitude_steps.h"

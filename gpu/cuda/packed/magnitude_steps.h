@@ -1,6 +1,6 @@
-// The third step of decoding packed blocks: a thread a block takes the magnitudes out of its stream, by place, into the
-// memory of the block's values, where the next step finds them. Twice: magnitudes of 16 bits, and then those of 32 of
-// the blocks that the first pass had no room for. For host and device.
+// The third step of decoding packed blocks. One thread per block takes the magnitudes from its stream and writes
+// them, by place, to the memory of the block's values; the next step reads them there. It runs twice: for magnitudes
+// of 16 bits, and for magnitudes of 32 bits of the blocks that did not fit the first pass. For host and device.
 #pragma once
 
 #include <cstddef>
@@ -18,14 +18,14 @@ namespace weir {
 
 namespace decode_detail {
 
-// What a thread has of shared memory: its window, then its ring. An odd number of units of four bytes: no two threads
-// that look at the same slot meet in a bank.
+// A thread's shared memory: its window, then its ring. The window has an odd number of 4-byte units, so that threads
+// that look at the same slot use different banks.
 template <class Slot>
 inline constexpr unsigned kWindowBytes = ((kScanSteps.slots * static_cast<unsigned>(sizeof(Slot)) + 3) / 4 | 1U) * 4;
 template <class Slot>
 inline constexpr unsigned kOwnBytes = kWindowBytes<Slot> + StreamQueue::kBytes;
 
-// The magnitudes that later places still need, from byte `own` of the shared memory on.
+// The magnitudes that later places still need. They begin at byte `own` of the shared memory.
 template <class Slot>
 class Window {
  public:
@@ -55,17 +55,17 @@ class Window {
   unsigned own_;
 };
 
-// Interleaved coders, and what they read.
+// Interleaved coders, and the words that they read.
 struct Coders {
   std::uint32_t first = kLeastState;
   std::uint32_t second = kLeastState;
   StreamQueue words;
 };
 
-// What decoding magnitudes counts. Where `over` is not zero, one had more bits than a Slot.
+// Counts of decoded magnitudes. If `over` is not zero, a magnitude had more bits than a Slot.
 struct Counted {
   std::uint32_t nonzero = 0;
-  std::uint32_t half = 0;  // of them before place 256
+  std::uint32_t half = 0;  // nonzero magnitudes before place 256
   std::uint32_t over = 0;
 };
 
@@ -94,7 +94,8 @@ WEIR_HOST_DEVICE inline std::uint32_t decode_place(const ScanStep& step, const S
   return m;
 }
 
-// decode_magnitudes() of tests/format/packed/plain_decode.h: those of a run after the other into `out`.
+// Decodes magnitudes as decode_magnitudes() of tests/format/packed/plain_decode.h does. Writes one run of them after
+// the other to `out`.
 template <class Slot>
 WEIR_HOST_DEVICE inline Counted decode_magnitudes(const ScanSteps& steps, const SharedTables& tables, bool residual,
                                                   unsigned end, Coders& coders, Window<Slot> window, Quad* out,
@@ -135,7 +136,8 @@ WEIR_HOST_DEVICE inline Counted decode_magnitudes(const ScanSteps& steps, const 
 
 enum class Outcome : std::uint8_t { decoded, wide, damaged };
 
-// decode_transform() and decode_lattice() of block_decode.cpp up to the magnitudes and what follows them.
+// Does what decode_transform() and decode_lattice() of block_decode.cpp do up to the magnitudes, and the checks after
+// them.
 template <class Slot>
 WEIR_HOST_DEVICE Outcome decode_stream(const DecodeCall& call, const FoundStream& found, const ScanSteps& steps,
                                        const SharedTables& tables, unsigned char* shared, unsigned own, Quad* out,
@@ -218,13 +220,13 @@ WEIR_HOST_DEVICE inline PassBlocks wide_blocks(const DecodeCall& call) {
 
 }  // namespace decode_detail
 
-/// Of a group's shared memory, at a multiple of 16.
+/// Returns the bytes of a group's shared memory, which lies at a multiple of 16.
 template <class Slot>
 WEIR_HOST_DEVICE constexpr unsigned magnitude_bytes(unsigned threads) {
   return decode_detail::SharedTables::kBytes + threads * decode_detail::kOwnBytes<Slot>;
 }
 
-/// What each thread of a group does; Slot is std::uint16_t in the narrow pass, std::uint32_t in the wide one.
+/// Runs in each thread of a group. Slot is std::uint16_t in the narrow pass and std::uint32_t in the wide pass.
 template <class Slot, class Thread>
 WEIR_HOST_DEVICE void take_magnitudes(const Thread& thread, const DecodeCall& call, const ScanSteps& steps,
                                       unsigned char* shared) {

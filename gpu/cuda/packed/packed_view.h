@@ -1,5 +1,5 @@
 // The packed data of a grid in device memory, as kernels see it (FORMAT.md, "Packed data"). A look-up checks what it
-// reads, as format/nanovdb/packed_chunk.h does for readers of files. For host and device.
+// reads, as format/nanovdb/packed_chunk.h does for file readers. For host and device.
 #pragma once
 
 #include <cstddef>
@@ -13,25 +13,25 @@
 namespace weir {
 
 struct PackedView {
-  const std::byte* data = nullptr;  ///< at a multiple of 16; may be read up to one
+  const std::byte* data = nullptr;  ///< at a multiple of 16; readable up to the next multiple of 16
   std::uint64_t bytes = 0;
   std::uint64_t table = 0;    ///< offset of the region table
-  std::uint64_t regions = 0;  ///< of its entries, x fastest
-  BlockConstants constants;   ///< its tables lie on the device
+  std::uint64_t regions = 0;  ///< number of entries of the region table, x fastest
+  BlockConstants constants;   ///< with tables on the device
 };
 
-/// What a block's look-up finds.
+/// The result of looking up a block.
 struct FoundStream {
-  const std::byte* data = nullptr;  ///< null: none
+  const std::byte* data = nullptr;  ///< null: the block has no stream
   std::uint32_t bytes = 0;
   MeanRange means;
-  float value = 0;  ///< of a block without a stream
+  float value = 0;  ///< value of a block without a stream
   bool damaged = false;
 };
 
 namespace packed_detail {
 
-// Of any alignment.
+// `at` may have any alignment.
 WEIR_HOST_DEVICE inline std::uint32_t load_u16(const std::byte* at) {
   return static_cast<std::uint32_t>(at[0]) | static_cast<std::uint32_t>(at[1]) << 8U;
 }

@@ -1,5 +1,5 @@
-// The scan as a thread follows it that keeps only those magnitudes that later places still need, in a window of slots.
-// Made at compile time; a kernel gets a copy.
+// The scan for a thread that keeps only the magnitudes that later places still need, in a window of slots. Made at
+// compile time; each kernel gets a copy.
 #pragma once
 
 #include <cstdint>
@@ -12,15 +12,15 @@ namespace weir {
 /// Buckets of a context's symbols, by the upper bits of a state's slot.
 inline constexpr unsigned kSymbolBuckets = 256;
 
-/// Of a place; slots are counted by two bytes.
+/// The step of one place. Slots are counted in units of two bytes.
 struct alignas(8) ScanStep {
-  std::uint32_t slots = 0;  ///< a byte each: of three neighbours, slot 0 where there is none; of the place itself
-  std::uint32_t rule = 0;   ///< what the neighbours' sum is multiplied by | kSymbolBuckets * first context << 16
+  std::uint32_t slots = 0;  ///< one byte each: slots of three neighbours (0: no neighbour), then of the place itself
+  std::uint32_t rule = 0;   ///< factor of the neighbours' sum | kSymbolBuckets * first context << 16
 };
 
 struct ScanSteps {
   ScanStep of[512] = {};
-  unsigned slots = 0;  ///< that the window has; slot 0 holds zero
+  unsigned slots = 0;  ///< number of the window's slots; slot 0 holds zero
 };
 
 namespace decode_detail {
@@ -34,7 +34,7 @@ constexpr ScanSteps make_scan_steps() {
     }
   }
   unsigned slot_of[512] = {};
-  unsigned free_from[512] = {};  // by slot: the place that may overwrite it
+  unsigned free_from[512] = {};  // by slot: the first place that may overwrite it
   for (unsigned place = 1; place < 512; ++place) {
     ScanStep& step = steps.of[place];
     for (unsigned n = 0; n < 3; ++n) {

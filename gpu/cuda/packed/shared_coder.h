@@ -13,10 +13,10 @@ namespace weir::decode_detail {
 
 inline constexpr unsigned kBucketShift = kFrequencyBits - 8;
 static_assert(kSymbolBuckets << kBucketShift == 1U << kFrequencyBits);
-// Of the residuals of lattice blocks, in buckets.
+// Contexts of the residuals of lattice blocks, counted in buckets.
 inline constexpr unsigned kResidualContexts = kPackedLevels * kPackedBands * kSymbolBuckets;
 
-// The tables of the entropy coder, in shared memory or on their way there.
+// The tables of the entropy coder, in shared memory or in the layout that is copied there.
 class SharedTables {
  public:
   static constexpr unsigned kSymbolBytes = kPackedTables * kPackedSymbols * 4;
@@ -28,7 +28,7 @@ class SharedTables {
   WEIR_HOST_DEVICE explicit SharedTables(unsigned char* shared)
       : symbols_(shared), buckets_(shared + kSymbolBytes), levels_(shared + kSymbolBytes + kBucketBytes) {}
 
-  /// Makes them.
+  /// Makes the tables.
   template <class Thread>
   WEIR_HOST_DEVICE void fill(const Thread& thread, const BlockScan& scan, const std::uint16_t* tables) {
     for (unsigned i = thread.index(); i < kPackedTables * kPackedSymbols; i += thread.count()) {
@@ -39,13 +39,13 @@ class SharedTables {
       buckets_[i] = bucket(tables + i / kSymbolBuckets * kPackedSymbols, (i % kSymbolBuckets) << kBucketShift);
     }
     for (unsigned t = thread.index(); t < kLevelBytes / 2;
-         t += thread.count()) {  // load() copies what lies behind, too
+         t += thread.count()) {  // load() copies the bytes behind the levels, too
       const unsigned level = t < kLevelSums ? scan.level[t] * kSymbolBuckets | extra_bits(t) : 0;
       reinterpret_cast<std::uint16_t*>(levels_)[t] = static_cast<std::uint16_t>(level);
     }
   }
 
-  /// Copies them.
+  /// Copies the tables.
   template <class Thread>
   WEIR_HOST_DEVICE void load(const Thread& thread, const unsigned char* from) {
     for (unsigned i = thread.index(); i < kBytes / sizeof(Quad); i += thread.count()) {
@@ -53,12 +53,13 @@ class SharedTables {
     }
   }
 
-  /// Level of neighbours whose sum is t, times kSymbolBuckets | extra_bits(t) where that sum is below kLevelSums.
+  /// Returns the level of neighbours whose sum is `t`, times kSymbolBuckets | extra_bits(t). The extra bits are right
+  /// only if `t` is below kLevelSums.
   WEIR_HOST_DEVICE std::uint32_t level(std::uint32_t t) const {
     return reinterpret_cast<const std::uint16_t*>(levels_)[t < kLevelSums ? t : kLevelSums - 1];
   }
 
-  /// `context` counts in buckets.
+  /// Decodes a symbol. `context` is counted in buckets.
   WEIR_HOST_DEVICE unsigned symbol(std::uint32_t& x, std::uint32_t context, StreamQueue& words) const {
     const std::uint32_t slot = x & ((1U << kFrequencyBits) - 1U);
     const std::uint32_t bucket = buckets_[context + (slot >> kBucketShift)];
@@ -81,7 +82,8 @@ class SharedTables {
  private:
   static_assert(kSymbolBuckets == 4 * kPackedSymbols * 4);
 
-  // Where a symbol begins inside the bucket, that symbol << 4 | the slots before it; else the bucket's symbol << 4.
+  // If a symbol begins inside the bucket, returns that symbol << 4 | the number of slots before it. Otherwise returns
+  // the bucket's symbol << 4.
   WEIR_HOST_DEVICE static unsigned char bucket(const std::uint16_t* table, std::uint32_t first) {
     unsigned found = 0;
     for (unsigned j = 1; j < kPackedSymbols; ++j) found += table[j] <= first ? 1U : 0U;

@@ -1,4 +1,4 @@
-// A stream for work beside another stream's.
+// A stream for work that runs beside another stream's.
 #pragma once
 
 #include <cuda_runtime_api.h>
@@ -12,7 +12,7 @@ namespace weir {
 
 class SideStream {
  public:
-  SideStream() : SideStream(nullptr) {  // which is destroyed where the rest throws
+  SideStream() : SideStream(nullptr) {  // the delegated-to object is destroyed if the rest throws
     check_cuda(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "making a stream");
     check_cuda(cudaEventCreateWithFlags(&begin_, cudaEventDisableTiming), "making an event");
     check_cuda(cudaEventCreateWithFlags(&end_, cudaEventDisableTiming), "making an event");
@@ -34,9 +34,9 @@ class SideStream {
   }
 
   cudaStream_t get() const { return stream_; }
-  /// What it is given from now on waits for what `other` was given so far.
+  /// Makes later work of this stream wait for the work that `other` has so far.
   void leave(cudaStream_t other) const { order(other, begin_, stream_); }
-  /// And what `other` is given from now on waits for what this one was given so far.
+  /// Makes later work of `other` wait for the work that this stream has so far.
   void join(cudaStream_t other) const { order(stream_, end_, other); }
 
  private:

@@ -1,5 +1,5 @@
-// The first steps of decoding packed blocks: what kind each one is, and an order in which threads side by side have
-// streams alike. For host and device.
+// The first two steps of decoding packed blocks: find the kind of each block, and an order that gives neighbouring
+// threads similar streams. For host and device.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace weir {
 
 namespace decode_detail {
 
-// A block that is not coded gets its task; false where its stream is damaged.
+// Fills the task of a block, completely if the block is not coded. Returns false if its stream is damaged.
 WEIR_HOST_DEVICE inline bool look_at_block(const PackedView& view, const FoundStream& found, TaskHead& task) {
   using namespace packed_detail;
   task.kind = TaskKind::fill;
@@ -55,7 +55,7 @@ WEIR_HOST_DEVICE inline bool look_at_block(const PackedView& view, const FoundSt
 
 }  // namespace decode_detail
 
-/// The first step: fills tasks and counts bins. `shared` has kBins.
+/// The first step: fills the tasks and counts the bins. `shared` has kBins elements.
 template <class Thread>
 WEIR_HOST_DEVICE void look_at_blocks(const Thread& thread, const DecodeCall& call, std::uint32_t* shared) {
   using namespace decode_detail;
@@ -78,7 +78,7 @@ WEIR_HOST_DEVICE void look_at_blocks(const Thread& thread, const DecodeCall& cal
   }
 }
 
-/// The second step: makes the order. `shared` has 2 kBins.
+/// The second step: makes the order. `shared` has 2 kBins elements.
 template <class Thread>
 WEIR_HOST_DEVICE void order_blocks(const Thread& thread, const DecodeCall& call, std::uint32_t* shared) {
   using namespace decode_detail;

@@ -1,5 +1,5 @@
-// The words of a stream's coders as a device reads them: aligned, ahead of their use, without a test a word whether
-// there is one. For host and device.
+// The words of a stream's coders as a device reads them: aligned, ahead of their use, and without testing for each
+// word whether it exists. For host and device.
 #pragma once
 
 #include <cstddef>
@@ -14,16 +14,17 @@ struct alignas(16) Quad {
   std::uint32_t of[4];
 };
 
-/// Does what StreamWords does, by way of a ring of the next words in shared memory, which chunks of 16 bytes are loaded
-/// into long before they are used. Where words are missing it goes on with others, and `at` ends up before the front.
+/// Does what StreamWords does, with a ring of the next words in shared memory. Chunks of 16 bytes are loaded into the
+/// ring long before they are used. If words are missing, it continues with other bytes, and `at` ends up before the
+/// front.
 class StreamQueue {
  public:
   static constexpr unsigned kRingBytes = 64;
-  static constexpr unsigned kBytes = kRingBytes + 8;  ///< and of what it keeps beside the ring
-  static constexpr std::int32_t kPlaces = 8;          ///< of a run
+  static constexpr unsigned kBytes = kRingBytes + 8;  ///< bytes of the ring and of what is kept beside it
+  static constexpr std::int32_t kPlaces = 8;          ///< places of a run
 
-  /// The words lie between `front` and `at`, which is not before it. Reads whole aligned units of 16 bytes; `ring` has
-  /// kBytes.
+  /// The words lie between `front` and `at`, which is not before `front`. Reads whole aligned units of 16 bytes.
+  /// `ring` has kBytes bytes.
   WEIR_HOST_DEVICE void start(const std::byte* front, const std::byte* at, unsigned char* ring) {
     const std::size_t past = reinterpret_cast<std::uintptr_t>(front) & 15U;
     base_ = front - past;
@@ -38,7 +39,7 @@ class StreamQueue {
     next_ = word();
   }
 
-  /// To be called before each run of eight places.
+  /// Call it before each run of eight places.
   WEIR_HOST_DEVICE void refill() {
     if (available() <= static_cast<std::int32_t>(kWords - kChunkWords)) {
       store();
@@ -46,8 +47,8 @@ class StreamQueue {
     }
     fill_up(2 * kPlaces + 1);
   }
-  /// To be called before more than two words are taken for a place: at least so many words are in the ring then. One
-  /// that is not used must be among them.
+  /// Call it before taking more than two words for a place. Afterwards at least `least` words are in the ring; they
+  /// must include one that is not used.
   WEIR_HOST_DEVICE void fill_up(std::int32_t least) {
     WEIR_NO_UNROLL
     while (available() < least) {
@@ -63,20 +64,20 @@ class StreamQueue {
       next_ = word();
     }
   }
-  /// Up to 16 bits of a state as they are.
+  /// Takes up to 16 raw bits of a state.
   WEIR_HOST_DEVICE std::uint32_t take(std::uint32_t& x, unsigned bits) {
     const std::uint32_t value = x & ((1U << bits) - 1U);
     x >>= bits;
     renormalise(x);
     return value;
   }
-  /// Up to 32 bits.
+  /// Takes up to 32 raw bits.
   WEIR_HOST_DEVICE std::uint32_t bypass(std::uint32_t& x, unsigned bits) {
     const unsigned first = bits < 16 ? bits : 16;
     const std::uint32_t value = take(x, first);
     return value | take(x, bits - first) << 16U;
   }
-  /// End of what is left.
+  /// Returns the end of the words that are left.
   WEIR_HOST_DEVICE const std::byte* at() const {
     return base_ + (2 * (static_cast<std::ptrdiff_t>(word_) + 1) + static_cast<std::ptrdiff_t>(odd_));
   }
@@ -101,7 +102,7 @@ class StreamQueue {
     loaded_ = reinterpret_cast<const Quad*>(base_)[chunk_];
 #endif
   }
-  // The chunk that load() has loaded.
+  // Puts the chunk that load() has loaded into the ring.
   WEIR_HOST_DEVICE void store() {
     auto* to = reinterpret_cast<std::uint32_t*>(ring_) + 4 * (static_cast<unsigned>(chunk_) % (kWords / kChunkWords));
     const unsigned bits = 8 * odd_;
@@ -111,10 +112,10 @@ class StreamQueue {
     to[3] = joined(loaded_.of[3], carry(), bits);
     carry() = loaded_.of[0];
   }
-  // First bytes of the chunk that was stored last. Not in a register, which a compiler may copy what is being loaded
-  // to.
+  // Returns the first bytes of the chunk that was stored last. They are in memory and not in a register, because a
+  // compiler might copy data that is still being loaded to a register.
   WEIR_HOST_DEVICE std::uint32_t& carry() const { return *reinterpret_cast<std::uint32_t*>(ring_ + kRingBytes); }
-  // The 32 bits above the first `bits` < 32.
+  // Returns the 32 bits above the first `bits` < 32.
   WEIR_HOST_DEVICE static std::uint32_t joined(std::uint32_t low, std::uint32_t high, unsigned bits) {
 #if defined(__CUDA_ARCH__)
     return __funnelshift_r(low, high, bits);
@@ -125,8 +126,8 @@ class StreamQueue {
 
   const std::byte* base_ = nullptr;  // at a multiple of 16
   unsigned char* ring_ = nullptr;
-  std::int32_t word_ = 0;   // next one from base_ + odd_
-  std::int32_t chunk_ = 0;  // that is loaded, but not in the ring yet
+  std::int32_t word_ = 0;   // next word, counted from base_ + odd_
+  std::int32_t chunk_ = 0;  // chunk that is loaded, but not in the ring yet
   std::uint32_t next_ = 0;
   unsigned odd_ = 0;
   Quad loaded_{};

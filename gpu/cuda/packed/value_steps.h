@@ -1,5 +1,5 @@
-// The fourth step of decoding packed blocks: a warp a block makes values of the magnitudes that the third step has
-// left in their place. For host and device.
+// The fourth step of decoding packed blocks: one warp per block makes values from the magnitudes that the third step
+// has left in the memory of the values. For host and device.
 #pragma once
 
 #include <cstddef>
@@ -12,13 +12,14 @@
 
 namespace weir {
 
-/// Voxels by the sum of their coordinates: where they lie on a stage.
+/// Voxels ordered by the sum of their coordinates, as positions on a stage.
 struct Diagonals {
   std::uint16_t voxel[512] = {};
-  std::uint16_t first[23] = {};  ///< of a sum
+  std::uint16_t first[23] = {};  ///< of each sum
 };
 
-/// What a warp has of shared memory: lines of eight along z, each followed by a gap: no two lanes meet in a bank.
+/// Words of a warp's shared memory: lines of eight along z, each followed by a gap, so that no two lanes use the same
+/// bank.
 inline constexpr unsigned kStageWords = 576;
 
 namespace decode_detail {
@@ -41,7 +42,7 @@ constexpr Diagonals make_diagonals() {
   return made;
 }
 
-// Where a lane's coefficients or residuals go: those of two runs.
+// The stage positions of a lane's coefficients or residuals, which are those of two runs.
 struct LanePlaces {
   std::uint16_t of[2][kRun];
 };
@@ -61,7 +62,7 @@ struct alignas(16) Run {
   Slot of[kRun];
 };
 
-// The signs of a run's nonzero magnitudes, the first one lowest.
+// Returns the signs of a run's nonzero magnitudes; the first one is the lowest bit.
 WEIR_HOST_DEVICE inline std::uint32_t signs_from(const BlockTask& task, std::uint32_t seen) {
   if (seen >= task.early) return task.payload >> ((seen - task.early) & 31U);
   const std::uint32_t bit = task.first_sign + seen;
@@ -73,7 +74,7 @@ WEIR_HOST_DEVICE inline std::uint32_t signs_from(const BlockTask& task, std::uin
   return rest < kRun ? (signs & ((1U << rest) - 1U)) | task.payload << rest : signs;
 }
 
-// put(stage, magnitude, negative) for each of a lane's places.
+// Calls put(stage, magnitude, negative) for each of a lane's places.
 template <class Slot, class Put>
 WEIR_HOST_DEVICE void for_lane_places(const BlockTask& task, const LanePlaces& places, unsigned lane,
                                       const float* values, const Put& put) {
@@ -107,7 +108,7 @@ WEIR_HOST_DEVICE void for_lane_places(const BlockTask& task, const LanePlaces& p
   }
 }
 
-// work(line) on each of a lane's lines along z, y or x: two each.
+// Calls work(line) for each of a lane's lines along z, y or x: two lines per lane.
 template <unsigned kAxis, class T, class Work>
 WEIR_HOST_DEVICE void for_lane_lines(T* stage, unsigned lane, const Work& work) {
   constexpr unsigned kStride = kAxis == 0 ? kStageX : kAxis == 1 ? kStageY : 1;
@@ -154,7 +155,7 @@ WEIR_HOST_DEVICE void transform_block(const Thread& thread, const BlockConstants
   thread.meet_warp();
 }
 
-// undo_prediction() of lattice_codes.h by a warp, diagonal after diagonal. False where a code is too large.
+// undo_prediction() of lattice_codes.h by a warp, one diagonal after the other. Returns false if a code is too large.
 template <class Sum, class Thread>
 WEIR_HOST_DEVICE bool undo_by_diagonals(const Thread& thread, const Diagonals& diagonals, unsigned predictor,
                                         bool ordered, std::uint32_t* codes) {
@@ -245,7 +246,7 @@ WEIR_HOST_DEVICE inline void copy_raw_block(unsigned lane, const std::byte* byte
   }
 }
 
-// Values of a block of the pass.
+// Makes the values of a block of the pass.
 template <class Slot, class Thread>
 WEIR_HOST_DEVICE void value_block(const Thread& thread, const DecodeCall& call, std::uint32_t i,
                                   const LanePlaces& places, const Diagonals& diagonals, void* stage) {
@@ -273,7 +274,7 @@ WEIR_HOST_DEVICE void value_block(const Thread& thread, const DecodeCall& call, 
 
 inline constexpr Diagonals kDiagonals = decode_detail::make_diagonals();
 
-/// What each thread of a group does; `stage` is the warp's own memory, at a multiple of 4.
+/// Runs in each thread of a group. `stage` is the warp's own memory, at a multiple of 4.
 template <class Slot, class Thread>
 WEIR_HOST_DEVICE void make_values(const Thread& thread, const DecodeCall& call, const BlockScan& scan,
                                   const Diagonals& diagonals, void* stage) {
@@ -286,7 +287,7 @@ WEIR_HOST_DEVICE void make_values(const Thread& thread, const DecodeCall& call, 
   const std::uint32_t warp = thread.index() / kWarp * thread.groups() + thread.group();
   const std::uint32_t warps = thread.count() / kWarp * thread.groups();
   const std::uint32_t coded = kWide ? pass.count : call.counts->coded;
-  // The next block's memory is fetched while this one's values are made.
+  // Fetches the next block's memory while this block's values are made.
   std::uint32_t i = warp < pass.count ? pass.at(warp) : 0;
   std::uint32_t next = warp + warps < pass.count ? pass.at(warp + warps) : 0;
   for (std::uint32_t n = warp; n < pass.count; n += warps) {

@@ -1,4 +1,4 @@
-// A stream of lower priority than the caller's kernels.
+// A stream with a lower priority than the caller's kernels.
 #pragma once
 
 #include "gpu/cuda/runtime/check.h"
@@ -7,7 +7,7 @@ namespace weir {
 
 class BackgroundStream {
  public:
-  /// On the current device. Throws Error(io).
+  /// Makes the stream on the current device. Throws Error(io).
   BackgroundStream() {
     int least = 0;
     int greatest = 0;

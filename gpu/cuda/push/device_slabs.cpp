@@ -47,7 +47,7 @@ void DeviceSlabs::make_slots(std::uint64_t device_bytes) {
     throw Error(ErrorKind::usage, cat("the device memory for slabs is ", device_bytes, " bytes, and a plane has ",
                                       plane_bytes_, "; give as much or more, or 0 for none"));
   }
-  // Two pieces at least, where they fit: one is filled while the other is emptied.
+  // Aims at two pieces or more if they fit: one is filled while the other is emptied.
   const std::uint64_t most = device_bytes > 0 ? std::min(kPieceBytes, device_bytes / 2) : kPieceBytes;
   piece_planes_ = std::clamp<std::int64_t>(static_cast<std::int64_t>(most / plane_bytes_), 1, extent_.z);
   const std::uint64_t piece_bytes = static_cast<std::uint64_t>(piece_planes_) * plane_bytes_;
@@ -67,7 +67,7 @@ void DeviceSlabs::make_slots(std::uint64_t device_bytes) {
     staged_ = DeviceArray<std::byte>(count * piece_bytes);
     stream_.emplace();
   }
-  // Written by the device, whichever it is.
+  // Addresses as the device sees them, because the device writes the slots.
   std::byte* const first = device_bytes > 0 ? staged_.data() : const_cast<std::byte*>(pinned_->device_address());
   for (std::size_t i = 0; i < count; ++i) {
     slots_.push_back({first + i * piece_bytes, CopyEvent()});
@@ -141,7 +141,7 @@ void DeviceSlabs::work() {
   }
 }
 
-// After a failure, too, its copy must have ended before the slot is used again or freed.
+// Waits for the piece's copy even after a failure: it must end before the slot is used again or freed.
 void DeviceSlabs::hand_over(const Piece& piece) {
   const Slot& slot = slots_[piece.slot];
   slot.filled.wait(kCopying);

@@ -1,9 +1,9 @@
-// Slabs of a volume out of the memory of a device, behind the caller's back: each slab is cut into pieces of whole
-// planes, which are copied in the caller's stream into slots; a thread waits for the copies and hands the values over.
+// Takes slabs of a volume from the memory of a device while the caller goes on. Each slab is cut into pieces of whole
+// planes, which are copied in the caller's stream into slots. A thread waits for the copies and hands the values
+// over.
 //
-// A slot is page-locked host memory, or, where device memory was granted, memory
-// of the device: there a slab waits at the device's own speed, and crosses the
-// bus in a stream of lower priority while the caller's stream goes on.
+// A slot is page-locked host memory, or device memory if the caller granted it. In device memory a slab is copied at
+// the device's own speed, and crosses the bus in a stream of lower priority while the caller's stream goes on.
 #pragma once
 
 #include <condition_variable>
@@ -29,37 +29,39 @@ namespace weir {
 
 class DeviceSlabs {
  public:
-  /// Takes planes [z0, z0 + nz), x fastest, without gaps. Called by one thread, whose exception ends the object's work.
+  /// Receives planes [z0, z0 + nz), x fastest, without gaps. Called by one thread. Its exception ends the object's
+  /// work.
   using Arrived = std::function<void(std::int64_t z0, std::int64_t nz, const std::byte* values)>;
 
-  /// A piece, of one plane at least, aims at so many bytes.
+  /// A piece has at least one plane and aims at this many bytes.
   static constexpr std::uint64_t kPieceBytes = 8ULL << 20U;
-  /// Slots of page-locked memory; two where a plane is larger than kPieceBytes.
+  /// Number of slots of page-locked memory; two if a plane is larger than kPieceBytes.
   static constexpr std::size_t kPinnedSlots = 4;
 
-  /// For slabs of a volume of `extent` voxels on the current device, in the calling thread's context. `device_bytes`
-  /// may be taken there, 0 for none; page-locked memory is kPinnedSlots pieces without it, and one piece with it.
-  /// Throws Error(usage) where it holds no plane, and Error(io) where there is no room.
+  /// For slabs of a volume of `extent` voxels on the current device, in the calling thread's context. At most
+  /// `device_bytes` (0: none) are taken there. Page-locked memory is kPinnedSlots pieces without device memory, and
+  /// one piece with it. Throws Error(usage) if `device_bytes` holds no plane, and Error(io) if there is no room.
   DeviceSlabs(const Index3& extent, std::size_t value_bytes, std::uint64_t device_bytes, Arrived arrived);
-  /// Waits for copies in progress; what arrives then is not handed over.
+  /// Waits for copies in progress. Values that arrive then are not handed over.
   ~DeviceSlabs();
   DeviceSlabs(const DeviceSlabs&) = delete;
   DeviceSlabs& operator=(const DeviceSlabs&) = delete;
 
-  /// check_slab() for its device.
+  /// Runs check_slab() for this object's device.
   void check(const DeviceValues& values) const { check_slab(values, device_); }
 
   /// Queues the copy of planes [z0, z0 + nz), whose first voxel is values.first, behind the work in `stream`. Waits
-  /// while no slot is free. Work that is queued in `stream` afterwards may change the values. Any threads may call.
-  /// Throws Error(usage) as check does, Error(io) where a copy failed, and what ended the work: then and later.
+  /// while no slot is free. Work that is queued in `stream` afterwards may change the values. Any thread may call
+  /// this. Throws Error(usage) as check() does, Error(io) if a copy failed, and, now and later, the exception that
+  /// ended the work.
   void add(std::int64_t z0, std::int64_t nz, const DeviceValues& values, cudaStream_t stream);
 
-  /// Waits until all was handed over. Throws what ended the work.
+  /// Waits until everything is handed over. Throws the exception that ended the work.
   void finish();
 
  private:
   struct Slot {
-    std::byte* memory;  // as the device sees it
+    std::byte* memory;  // the address for the device
     CopyEvent filled;
   };
   struct Piece {
@@ -83,18 +85,18 @@ class DeviceSlabs {
   SharedContext context_{device_};
   std::uint64_t plane_bytes_;
   std::int64_t piece_planes_;
-  std::optional<PinnedMemory> pinned_;      // the slots, or, where they are on the device, one piece
+  std::optional<PinnedMemory> pinned_;      // the slots; if they are on the device, one piece
   DeviceArray<std::byte> staged_;           // the slots, or empty
-  std::optional<BackgroundStream> stream_;  // out of them
+  std::optional<BackgroundStream> stream_;  // copies pieces from slots on the device
   std::vector<Slot> slots_;
 
-  std::mutex mutex_;  // of all that follows
+  std::mutex mutex_;  // guards all members below
   std::condition_variable changed_;
   std::vector<std::size_t> free_;
-  std::deque<Piece> pieces_;  // queued; the first is being handed over
+  std::deque<Piece> pieces_;  // queued; the first piece is being handed over
   std::optional<Error> failure_;
   bool stopping_ = false;
-  std::jthread worker_;  // last: it uses all of the above
+  std::jthread worker_;  // last member, because it uses all of the above
 };
 
 }  // namespace weir

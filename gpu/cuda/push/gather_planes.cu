@@ -11,7 +11,7 @@ struct Strides {
   std::int64_t x, y, z;  // in values
 };
 
-// Neighbouring threads write neighbouring values: over the bus, whole lines.
+// Neighbouring threads write neighbouring values, so that whole lines cross the bus.
 template <typename Word>
 __global__ void gather(const Word* first, Strides stride, std::int64_t columns, std::int64_t rows, std::int64_t values,
                        Word* to) {
@@ -28,7 +28,7 @@ __global__ void gather(const Word* first, Strides stride, std::int64_t columns, 
 template <typename Word>
 void gather_words(const DeviceValues& from, const Index3& extent, std::byte* to, cudaStream_t stream) {
   constexpr int kThreads = 256;
-  constexpr std::int64_t kMostBlocks = 2048;  // so many fill every device; each of their threads takes several values
+  constexpr std::int64_t kMostBlocks = 2048;  // enough to fill every device; each thread takes several values
   const auto bytes = static_cast<std::int64_t>(sizeof(Word));
   const std::int64_t values = volume(extent);
   const auto blocks =

@@ -1,4 +1,4 @@
-// Planes of a strided array, on the device, into an array without gaps.
+// Copies planes of a strided array on the device to an array without gaps.
 #pragma once
 
 #include <cuda_runtime_api.h>
@@ -10,8 +10,8 @@
 
 namespace weir {
 
-/// Queues, in `stream`, the copy of `extent` voxels to `to`, x fastest; `to` is memory of the device, or host memory
-/// that is page-locked and mapped. Throws Error(io).
+/// Queues in `stream` the copy of `extent` voxels to `to`, x fastest. `to` is device memory, or host memory that is
+/// page-locked and mapped. Throws Error(io).
 void gather_planes(const DeviceValues& from, const Index3& extent, std::byte* to, cudaStream_t stream);
 
 }  // namespace weir

@@ -20,7 +20,7 @@ ResidentPlanes::~ResidentPlanes() {
     for (CopyEvent& copied : copied_) {
       try {
         copied.wait(kCopyingPlanes);
-      } catch (const Error&) {  // it was said where it could be
+      } catch (const Error&) {  // the failure was reported where it could be
       }
     }
     copied_.clear();

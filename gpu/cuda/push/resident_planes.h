@@ -1,5 +1,5 @@
-// A volume of float32 values on a device, made of slabs that lie on it: each is copied in its caller's stream, at the
-// device's own speed.
+// A volume of float32 values on a device, assembled from slabs on the same device. Each slab is copied in its
+// caller's stream, at the device's own speed.
 #pragma once
 
 #include <cstddef>
@@ -17,17 +17,19 @@ namespace weir {
 
 class ResidentPlanes {
  public:
-  /// Takes memory of the current device for `extent` values, in the calling thread's context. Throws Error(io).
+  /// Allocates memory of the current device for `extent` values, in the calling thread's context. Throws Error(io).
   explicit ResidentPlanes(const Index3& extent);
   /// Waits for copies in progress.
   ~ResidentPlanes();
   ResidentPlanes(const ResidentPlanes&) = delete;
   ResidentPlanes& operator=(const ResidentPlanes&) = delete;
 
-  /// Queues the copy of planes [z0, z0 + nz), whose first voxel is values.first, in `stream`. Work that is queued there
-  /// afterwards may change the values. Any threads may call. Throws Error(usage) as check_slab(), and Error(io).
+  /// Queues the copy of planes [z0, z0 + nz), whose first voxel is values.first, in `stream`. Work that is queued
+  /// there afterwards may change the values. Any thread may call this. Throws Error(usage) as check_slab() does, and
+  /// Error(io).
   void add(std::int64_t z0, std::int64_t nz, const DeviceValues& values, cudaStream_t stream);
-  /// `count` values of the host from voxel `first` on, x fastest; they are there when the call returns.
+  /// Copies `count` values from the host to the voxels from `first` on, x fastest. The copy is complete when the call
+  /// returns.
   void add(const Index3& first, const float* values, std::size_t count);
 
   /// Waits for all copies. Throws Error(io).
@@ -43,7 +45,7 @@ class ResidentPlanes {
   int device_ = existing_current_device();
   SharedContext context_{device_};
   DeviceArray<float> values_;
-  std::mutex mutex_;  // of the rest
+  std::mutex mutex_;  // guards the members below
   std::deque<CopyEvent> copied_;
 };
 

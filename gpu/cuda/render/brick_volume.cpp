@@ -32,7 +32,7 @@ BrickVolume::BrickVolume(const NvdbGrid& grid, GridBytes bytes, const std::vecto
 }
 
 bool BrickVolume::shrink(std::uint64_t bytes, const std::string& why) {
-  levels_.reset();  // a picture that has some makes them again
+  levels_.reset();  // a picture with levels makes them again
   return cache_->shrink(bytes, why);
 }
 

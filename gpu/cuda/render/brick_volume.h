@@ -1,4 +1,5 @@
-// A grid on one device as bricks, with all that rendering it needs there: packed, or too large for the device.
+// A grid on one device as bricks, with all that rendering needs there. For grids that are packed, or too large for
+// the device.
 #pragma once
 
 #include <cstdint>
@@ -15,26 +16,27 @@
 
 namespace weir {
 
-/// Made and used with its device current.
+/// Must be made and used with its device current.
 class BrickVolume {
  public:
-  /// `bytes` are those of `grid`, which must outlive the object, on the device or in host memory that it reads; `cells`
-  /// bounds of macrocells. Of `budget`, what is taken already is found here; of its `levels`, levels of detail are
-  /// made. Throws as BrickCache, BlockDecoder and DeviceTable.
+  /// `bytes` are the bytes of `grid`, on the device or in host memory that it reads. `grid` must outlive the object.
+  /// `cells` are the bounds of macrocells. The constructor fills in what of `budget` is taken already; levels of
+  /// detail are made from its `levels`. Throws the errors of BrickCache, BlockDecoder and DeviceTable.
   BrickVolume(const NvdbGrid& grid, GridBytes bytes, const std::vector<MinMax>& cells, BrickBudget budget);
 
   const GridBytes& bytes() const { return bytes_; }
   GridBytes take_bytes() && { return std::move(bytes_); }
   BrickCache& cache() { return *cache_; }
-  /// Gives device memory back that a picture was refused, for the reason `why`: as BrickCache::shrink.
+  /// Gives device memory back for a picture whose allocation was refused for the reason `why`, as BrickCache::shrink
+  /// does.
   bool shrink(std::uint64_t bytes, const std::string& why);
   DeviceMacrocells& cells() { return cells_; }
-  /// The finest level of detail from `wanted` on that there is room for; 0: none.
+  /// Returns the finest level of detail from `wanted` on that there is room for; 0: none.
   int finest_level(int wanted) const;
-  /// The levels from that one on; kept for the next call with the same.
+  /// Returns the levels from `finest` on. They are kept for the next call with the same `finest`.
   const DevicePyramid& levels(int finest);
-  /// Macrocells for a picture with levels from `finest` on, or a draft of one; `cells` are those whose bounds the
-  /// volume was made with.
+  /// Returns macrocells for a picture with levels from `finest` on, or for a draft of it. `cells` is the lattice of
+  /// the cells whose bounds the constructor was given.
   DeviceMacrocells levelled_cells(int finest, const CellLattice& cells, const LevelChoice& choice, bool draft);
 
  private:

@@ -34,16 +34,17 @@ struct Share {
   std::uint32_t last = 0;
 };
 
-/// What came of it.
+/// The result of a share.
 struct ShareDone {
   std::vector<Float3> sums;
-  std::uint64_t missed = 0;  ///< as Picture
-  CacheCounts cache;         ///< as Picture
-  bool drawn = false;        ///< there were samples for it
-  std::string memory_note;   ///< as Picture
+  std::uint64_t missed = 0;  ///< as in Picture
+  CacheCounts cache;         ///< as in Picture
+  bool drawn = false;        ///< the share had samples
+  std::string memory_note;   ///< as in Picture
 };
 
-/// Samples in turns that grow until one takes kLaunchSeconds; `launch` starts [first, last) on the default stream.
+/// Draws the samples in turns that grow until a turn takes kLaunchSeconds. `launch` starts samples [first, last) on
+/// the default stream.
 template <class Launch>
 void trace(const Share& share, std::uint64_t pixels, const std::atomic<bool>* cancel,
            const std::function<void(std::uint64_t)>& done, const Launch& launch) {
@@ -124,9 +125,9 @@ class CudaBackend : public Backend {
                                  : std::move(last->grid(0)).take_bytes().take_buffer();
     }
     reuse.reset();
-    // What a larger step has left would be memory that the cache of this one is not given.
+    // A buffer that a larger step has left would take memory from this step's cache.
     buffer.shrink_to(grid.data_bytes());
-    // The file's macrocells are merged while the grid is on its way.
+    // The file's macrocells are merged while the grid is being copied.
     std::future<MacrocellGrid> merged;
     if (has_macrocells(grid)) {
       merged = std::async(std::launch::async, [&grid, edge] { return MacrocellGrid(grid, edge); });
@@ -160,7 +161,7 @@ class CudaBackend : public Backend {
       return std::make_unique<CudaVolume>(std::move(file), std::move(bricks), std::move(cells), std::move(summary));
     }
     const NodeLattice lattice = make_lattice(grid.index_bbox(), edge);
-    std::vector<MinMax> bounds;  // none: the first device gathers them
+    std::vector<MinMax> bounds;  // if empty, the first device gathers them
     if (merged.valid()) bounds = merged.get().bounds();
     std::vector<std::unique_ptr<DeviceVolume>> grids;
     for (const int device : options_.devices) {
@@ -175,7 +176,7 @@ class CudaBackend : public Backend {
     return std::make_unique<CudaVolume>(std::move(file), std::move(grids), std::move(cells), std::move(summary));
   }
 
-  // In host memory where there is a reason for that, in `note`, or where the device refuses to hold it.
+  // Loads into host memory if `note` gives a reason for this, or if the device refuses to hold the grid.
   DeviceGrid load_bytes(const NvdbFile& file, DeviceBuffer buffer, LoadOptions how, std::string& note) const {
     const bool several = options_.devices.size() > 1;
     if (!how.zero_copy && note.empty()) {
@@ -211,7 +212,7 @@ class CudaBackend : public Backend {
       if (sampling.progress) sampling.progress(samples_done);
     };
 
-    // Device i takes the i-th of as many stretches of samples.
+    // The samples are cut into as many stretches as there are devices. Device i takes the i-th.
     const std::size_t count = options_.devices.size();
     std::vector<std::future<ShareDone>> shares;
     for (std::size_t i = 0; i < count; ++i) {
@@ -232,7 +233,7 @@ class CudaBackend : public Backend {
       counts += part.cache;
       if (memory_note.empty()) memory_note = part.memory_note;
       for (std::size_t p = 0; p < part.sums.size(); ++p) image.pixels[p] += part.sums[p];
-      if (part.drawn) missed = part.missed;  // the last sample is the last share's
+      if (part.drawn) missed = part.missed;  // the last share has the last sample
     }
     if (sampling.cancel != nullptr && sampling.cancel->load(std::memory_order_relaxed)) {
       throw Error(ErrorKind::interrupted, "interrupted; no image was written");
@@ -242,7 +243,7 @@ class CudaBackend : public Backend {
     return {std::move(image), setup.tone(), seconds_since(start), counts, missed, finest_level, note, memory_note};
   }
 
-  // The finest level of detail that a picture is made with; 0: with voxels alone.
+  // Returns the finest level of detail that a picture is made with; 0: voxels alone.
   static int levels_for(const CudaVolume& volume, const RenderSetup& setup, std::string& note) {
     if (!setup.levels()) return 0;
     if (!volume.in_bricks()) {
@@ -255,13 +256,13 @@ class CudaBackend : public Backend {
     return levels_are_of_use(finest, setup.levels()->coarsest) ? finest : 0;
   }
 
-  // Once more and once more, from its first sample, while the volume can give up something for what was refused.
+  // Draws the share again from its first sample as long as the volume can give memory back for what was refused.
   ShareDone render_share(CudaVolume& volume, std::size_t i, const RenderSetup& setup, int finest_level,
                          const RenderOptions& options, const Share& share, const SampleOptions& sampling,
                          const std::function<void(std::uint64_t)>& done) const {
     use_device(share.device);
     std::uint64_t drawn = 0;     // samples
-    std::uint64_t reported = 0;  // of them
+    std::uint64_t reported = 0;  // samples reported so far
     const auto report = [&](std::uint64_t samples) {
       drawn += samples;
       if (drawn > reported) done(drawn - std::exchange(reported, drawn));
@@ -316,7 +317,7 @@ class CudaBackend : public Backend {
       run(TextureSampler{volume.texture(i).texture.object(), options.filter == Filter::nearest});
     } else if (volume.in_bricks()) {
       BrickCache& cache = volume.bricks(i).cache();
-      // `seen(sampler)` is the volume that is rendered.
+      // `seen(sampler)` returns the volume that is rendered.
       const auto run_bricks = [&](const auto& seen) {
         with_filter(options.filter, [&]<Filter kFilter>() {
           if (!cache.paged()) return run(seen(cache.sampler<kFilter>()));
@@ -358,7 +359,7 @@ class CudaBackend : public Backend {
     return volume.in_bricks() ? memory_note(volume.bricks(i).cache()) : memory_note(volume.grid(i));
   }
 
-  // Calls use<Filter>() with one known when this is compiled.
+  // Calls use<Filter>() with the filter as a compile-time constant.
   template <class Use>
   static void with_filter(Filter filter, const Use& use) {
     if (filter == Filter::nearest) return use.template operator()<Filter::nearest>();
@@ -386,7 +387,7 @@ class CudaBackend : public Backend {
   }
 
   CudaOptions options_;
-  std::deque<KeptMemory> kept_;  // what a step of a series gives back serves the next one
+  std::deque<KeptMemory> kept_;  // lets a step of a series reuse what the step before gives back
 };
 
 }  // namespace

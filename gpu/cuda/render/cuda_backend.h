@@ -1,5 +1,4 @@
-// The CUDA back end: grids on one device or several, each sample of a picture
-// traced on one of them.
+// The CUDA back end: grids on one or several devices. Each sample of a picture is traced on one device.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +9,10 @@
 
 namespace weir {
 
-/// Macrocells of 32^3 voxels: measured faster than 16^3 and 64^3 (docs/what-was-tried.md).
+/// Macrocells of 32^3 voxels were faster than 16^3 and 64^3 (docs/what-was-tried.md).
 inline constexpr std::int64_t kDeviceMacrocell = 32;
 
-/// Throws Error(usage) where there is no such device.
+/// Throws Error(usage) if there is no such device.
 std::unique_ptr<Backend> make_cuda_backend(const CudaOptions& options);
 
 }  // namespace weir

@@ -1,4 +1,4 @@
-// What the CUDA back end renders with.
+// The options of the CUDA back end.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,12 @@
 namespace weir {
 
 struct CudaOptions {
-  std::vector<int> devices{0};  ///< of one picture; each holds a copy of the grid
+  std::vector<int> devices{0};  ///< devices that share a picture; each holds a copy of the grid
   LoadOptions load;
-  bool atlas = true;  ///< trilinear lookups through a brick atlas where the device has room for it
-  /// Bytes that volumes take of each device, at most; none: what is free but for a reserve.
+  bool atlas = true;  ///< use a brick atlas for trilinear look-ups if the device has room for it
+  /// Most bytes that volumes take on each device. If empty, they may take all free memory except a reserve.
   std::optional<std::uint64_t> memory = std::nullopt;
-  std::uint64_t volumes = 1;  ///< that are held at a time and share it
+  std::uint64_t volumes = 1;  ///< volumes that are held at a time and share `memory`
   bool levels = false;        ///< pictures may ask for levels of detail
 };
 

@@ -1,4 +1,4 @@
-// A volume of the CUDA back end: what each of its devices holds of it.
+// A volume of the CUDA back end: what each device holds of it.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace weir {
 
-/// A file's grid, or a dense volume, on every device of the back end, in its order.
+/// A file's grid, or a dense volume, on every device of the back end, in the order of the devices.
 class CudaVolume : public LoadedVolume {
  public:
   CudaVolume(std::shared_ptr<const NvdbFile> file, std::vector<std::unique_ptr<DeviceVolume>> grids,
@@ -44,7 +44,7 @@ class CudaVolume : public LoadedVolume {
   DenseTexture& texture(std::size_t i) { return *textures_[i]; }
 
  private:
-  std::shared_ptr<const NvdbFile> file_;  ///< kept: a zero-copy grid lies in its mapping
+  std::shared_ptr<const NvdbFile> file_;  ///< kept because a zero-copy grid lies in its mapping
   std::vector<std::unique_ptr<DeviceVolume>> grids_;
   std::vector<std::unique_ptr<BrickVolume>> bricks_;
   std::vector<std::unique_ptr<DenseTexture>> textures_;

@@ -16,15 +16,16 @@ std::uint64_t block_count(const NvdbGrid& grid) {
   return static_cast<std::uint64_t>(leaf_lattice(grid.index_bbox()).size());
 }
 
-/// What the bricks of a grid that is not packed take, roughly: of each leaf one, and one beside it.
+/// Returns roughly the bytes of the bricks of a grid that is not packed: two bricks per leaf, its own and a
+/// neighbour.
 std::uint64_t brick_bytes_of(const NvdbGrid& grid) {
   const std::uint64_t bricks = std::min<std::uint64_t>(block_count(grid), std::uint64_t{2} * grid.node_counts()[0]);
   return bricks * (kBrickTexels * sizeof(std::uint16_t)) + 2 * block_count(grid) * sizeof(BrickEntry);
 }
 
-/// What a grid takes of a device that has room, apart from bricks.
+/// Returns the bytes that a grid takes on a device with room, without its bricks.
 std::uint64_t bytes_needed(const NvdbGrid& grid) {
-  // Of a packed grid's streams and its bricks, the bricks are what is looked up.
+  // A packed grid has streams and bricks. Look-ups read the bricks.
   if (grid.packed() != nullptr) return 2 * grid.data_bytes();
   const bool floats = grid.type() == GridType::float32;
   return grid.data_bytes() + block_count(grid) * (floats ? sizeof(FloatBlock) : sizeof(QuantisedBlock));
@@ -37,7 +38,7 @@ DeviceRoom room_without_levels(const NvdbGrid& grid, const CudaOptions& options,
   const std::uint64_t wanted = bytes_needed(grid) + bricks + kSpareDeviceBytes;
   const std::uint64_t free = free_device_bytes(wanted > held ? wanted - held : 0) + held;
   const std::uint64_t bytes = free > kSpareDeviceBytes ? free - kSpareDeviceBytes : 0;
-  // A cache takes all it gets: the next volume of a series needs as much.
+  // A cache takes all it gets, and the next volume of a series needs as much.
   const std::uint64_t share = device_bytes() / options.volumes;
   if (grid.packed() == nullptr && bytes_needed(grid) <= bytes) return {bytes, free, options.volumes, false};
   return {std::min(bytes, share), std::min(free, share + kSpareDeviceBytes), options.volumes, false};
@@ -53,7 +54,8 @@ DeviceRoom room_for(const NvdbGrid& grid, const CudaOptions& options, std::uint6
 
 std::string reason_for_zero_copy(const NvdbGrid& grid, const DeviceRoom& room) {
   std::uint64_t needed = bytes_needed(grid);
-  // Levels of detail are of bricks: better the leaves in host memory than few bricks beside them.
+  // Levels of detail are made from bricks. It is better to keep the leaves in host memory than to have few bricks
+  // beside them.
   if (room.levels > 0 && grid.packed() == nullptr) needed += brick_bytes_of(grid);
   if (needed <= room.bytes - room.levels) return "";
   const std::string with_levels = room.levels > 0 ? " without what is kept for levels of detail" : "";

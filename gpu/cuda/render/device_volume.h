@@ -1,4 +1,4 @@
-// A grid on one device with all that rendering it needs there.
+// A grid on one device with all that rendering needs there.
 #pragma once
 
 #include <optional>
@@ -12,29 +12,29 @@
 
 namespace weir {
 
-/// Made and used with its device current.
+/// Must be made and used with its device current.
 class DeviceVolume {
  public:
-  /// `grid` must outlive the object. `cells`: bounds of macrocells; empty where the file has none and they are gathered
-  /// here.
+  /// `grid` must outlive the object. `cells` are the bounds of macrocells. They are empty if the file has none; then
+  /// the constructor gathers them.
   DeviceVolume(const NvdbGrid& grid, GridBytes bytes, const NodeLattice& lattice, std::vector<MinMax> cells,
                std::uint64_t memory = ~std::uint64_t{0});
 
   const GridBytes& bytes() const { return bytes_; }
   GridBytes take_bytes() && { return std::move(bytes_); }
-  /// Calls visit(BlockTable<...>) with the one there is.
+  /// Calls visit(BlockTable<...>) with the volume's table.
   template <class Visit>
   decltype(auto) with_table(const Visit& visit) const {
     return std::visit([&](const auto& table) -> decltype(auto) { return visit(table.view()); }, table_);
   }
   const std::vector<MinMax>& host_cells() const { return host_cells_; }
   DeviceMacrocells& cells() { return cells_; }
-  /// All blocks as bricks, made at the first call; null where the device has no room for that, with the reason in
-  /// `atlas_refusal`.
+  /// Returns all blocks as bricks, made at the first call. Returns null if the device has no room for them;
+  /// `atlas_refusal` then gives the reason.
   BrickCache* atlas();
   const std::string& atlas_refusal() const { return atlas_refusal_; }
-  /// Does without the atlas from now on, since the device has refused something else for the reason `why`; false where
-  /// there is none.
+  /// Drops the atlas for good, because the device has refused another allocation for the reason `why`. Returns false
+  /// if there is no atlas.
   bool drop_atlas(const std::string& why);
   bool atlas_dropped() const { return atlas_dropped_; }
 

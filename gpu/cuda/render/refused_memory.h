@@ -1,4 +1,4 @@
-// What becomes of loads and pictures that a device refuses memory.
+// What happens to loads and pictures if a device refuses memory.
 #pragma once
 
 #include <string>
@@ -10,15 +10,16 @@
 
 namespace weir {
 
-/// "PLACE: REFUSED; REMEDIES, end what else uses the device, or give --backend cpu", of the refusal's kind.
+/// Returns an error of the refusal's kind: "PLACE: REFUSED; REMEDIES, end what else uses the device, or give
+/// --backend cpu".
 Error refused_error(const Message& place, const DeviceFull& refused, const std::string& remedies = "");
 
-/// A volume gives back what it can do without, for a picture that was refused memory: some of its bricks, or its atlas.
-/// False where there is no such thing. Throws as BrickCache::shrink.
+/// Makes the volume give back what it can do without, some bricks or its atlas, for a picture that was refused
+/// memory. Returns false if there is nothing to give back. Throws the errors of BrickCache::shrink.
 bool make_room(BrickVolume& volume, const DeviceFull& refused);
 bool make_room(DeviceVolume& volume, const DeviceFull& refused);
 
-/// Picture::memory_note of one of the volume.
+/// Returns the Picture::memory_note for a picture of the volume.
 std::string memory_note(const BrickCache& cache);
 std::string memory_note(const DeviceVolume& volume);
 

@@ -1,4 +1,4 @@
-// The definition of launch_render, for the files that instantiate it.
+// Defines launch_render, for the files that instantiate it.
 #pragma once
 
 #include "gpu/cuda/render/render_kernel.h"
@@ -8,11 +8,11 @@
 
 namespace weir {
 
-/// Blocks of threads that a multiprocessor holds at once while it traces paths, which wait for memory most of the time:
-/// 64 registers a thread and some of them spilled do better than all of them and fewer threads.
+/// Blocks of threads that a multiprocessor holds at once while it traces paths. Paths wait for memory most of the
+/// time. 64 registers per thread, with some of them spilled, are faster than all registers and fewer threads.
 inline constexpr unsigned kPathBlocks = 8;
 
-/// Path tracing has a kernel of its own: the other modes' registers would cost it threads.
+/// Path tracing has a separate kernel, because the registers of the other modes would cost it threads.
 template <class Volume, bool kPath>
 __global__ void __launch_bounds__(kTileWidth* kTileHeight, kPath ? kPathBlocks : 1)
     render_kernel(const __grid_constant__ RenderTask<Volume> task, std::uint32_t first, std::uint32_t last,

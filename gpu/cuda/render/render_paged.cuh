@@ -1,4 +1,4 @@
-// The definition of launch_paged, for the files that instantiate it.
+// Defines launch_paged, for the files that instantiate it.
 #pragma once
 
 #include "gpu/cuda/bricks/paged_sampler.h"
@@ -10,7 +10,7 @@
 
 namespace weir {
 
-/// Every second bit of `n`.
+/// Returns every second bit of `n`, packed together.
 __device__ inline std::int32_t spread_bits(std::uint32_t n) {
   n &= 0x55555555U;
   n = (n | n >> 1U) & 0x33333333U;
@@ -41,7 +41,7 @@ __global__ void __launch_bounds__(kTileWidth* kTileHeight, kPath ? kPathBlocks :
   const std::uint32_t before = inside ? picture.done[pixel] : picture.samples;
   Float3 sum = inside ? picture.sums[pixel] : Float3{};
   std::uint32_t done = before;
-  // The pixels of a warp stay together: where one misses something, the others wait for it, at most a sample ahead.
+  // The pixels of a warp stay together. If one misses something, the others wait for it, at most one sample ahead.
   std::uint32_t at = least_of_warp(before);
   const std::uint32_t last = lesser(picture.samples, at + picture.at_once);
   for (bool waits = false; at < last && !waits; ++at) {
@@ -86,7 +86,7 @@ void launch_paged(const RenderTask<Volume>& task, const PagedPicture& picture, s
 template <Filter kFilter, Noting kNoting, class Positions>
 using LevelledPages = LevelledVolume<PagedSampler<kFilter, kNoting, Positions>, TextureSampler>;
 
-// With a filter and a way of noting, with levels of detail and without.
+// Instantiates for a filter and a way of noting misses, with and without levels of detail.
 #define WEIR_LAUNCH_PAGED(FILTER, NOTING, POSITIONS)                                                                   \
   template void launch_paged<NOTING>(const RenderTask<PagedSampler<FILTER, NOTING, POSITIONS>>&, const PagedPicture&,  \
                                      std::uint32_t, std::uint32_t, cudaStream_t);                                      \

@@ -1,5 +1,5 @@
-// The tracer on the device where voxels may be missing: a pixel's samples are drawn in their order, and one that missed
-// something is drawn again later, so that the picture is the one of a volume that is all there.
+// The ray tracer on the device for volumes that may lack voxels. It draws the samples of a pixel in order, and
+// repeats a sample that missed something. So the picture is the same as that of a complete volume.
 #pragma once
 
 #include <cuda_runtime_api.h>
@@ -11,30 +11,30 @@
 
 namespace weir {
 
-/// How far the pixels of a picture are; all in device memory.
+/// The progress of a picture's pixels. All pointers are to device memory.
 struct PagedPicture {
   struct Counts {
-    std::uint64_t finished;    ///< samples, in this launch
-    std::uint32_t unfinished;  ///< pixels of the tiles launched that lack samples
-    std::uint32_t missed;      ///< samples that are to be drawn again
+    std::uint64_t finished;    ///< samples finished in this launch
+    std::uint32_t unfinished;  ///< pixels of the launched tiles that lack samples
+    std::uint32_t missed;      ///< samples that must be drawn again
   };
 
-  Float3* sums = nullptr;         ///< of the samples done
-  std::uint32_t* done = nullptr;  ///< samples of each pixel
+  Float3* sums = nullptr;         ///< sums of the finished samples
+  std::uint32_t* done = nullptr;  ///< finished samples of each pixel
   Counts* counts = nullptr;
-  std::uint32_t first = 0;    ///< sample
-  std::uint32_t samples = 0;  ///< beyond the last
-  std::uint32_t at_once = 1;  ///< samples of a pixel in one launch, at most
-  bool keep_missed = false;   ///< a sample that missed something counts as done, with what came near it
+  std::uint32_t first = 0;    ///< first sample
+  std::uint32_t samples = 0;  ///< end of the samples
+  std::uint32_t at_once = 1;  ///< most samples of a pixel in one launch
+  bool keep_missed = false;   ///< a sample that missed something counts as finished, with approximate values
 };
 
-/// Tiles of a picture in an order that keeps neighbours together (Morton's): numbers below paged_tiles(), some of them
-/// outside the picture.
+/// Returns the number of a picture's tiles, in an order that keeps neighbours together (Morton's). Tile numbers lie
+/// below it; some tiles lie outside the picture.
 std::uint32_t paged_tiles(std::int32_t width, std::int32_t height);
 
-/// Draws samples of the pixels of tiles [first_tile, first_tile + tiles) on `stream`. For PagedSampler, with or without
-/// levels of detail; paths where it notes by calling, rays that are marched where it does not. Throws Error(io) where
-/// the launch fails.
+/// Draws samples of the pixels of tiles [first_tile, first_tile + tiles) on `stream`. For PagedSampler, with or
+/// without levels of detail. A sampler that notes by calling draws paths, the other one marches rays. Throws
+/// Error(io) if the launch fails.
 template <Noting kNoting, class Volume>
 void launch_paged(const RenderTask<Volume>& task, const PagedPicture& picture, std::uint32_t first_tile,
                   std::uint32_t tiles, cudaStream_t stream);

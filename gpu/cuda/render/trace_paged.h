@@ -1,4 +1,4 @@
-// Samples of a picture of a volume whose bricks come and go.
+// Draws samples of a picture of a volume whose bricks come and go.
 #pragma once
 
 #include <cuda_runtime_api.h>
@@ -19,29 +19,29 @@
 
 namespace weir {
 
-/// How long one launch may keep a cancellation waiting, roughly.
+/// Roughly how long one launch may delay a cancellation.
 inline constexpr double kLaunchSeconds = 0.05;
 
-/// What a picture took.
+/// The work of a picture.
 struct PagedReport {
-  std::uint64_t turns = 0;          ///< in which bricks were brought in; for benchmarks
-  std::uint64_t bricks = 0;         ///< brought in
-  std::uint64_t decoded = 0;        ///< blocks
-  std::uint64_t evicted = 0;        ///< bricks that had to go
-  std::uint32_t least_tiles = ~0U;  ///< in one launch; for benchmarks
+  std::uint64_t turns = 0;          ///< turns that brought bricks in; for benchmarks
+  std::uint64_t bricks = 0;         ///< bricks brought in
+  std::uint64_t decoded = 0;        ///< blocks decoded
+  std::uint64_t evicted = 0;        ///< bricks evicted
+  std::uint32_t least_tiles = ~0U;  ///< fewest tiles in one launch; for benchmarks
 };
 
-/// What a draft took.
+/// The work of a draft.
 struct DraftReport {
-  std::uint64_t bricks = 0;   ///< brought in
-  std::uint64_t evicted = 0;  ///< bricks that had to go
-  std::uint32_t missed = 0;   ///< pixels of the last sample that did without some bricks
+  std::uint64_t bricks = 0;   ///< bricks brought in
+  std::uint64_t evicted = 0;  ///< bricks evicted
+  std::uint32_t missed = 0;   ///< pixels whose last sample lacked some bricks
 };
 
-/// Adds samples [first, last) of every pixel to `sums` without waiting for bricks: where one is missing, a level of
-/// detail or its mean takes its place, and it is there for the next sample, as far as the cache holds what one sample
-/// needs. For pictures of a camera that moves. `task_of` and `report_done` as below. Throws as BrickCache::serve and
-/// check.
+/// Adds samples [first, last) of every pixel to `sums` without waiting for bricks. A missing brick is replaced by a
+/// level of detail or by its mean; it is there for the next sample if the cache can hold what one sample needs. For
+/// pictures of a moving camera. `task_of` and `report_done` are as for trace_paged(). Throws the errors of
+/// BrickCache::serve and check.
 template <class Sampler, class TaskOf, class Done>
 DraftReport trace_draft(BrickCache& cache, const TaskOf& task_of, std::uint32_t first, std::uint32_t last,
                         DeviceArray<Float3>& sums, const Done& report_done) {
@@ -69,14 +69,15 @@ DraftReport trace_draft(BrickCache& cache, const TaskOf& task_of, std::uint32_t 
   return report;
 }
 
-/// Adds samples [first, last) of every pixel to `sums` (zeros), in their order: tiles of the picture one after the
-/// other where its bricks are more than the cache holds. `Sampler` is the cache's, `task_of(sampler)` makes the
-/// picture's task; `report_done(n)` is told of n further samples of one pixel. Throws Error(usage) where the cache does
-/// not hold what the smallest tile needs, and as BrickCache::serve.
+/// Adds samples [first, last) of every pixel to `sums` (zeros), in order. If the picture needs more bricks than the
+/// cache holds, draws one group of tiles after the other. `Sampler` is the cache's, and `task_of(sampler)` makes the
+/// picture's task. Calls report_done(n) for n further samples of one pixel. Throws Error(usage) if the cache cannot
+/// hold what the smallest tile needs, and the errors of BrickCache::serve and check.
 template <class Sampler, class TaskOf, class Done>
 PagedReport trace_paged(BrickCache& cache, const TaskOf& task_of, std::uint32_t first, std::uint32_t last,
                         DeviceArray<Float3>& sums, const std::atomic<bool>* cancel, const Done& report_done) {
-  // Turns of the smallest tile without a sample before that is an error; many more where they bring something in.
+  // A turn of the smallest tile that finishes no sample counts 1, or kInVain if it brings nothing in. More than
+  // kPatience together are an error.
   constexpr std::uint32_t kPatience = 512;
   constexpr std::uint32_t kInVain = 64;
   PagedReport report;
@@ -92,10 +93,10 @@ PagedReport trace_paged(BrickCache& cache, const TaskOf& task_of, std::uint32_t 
   std::uint64_t decoded_before = cache.counters().decoded;
   std::uint32_t at = 0;
   std::uint32_t count = tiles;
-  std::uint64_t brought = 0;  // for these tiles
+  std::uint64_t brought = 0;  // bricks brought in for these tiles
   std::uint32_t idle = 0;
   std::uint64_t drawn = 0;     // samples
-  std::uint64_t reported = 0;  // of them
+  std::uint64_t reported = 0;  // samples reported so far
   while (at < tiles) {
     if (cancel != nullptr && cancel->load(std::memory_order_relaxed)) break;
     clear(counts);

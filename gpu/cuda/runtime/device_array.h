@@ -1,4 +1,4 @@
-// Device memory of a fixed number of elements, owned.
+// Owns device memory of a fixed number of elements.
 #pragma once
 
 #include <cstddef>
@@ -11,15 +11,15 @@
 
 namespace weir {
 
-/// `size` elements of T, uninitialised, on the device that was current when it was made, from the device's memory
-/// pool: unlike cudaFree, giving it back does not wait for what other streams do. T is trivially copyable. Transfers
-/// are ordered behind what this thread started on its default stream, and done when they return.
+/// `size` uninitialised elements of T, on the device that is current at construction. The memory comes from the
+/// device's pool; unlike cudaFree, freeing it does not wait for other streams. T is trivially copyable. Transfers run
+/// after what this thread started on its default stream, and are complete when they return.
 template <class T>
 class DeviceArray {
  public:
   DeviceArray() = default;
-  /// Throws DeviceFull where the device has no room.
-  explicit DeviceArray(std::size_t size) : DeviceArray() {  // which is destroyed where the rest throws
+  /// Throws DeviceFull if the device has no room.
+  explicit DeviceArray(std::size_t size) : DeviceArray() {  // the delegated-to object is destroyed if the rest throws
     size_ = size;
     if (size > 0) {
       check_cuda(cudaMallocAsync(reinterpret_cast<void**>(&data_), bytes(), cudaStreamPerThread),
@@ -43,13 +43,13 @@ class DeviceArray {
   std::size_t size() const { return size_; }
   std::size_t bytes() const { return size_ * sizeof(T); }
 
-  /// host.size() elements to the front.
+  /// Copies host.size() elements to the front of the array.
   void upload(std::span<const T> host) {
     if (!host.empty()) {
       transfer(data_, host.data(), host.size_bytes(), cudaMemcpyHostToDevice, "copying to the device");
     }
   }
-  /// The first host.size() elements.
+  /// Copies the first host.size() elements to `host`.
   void download(std::span<T> host) const {
     if (!host.empty()) {
       transfer(host.data(), data_, host.size_bytes(), cudaMemcpyDeviceToHost, "copying from the device");

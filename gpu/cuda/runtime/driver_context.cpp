@@ -9,15 +9,16 @@
 namespace weir {
 namespace {
 
-// Functions of the driver, which is there where a device is, and is not linked. 0 is success.
+// Functions of the driver, which is installed wherever there is a device, and is not linked. They return 0 for
+// success.
 using GetCurrent = int (*)(void** context);                          // cuCtxGetCurrent
 using SetCurrent = int (*)(void* context);                           // cuCtxSetCurrent
 using GetState = int (*)(int device, unsigned* flags, int* active);  // cuDevicePrimaryCtxGetState
 using Retain = int (*)(void** context, int device);                  // cuDevicePrimaryCtxRetain
 using Release = int (*)(int device);                                 // cuDevicePrimaryCtxRelease
-using GetId = int (*)(void* context, unsigned long long* id);        // cuCtxGetId; null: the current one
+using GetId = int (*)(void* context, unsigned long long* id);        // cuCtxGetId; null: the current context
 
-// Null where the driver has none of that name.
+// Returns null if the driver has no function of this name.
 template <class Function>
 Function driver_function(const char* name) {
   void* found = nullptr;
@@ -57,14 +58,14 @@ void* primary_context(int device) {
   static const auto release = driver_function<Release>("cuDevicePrimaryCtxRelease");
   static const auto get_id = driver_function<GetId>("cuCtxGetId");
   static std::mutex mutex;
-  static std::map<int, unsigned long long> held;  // by device, of the context that is held
+  static std::map<int, unsigned long long> held;  // id of the held context, by device
   if (retain == nullptr || release == nullptr) return nullptr;
   const std::lock_guard lock(mutex);
   void* context = nullptr;
   if (retain(&context, device) != 0) return nullptr;
   unsigned long long id = 0;
   if (get_id == nullptr || get_id(context, &id) != 0) return context;
-  if (std::exchange(held[device], id) == id) release(device);  // held already
+  if (std::exchange(held[device], id) == id) release(device);  // it was held already
   return context;
 }
 

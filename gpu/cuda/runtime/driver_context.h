@@ -1,4 +1,4 @@
-// Contexts of the CUDA driver: what a process has of a device. The runtime makes one on the current device for any call
+// Contexts of the CUDA driver: a process's state on a device. The runtime makes one on the current device at any call
 // of a thread that has none.
 #pragma once
 
@@ -6,21 +6,21 @@
 
 namespace weir {
 
-/// The calling thread's; null where it has none, or there is no driver.
+/// Returns the calling thread's context; null if it has none, or there is no driver.
 void* current_context();
 
-/// For the calling thread; null: it has none then.
+/// Sets the calling thread's context; null: the thread has none afterwards.
 void set_current_context(void* context);
 
-/// Whether this process has the context on `device` that the runtime uses. Makes none.
+/// Returns whether this process has the runtime's context on `device`. Makes none.
 bool has_context(int device);
 
-/// That context, which is made where there is none, and stays until the process ends or the device is reset; null where
-/// the driver cannot. Makes it current nowhere. Thread-safe.
+/// Returns the runtime's context on `device`. Makes it if there is none; it stays until the process ends or the
+/// device is reset. Returns null if the driver cannot. Does not make the context current. Thread-safe.
 void* primary_context(int device);
 
-/// Which context of which device the calling thread works in: a device that is reset has another one afterwards. 0
-/// where the thread has none, or the driver does not tell (before CUDA 12).
+/// Returns an id of the context that the calling thread works in. After a reset, a device has a context with another
+/// id. Returns 0 if the thread has no context, or if the driver has no ids (before CUDA 12).
 std::uint64_t current_context_id();
 
 }  // namespace weir

@@ -1,4 +1,4 @@
-// Kernels are started here, so that an older error of the calling thread is not taken for a refused start.
+// Starts kernels in a way that does not mistake an older error of the calling thread for a refused start.
 #pragma once
 
 #include <cuda_runtime.h>
@@ -13,13 +13,13 @@ namespace weir {
 
 struct LaunchShape {
   dim3 groups;
-  dim3 threads;  ///< of each group
+  dim3 threads;  ///< per group
   cudaStream_t stream;
   std::size_t shared_bytes = 0;
 };
 
-/// Starts `kernel`. Throws as check_cuda, with `what`. Errors of earlier calls stay where they are: cudaGetLastError
-/// would give those that the program before us, an allocation that it tried, say, has left.
+/// Starts `kernel`. Throws as check_cuda() does, with `what`. Leaves errors of earlier calls where they are.
+/// cudaGetLastError() would return them, for example an error that the calling program's own allocation left.
 template <typename... Parameters, typename... Arguments>
 void launch_kernel(std::string_view what, const LaunchShape& shape, void (*kernel)(Parameters...),
                    Arguments&&... arguments) {

@@ -1,11 +1,11 @@
-// The pixels that a group of threads renders, and what each of those threads has missed.
+// The pixels that a group of threads renders, and whether each thread has missed something.
 #pragma once
 
 #include "format/base/host_device.h"
 
 namespace weir {
 
-/// A warp is 8 x 4 pixels, whose rays stay together.
+/// A warp renders 8 x 4 pixels, so that its rays stay together.
 inline constexpr unsigned kTileWidth = 8;
 inline constexpr unsigned kTileHeight = 16;
 
@@ -16,7 +16,8 @@ __device__ inline bool& missed_of_thread() {
 }
 #endif
 
-/// Whether this thread's look-ups have missed something since it was last set to false; on the host always false.
+/// Returns whether this thread's look-ups have missed something since the flag was last set to false. Always false on
+/// the host.
 WEIR_HOST_DEVICE inline bool thread_missed() {
 #if defined(__CUDA_ARCH__)
   return missed_of_thread();

@@ -10,7 +10,7 @@
 
 namespace weir {
 
-/// All voxels of `volume` (host memory), copied to the current device.
+/// Copies all voxels of `volume` (host memory) to a texture on the current device.
 inline Texture make_texture(const DenseView& volume) {
   constexpr std::int64_t kVoxelsAtOnce = std::int64_t{1} << 26;
   Texture texture(volume.extent);

@@ -8,7 +8,7 @@ namespace weir {
 
 class DeviceEnvironment {
  public:
-  /// Copies what `host` (host pointers, present) points to.
+  /// Copies the tables that `host` (host pointers, present) points to.
   explicit DeviceEnvironment(const EnvironmentView& host)
       : view_(host),
         radiance_(std::span(host.radiance, static_cast<std::size_t>(host.index(host.height, 0)))),
@@ -19,7 +19,7 @@ class DeviceEnvironment {
     view_.columns = columns_.data();
   }
 
-  /// With device pointers.
+  /// Returns the environment with device pointers.
   const EnvironmentView& view() const { return view_; }
 
  private:

@@ -8,14 +8,14 @@ namespace {
 
 constexpr int kThreads = 256;
 
-/// First and last voxel, inclusive, of a cell with its apron along one axis, inside the domain.
+/// Sets the first and last voxel, inclusive, of a cell with its apron along one axis, inside the domain.
 __device__ void reach(std::int32_t cell, std::int32_t edge, std::int32_t shift, std::int32_t extent, std::int32_t& low,
                       std::int32_t& high) {
   low = greater(cell * edge - shift - 1, 0);
   high = lesser((cell + 1) * edge - shift, extent - 1);
 }
 
-/// One block of threads a cell.
+/// One block of threads per cell.
 template <class Block>
 __global__ void gather(BlockTable<Block> table, CellLattice cells, MinMax* bounds) {
   const auto edge = static_cast<std::int32_t>(cells.edge);
@@ -34,7 +34,7 @@ __global__ void gather(BlockTable<Block> table, CellLattice cells, MinMax* bound
   float least = kInfinity;
   float most = -kInfinity;
   for (std::int64_t i = threadIdx.x; i < count; i += kThreads) {
-    // z fastest, as leaves have it.
+    // z fastest, as in leaves
     const auto nz = high.z - low.z + 1;
     const Int3 voxel{low.x + static_cast<std::int32_t>(i / (static_cast<std::int64_t>(nz) * ny)),
                      low.y + static_cast<std::int32_t>(i / nz % ny), low.z + static_cast<std::int32_t>(i % nz)};

@@ -1,5 +1,5 @@
-// Macrocells in device memory: their bounds, gathered on the device where a file
-// has none, and the majorants that follow through a transfer function.
+// Macrocells in device memory: their bounds, gathered on the device if a file has none, and the majorants that a
+// transfer function gives them.
 #pragma once
 
 #include <cuda_runtime_api.h>
@@ -12,8 +12,8 @@
 
 namespace weir {
 
-/// Bounds of the finite values of each cell of `cells` and one voxel around it, inside the table's domain, x fastest;
-/// {infinity, -infinity} where there is none.
+/// Returns the bounds of the finite values of each cell of `cells` and one voxel around it, inside the table's
+/// domain, x fastest. A cell without finite values has {infinity, -infinity}.
 template <class Block>
 std::vector<MinMax> gather_macrocells(const BlockTable<Block>& table, const CellLattice& cells);
 
@@ -23,7 +23,7 @@ class DeviceTransfer {
   explicit DeviceTransfer(const TransferFunction& transfer);
 
   OpacityBounds bounds() const;
-  /// Another function over the same number of entries: two small copies.
+  /// Replaces the function by one with the same number of entries: two small copies.
   void replace(const TransferFunction& transfer);
 
  private:
@@ -39,7 +39,7 @@ class DeviceMacrocells {
   explicit DeviceMacrocells(DeviceArray<MinMax> bounds) : bounds_(std::move(bounds)), majorants_(bounds_.size()) {}
 
   const MinMax* bounds() const { return bounds_.data(); }
-  /// Largest opacity of each cell, as of the last update.
+  /// Returns the largest opacity of each cell, as of the last update.
   const float* majorants() const { return majorants_.data(); }
   std::size_t size() const { return bounds_.size(); }
   void update(const DeviceTransfer& transfer, cudaStream_t stream);

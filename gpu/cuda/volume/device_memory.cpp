@@ -23,7 +23,7 @@ MemoryInfo memory_now() {
   return info;
 }
 
-/// Of a device, how many KeptMemory there are, and how many bytes its pool kept before them.
+/// For a device: the number of KeptMemory objects, and the bytes that its pool kept before them.
 struct Kept {
   int users = 0;
   std::uint64_t before = 0;
@@ -66,7 +66,7 @@ KeptMemory::~KeptMemory() {
   const std::lock_guard lock(kept_mutex);
   Kept& kept = kept_of_devices[device_];
   if (--kept.users > 0) return;
-  // A device that fails has said so where it was used.
+  // A device that fails has reported this where it was used.
   cudaMemPool_t pool = nullptr;
   if (cudaDeviceGetDefaultMemPool(&pool, device_) != cudaSuccess) return;
   cudaMemPoolSetAttribute(pool, cudaMemPoolAttrReleaseThreshold, &kept.before);

@@ -1,22 +1,23 @@
-// How much memory a device has left, and what is kept of it for reuse.
+// How much memory a device has left, and how much of it is kept for reuse.
 #pragma once
 
 #include <cstdint>
 
 namespace weir {
 
-/// Left for pictures, environments and other programs.
+/// Bytes left for pictures, environments and other programs.
 inline constexpr std::uint64_t kSpareDeviceBytes = 512ULL << 20U;
 
-/// Bytes free on the current device. Where they are fewer than `wanted`, its memory pool first gives back what it keeps
-/// for reuse, once the device's work is done.
+/// Returns the bytes that are free on the current device. If they are fewer than `wanted`, its memory pool first
+/// gives back what it keeps for reuse, after the device's work has ended.
 std::uint64_t free_device_bytes(std::uint64_t wanted);
 
-/// All bytes of the current device.
+/// Returns the total bytes of the current device.
 std::uint64_t device_bytes();
 
-/// As long as one of a device lives, its default memory pool keeps what it is given back for what is asked for next.
-/// Then the pool is as before, and gives back what is more than that lets it keep: the pool is the whole program's.
+/// While an object of a device lives, the device's default memory pool keeps freed memory for the next allocations.
+/// After the last object the pool has its old threshold again and gives back what exceeds it, because the whole
+/// program shares the pool.
 class KeptMemory {
  public:
   explicit KeptMemory(int device);

@@ -1,5 +1,5 @@
-// The volumes that kernels render, each with all choices but the data made at
-// compile time. See gpu/volume/volume_sampler.h for what a tracer asks of them.
+// The volumes that kernels render. All choices except the data are made at compile time. gpu/volume/volume_sampler.h
+// says what a tracer asks of a volume.
 #pragma once
 
 #include "gpu/cuda/volume/block_table.h"
@@ -7,7 +7,7 @@
 
 namespace weir {
 
-/// A block table.
+/// Samples a block table.
 template <class Block, Filter kFilter>
 struct TableSampler {
   BlockTable<Block> table;
@@ -16,11 +16,11 @@ struct TableSampler {
   WEIR_HOST_DEVICE float smooth(const Float3& p) const { return filtered().smooth(p); }
 
  private:
-  // The optimiser carries the constant through everything inlined.
+  // The optimiser propagates the constant through everything that is inlined.
   WEIR_HOST_DEVICE FilteredVolume<BlockTable<Block>> filtered() const { return {table, kFilter}; }
 };
 
-/// A dense texture: trilinear by the texture unit, which has 8 bits of each weight, or the nearest voxel.
+/// Samples a dense texture: trilinearly by the texture unit, with weights of 8 bits, or the nearest voxel.
 struct TextureSampler {
   cudaTextureObject_t texture = 0;
   bool nearest = false;

@@ -25,14 +25,14 @@ struct TreeView {
   GridType type;
   Int3 root_count;
   Int3 block_count;
-  Int3 first_block;  ///< of the lattice, from the first root cell's lowest block
+  Int3 first_block;  ///< first block of the lattice, relative to the first root cell's lowest block
 };
 
 __device__ bool bit(const std::byte* mask, std::uint32_t i) {
   return ((static_cast<unsigned>(mask[i >> 3U]) >> (i & 7U)) & 1U) != 0;
 }
 
-/// The block at lattice position (x, y, z), counted from the first root cell's.
+/// Returns the block at lattice position (x, y, z), relative to the first root cell's.
 template <class Block>
 __device__ Block find(const TreeView& tree, std::int32_t x, std::int32_t y, std::int32_t z) {
   const std::int64_t root_at = (x >> 9) + static_cast<std::int64_t>(tree.root_count.x) *

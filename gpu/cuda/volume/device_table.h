@@ -1,5 +1,5 @@
-// The block table of a grid that lies in device memory, built there: one thread a
-// block walks the tree, which a host would have to read in full.
+// The block table of a grid in device memory. It is built there, by one thread per block that walks the tree; a host
+// would have to read the whole tree.
 #pragma once
 
 #include "format/nanovdb/nvdb_grid.h"
@@ -8,13 +8,13 @@
 
 namespace weir {
 
-/// Block is FloatBlock for grids of float32, QuantisedBlock for all others.
+/// Block is FloatBlock for grids of float32 and QuantisedBlock for all others.
 template <class Block>
 class DeviceTable {
  public:
-  /// `data` is the device's copy of grid.data(), which must outlive the object; `grid`, still validated, says where
-  /// its upper nodes are. Throws Error(input) where the domain has more than 2^31 blocks or leaves span more than
-  /// 128 GiB, Error(io) where the device has no room.
+  /// `data` is the device's copy of grid.data() and must outlive the object. `grid`, which was validated, tells where
+  /// its upper nodes are. Throws Error(input) if the domain has more than 2^31 blocks or leaves span more than 128
+  /// GiB, Error(io) if the device has no room.
   DeviceTable(const NvdbGrid& grid, const std::byte* data);
 
   const BlockTable<Block>& view() const { return view_; }

@@ -1,4 +1,4 @@
-// A grid's bytes where a device reads them.
+// A grid's bytes in memory that a device reads.
 #pragma once
 
 #include <cstddef>
@@ -23,16 +23,17 @@ class GridBytes {
 
   const std::byte* data() const { return loaded_ ? loaded_->data() : copy_.data(); }
   std::uint64_t bytes() const { return loaded_ ? loaded_->bytes() : bytes_; }
-  /// Of device memory, a buffer's that is larger than the grid counted whole: none where they stay in the host's.
+  /// Returns the bytes of device memory. A buffer that is larger than the grid counts in full; 0 if the bytes are in
+  /// host memory.
   std::uint64_t device_bytes() const { return loaded_ ? loaded_->device_bytes() : copy_.bytes(); }
-  /// For the next load; empty where this is a copy.
+  /// Returns the buffer for the next load; it is empty if this object is a copy.
   DeviceBuffer take_buffer() && {
     return loaded_ ? std::move(*std::exchange(loaded_, std::nullopt)).take_buffer() : DeviceBuffer{};
   }
 
  private:
   std::optional<DeviceGrid> loaded_;
-  DeviceArray<std::byte> copy_;  // up to a multiple of 16
+  DeviceArray<std::byte> copy_;  // rounded up to a multiple of 16 bytes
   std::uint64_t bytes_ = 0;
 };
 

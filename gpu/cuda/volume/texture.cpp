@@ -11,7 +11,7 @@
 
 namespace weir {
 
-// The empty texture is destroyed where the rest throws.
+// The delegated-to empty texture is destroyed if the rest throws.
 Texture::Texture(const Int3& size, TexelType type) : Texture() {
   size_ = size;
   type_ = type;
@@ -27,7 +27,7 @@ Texture::Texture(const Int3& size, TexelType type) : Texture() {
                           static_cast<std::size_t>(size.z)};
   const auto allocate = [&] { return cudaMalloc3DArray(&array_, &format, texels, cudaArraySurfaceLoadStore); };
   cudaError_t code = allocate();
-  if (code == cudaErrorMemoryAllocation) {  // what the pool of DeviceArrays keeps for reuse may do
+  if (code == cudaErrorMemoryAllocation) {  // memory that the pool of DeviceArrays keeps for reuse may suffice
     cudaGetLastError();
     free_device_bytes(~std::uint64_t{0});
     code = allocate();
@@ -68,7 +68,7 @@ std::uint64_t Texture::bytes() const {
 
 namespace {
 
-/// `depth` planes of floats.
+/// Returns copy parameters for `depth` planes of floats.
 cudaMemcpy3DParms planes_of(const float* planes, const Int3& size, std::int32_t depth) {
   cudaMemcpy3DParms copy{};
   copy.srcPtr = make_cudaPitchedPtr(const_cast<float*>(planes), static_cast<std::size_t>(size.x) * sizeof(float),

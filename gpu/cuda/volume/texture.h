@@ -1,5 +1,5 @@
-// A 3-D array of texels on the device, read through the texture unit and written
-// as a surface. Owns both.
+// A 3-D array of texels on the device, read through the texture unit and written as a surface. Owns array, texture
+// and surface.
 #pragma once
 
 #include <cuda_runtime_api.h>
@@ -10,10 +10,10 @@
 
 namespace weir {
 
-/// Texels along an axis of a 3-D texture, on every device since compute capability 5.0.
+/// Most texels along an axis of a 3-D texture, on every device since compute capability 5.0.
 inline constexpr std::int32_t kMaxTextureEdge = 16384;
 
-/// Floats, or 16 bits that are read as a share of the largest, in [0, 1].
+/// float32: floats; share16: 16 bits that are read as a fraction of the largest value, in [0, 1].
 enum class TexelType { float32, share16 };
 
 constexpr std::uint64_t texel_bytes(TexelType type) { return type == TexelType::float32 ? 4 : 2; }
@@ -21,8 +21,9 @@ constexpr std::uint64_t texel_bytes(TexelType type) { return type == TexelType::
 class Texture {
  public:
   Texture() = default;
-  /// size.x * size.y * size.z texels, uninitialised; read trilinear, unnormalised coordinates, clamped to the edge.
-  /// Throws DeviceFull where the device has no room, Error(input) where it has no textures that large.
+  /// Makes size.x * size.y * size.z uninitialised texels. They are read trilinearly, with unnormalised coordinates
+  /// that are clamped to the edge. Throws DeviceFull if the device has no room, Error(input) if it has no textures of
+  /// this size.
   explicit Texture(const Int3& size, TexelType type = TexelType::float32);
   ~Texture();
   Texture(Texture&& other) noexcept;
@@ -31,9 +32,9 @@ class Texture {
   cudaTextureObject_t object() const { return texture_; }
   cudaSurfaceObject_t surface() const { return surface_; }
   std::uint64_t bytes() const;
-  /// Planes [z, z + depth) of floats from dense host memory, x fastest.
+  /// Copies planes [z, z + depth) of floats from dense host memory, x fastest.
   void upload(const float* planes, std::int32_t z, std::int32_t depth);
-  /// All texels, floats, from dense device memory, x fastest, in the order of `stream`.
+  /// Copies all texels, which are floats, from dense device memory, x fastest, in the order of `stream`.
   void copy(const float* texels, cudaStream_t stream);
 
  private:

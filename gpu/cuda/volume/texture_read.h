@@ -1,4 +1,4 @@
-// What kernels read of textures.
+// How kernels read textures.
 #pragma once
 
 #include <cuda_runtime_api.h>
@@ -8,7 +8,7 @@
 
 namespace weir {
 
-/// A filtered texel, as the texture unit has it; kernels alone see textures.
+/// Returns a filtered texel as the texture unit delivers it. Only kernels can read textures.
 WEIR_HOST_DEVICE inline float read_texture([[maybe_unused]] cudaTextureObject_t texture, const Float3& at) {
 #if defined(__CUDA_ARCH__)
   return tex3D<float>(texture, at.x, at.y, at.z);

@@ -14,7 +14,7 @@ namespace {
 
 using Field = std::function<float(const Index3&)>;
 
-/// The derived errors of a lossless file of `kept` as one of `source`.
+/// Finds the derived errors of a lossless file of `kept` against `source`.
 class DerivedError : public testing::Test {
  protected:
   DerivedErrors of(const Box& domain, const Field& source, const Field& kept, const CompareOptions& options = {}) {
@@ -49,7 +49,7 @@ TEST_F(DerivedError, EqualVolumes_HaveNoErrorAndSimilarityOne) {
   EXPECT_NEAR(*all.similarity.mean, 1, 1e-12);
 }
 
-// Differences of a linear function are its slope, also at the faces.
+// The differences of a linear function equal its slope, also at the faces.
 TEST_F(DerivedError, GradientOfALinearErrorIsItsSlope) {
   const Field ramp = [](const Index3& i) { return static_cast<float>(4 * i.x - 2 * i.y + i.z); };
   const Field steeper = [&](const Index3& i) { return ramp(i) + 0.5F * static_cast<float>(i.x); };
@@ -76,7 +76,7 @@ TEST_F(DerivedError, AxesOfOneVoxelHaveNoSlope) {
   const DerivedErrors all = of({{0, 0, 0}, {9, 1, 1}}, zero, line);
   EXPECT_DOUBLE_EQ(all.gradient.max_abs, 3);
   EXPECT_EQ(all.gradient.relative_rms, std::nullopt);
-  EXPECT_EQ(all.similarity.mean, std::nullopt);  // of one value
+  EXPECT_EQ(all.similarity.mean, std::nullopt);  // the volume has one value
 }
 
 TEST_F(DerivedError, VoxelsBesideOnesThatAreNotFiniteAreLeftOut) {
@@ -90,8 +90,8 @@ TEST_F(DerivedError, VoxelsBesideOnesThatAreNotFiniteAreLeftOut) {
   EXPECT_NEAR(*all.similarity.mean, 1, 1e-12);
 }
 
-// Along an axis of one voxel no difference is taken, so that the voxel itself does not count: numpy.gradient of nine
-// values with one that is not finite has seven.
+// No difference is taken along an axis of one voxel, so a voxel's own value does not count. numpy.gradient of nine
+// values, one of them not finite, has seven finite values.
 TEST_F(DerivedError, OfALineOnlyTheNeighboursOfAValueThatIsNotFiniteAreLeftOut) {
   const Field source = [](const Index3& i) {
     return i.x == 4 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(i.x * i.x);
@@ -102,7 +102,7 @@ TEST_F(DerivedError, OfALineOnlyTheNeighboursOfAValueThatIsNotFiniteAreLeftOut) 
   EXPECT_EQ(all.gradient.left_out, 2U);
 }
 
-// Begins at 0 and at 3 along each axis: 7 of the 8 windows have a voxel of index 8 or above.
+// Windows begin at 0 and at 3 along each axis. 7 of the 8 windows have a voxel of index 8 or above.
 TEST_F(DerivedError, WindowsReachTheUpperFaces) {
   for (const Index3& lo : {Index3{0, 0, 0}, Index3{-5, 3, 6}}) {
     const Field kept = [&](const Index3& i) {
@@ -112,7 +112,7 @@ TEST_F(DerivedError, WindowsReachTheUpperFaces) {
     const DerivedErrors all = of({lo, lo + Index3{11, 11, 11}}, wave, kept);
     EXPECT_EQ(all.similarity.windows, 8U);
     EXPECT_LT(*all.similarity.mean, 0.9);
-    EXPECT_GT(*all.similarity.mean, -0.75);  // that of the lowest one is 1
+    EXPECT_GT(*all.similarity.mean, -0.75);  // the similarity of the lowest window is 1
   }
   EXPECT_EQ(of({{0, 0, 0}, {8, 12, 5}}, wave, wave).similarity.windows, 2U);
   EXPECT_EQ(of({{0, 0, 0}, {9, 13, 21}}, wave, wave).similarity.windows, 2U * 3 * 5);

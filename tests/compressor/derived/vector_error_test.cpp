@@ -26,7 +26,7 @@ test::MemoryVolume volume_of(const Component& component, const Box& domain) {
   return volume;
 }
 
-/// Of `source` and lossless files of `kept`.
+/// Returns the errors of lossless files of `kept` against `source`.
 VectorErrors errors_of(const Field& source, const Field& kept, const CompareOptions& options = {}) {
   std::vector<test::MemoryVolume> sources;
   std::vector<test::Converted> files;
@@ -47,12 +47,12 @@ double y(const Index3& i) { return 0.5 * static_cast<double>(i.y); }
 double z(const Index3& i) { return 2.0 * static_cast<double>(i.z); }
 double none(const Index3&) { return 0; }
 
-/// About the z axis, `omega` radians in a unit of time.
+/// Returns the velocity of a rotation about the z axis by `omega` radians per unit of time.
 Field rotation(double omega) {
   return {[=](const Index3& i) { return -omega * y(i); }, [=](const Index3& i) { return omega * x(i); }, none};
 }
 
-// A solid body's vorticity is twice its rate of rotation, and its divergence is 0.
+// The vorticity of a solid body is twice its rate of rotation, and its divergence is 0.
 TEST(VectorErrors, OfASolidBodyThatRotatesTooFast) {
   const VectorErrors found = errors_of(rotation(1.5), rotation(2));
   EXPECT_EQ(found.voxels, static_cast<std::uint64_t>(kDomain.voxels()));
@@ -78,7 +78,7 @@ TEST(VectorErrors, OfAFieldThatGrowsTooMuchInEveryDirection) {
   EXPECT_EQ(found.vorticity.rms, 0);
 }
 
-// Each part of the vorticity, with its sign: those of one axis do not hide those of another.
+// Each part of the vorticity counts with its sign. The parts of one axis do not hide those of another.
 TEST(VectorErrors, EveryPartOfTheVorticityCounts) {
   const Field still{none, none, none};
   const auto vorticity = [&](const Field& kept) { return errors_of(still, kept).vorticity.max_abs; };

@@ -26,7 +26,7 @@ TEST(LeafRecord, OutwardLayersFaceOutOfTheMacrocell) {
       EXPECT_EQ(record.bounds.min, statistics.min);
       EXPECT_EQ(record.bounds.max, statistics.max);
       for (unsigned d = 1; d < 8; ++d) {
-        // Voxels next to the macrocell's side along every axis that d names.
+        // The voxels that lie at the macrocell's side along every axis that d names.
         MinMax expected = kNoBounds;
         for (std::int64_t n = 0; n < 512; ++n) {
           const Index3 i = node.lo + Index3{n >> 6, n >> 3 & 7, n & 7};

@@ -20,7 +20,7 @@ using test::MemoryVolume;
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
-// Bounds by reading every voxel in reach; outside the domain the background counts.
+// Finds the bounds by reading every voxel in reach. Outside the domain the background counts.
 MinMax bounds_by_reading(const NvdbGrid& grid, const Box& domain, const Box& cell) {
   const Index3 apron{1, 1, 1};
   const Box reach{cell.lo - apron, cell.hi + apron};
@@ -48,7 +48,7 @@ void expect_tight_bounds(const Converted& converted) {
     const MinMax& found = view.cells[static_cast<std::size_t>(i)];
     ASSERT_EQ(found.min, expected.min) << cell.lo.x << ' ' << cell.lo.y << ' ' << cell.lo.z;
     ASSERT_EQ(found.max, expected.max) << cell.lo.x << ' ' << cell.lo.y << ' ' << cell.lo.z;
-    // Nothing a filter can reach lies outside, inactive tiles beyond the domain included.
+    // No value that a filter can reach lies outside the bounds, including inactive tiles beyond the domain.
     const Box reach{cell.lo - Index3{1, 1, 1}, cell.hi + Index3{1, 1, 1}};
     for (std::int64_t n = 0; n < reach.voxels(); ++n) {
       const float v = grid.value(reach.lo + index_at(n, reach.extent()));
@@ -99,7 +99,7 @@ TEST(Macrocells, IgnoreNaNAndHoldInfinity) {
 }
 
 TEST(Macrocells, BytesDoNotDependOnTheOrderOfRegions) {
-  // Two regions that meet in one cell's reach, one with zeros of either sign.
+  // Two regions that meet in the reach of one cell. One region has zeros of both signs.
   const Box domain{{0, 0, 0}, {256, 8, 8}};
   std::vector<std::uint32_t> low_bits;
   for (const bool left_first : {true, false}) {
@@ -123,7 +123,7 @@ TEST(Macrocells, AreTheSameHoweverManyLayersOfRegionsTheWindowHas) {
   const auto cells_of = [&](const std::vector<std::int64_t>& layers) {
     MacrocellBuilder builder(domain, 0.5F);
     std::vector<MinMax> all;
-    std::int64_t z = -2;  // of the first layer of regions
+    std::int64_t z = -2;  // the first layer of regions
     for (const std::int64_t count : layers) {
       builder.begin_layers(z, count);
       for (const std::int64_t end = z + count; z < end; ++z) {

@@ -40,7 +40,7 @@ TEST(RecordBatch, WritesWhatEachLeafAloneGives) {
   }
 }
 
-// Some are computed, others known: those that follow each other in memory, and those that do not.
+// Some records are computed, others are known. Of the known ones, some are adjacent in memory and some are not.
 TEST(RecordBatch, WritesKnownRecordsAmongOthers) {
   constexpr std::uint64_t kRecords = 500;
   RecordStore store(test::CrashFileSystem().create_unnamed("records"), kRecords);
@@ -83,7 +83,7 @@ TEST(RecordBatch, WritesKnownRecordsAmongOthers) {
   EXPECT_EQ(batch.sum(), sum);
 }
 
-// An exception keeps a thread's records from being flushed; the next region may be this thread's all the same.
+// An exception keeps a thread's records from being flushed. The thread may still get the next region.
 TEST(RecordBatch, DropsWhatWasNotFlushedWhereFurtherRecordsGoElsewhere) {
   std::vector<LeafRecord> known(3);
   known[0].mean = 5;

@@ -1,4 +1,4 @@
-// What a forecast says of a conversion, against what the conversion then does.
+// Compares the forecast of a conversion with the conversion itself.
 #include "compressor/forecast/forecast.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ using test::MemoryVolume;
 
 constexpr std::uint64_t kMiB = std::uint64_t{1} << 20U;
 
-// In [0, 1): noise.
+// Noise in [0, 1).
 float noise(const Index3& i) {
   auto z = static_cast<std::uint64_t>(i.x + 4096 * (i.y + 4096 * i.z)) * 0x9E3779B97F4A7C15U;
   z = (z ^ z >> 30U) * 0xBF58476D1CE4E5B9U;
@@ -31,7 +31,7 @@ float noise(const Index3& i) {
   return static_cast<float>(static_cast<double>(z >> 40U) * 0x1p-24);
 }
 
-// One half empty, the other noise below and waves above: parts that cost differently.
+// One half is empty; the other half is noise below and waves above. So the parts cost differently.
 float uneven(const Index3& i) {
   if (i.x < 100) return 0;
   if (i.z < 60) return noise(i);
@@ -122,7 +122,7 @@ TEST_F(ForecastTest, RecordsThatMemoryDoesNotHold_AreScratch) {
   EXPECT_GE(records, 512U * (64 + 120 + 144));
   const Forecast held = forecast(volume, asked, kForecastBytes);
   EXPECT_EQ(held.scratch_bytes, 0U);
-  asked.resume = Resume::on;  // then another process has to find them
+  asked.resume = Resume::on;  // another process must be able to find the records
   const Forecast spilled = forecast(volume, asked, kForecastBytes);
   EXPECT_EQ(spilled.scratch_bytes, records);
 }
@@ -157,7 +157,7 @@ TEST_F(ForecastTest, SampleForAnErrorTarget_TellsTheSize) {
   EXPECT_GE(f.file_bytes.high, bytes);
 }
 
-// What lies above 0.45, in all of the volume or in its upper part alone.
+// A scene that shows values above 0.45, in the whole volume or only in its upper part.
 SceneFile upper_values(bool region) {
   SceneFile file;
   file.path = "scene.toml";
@@ -367,7 +367,7 @@ TEST_F(ForecastTest, FullDisk_IsReported) {
   MemoryVolume volume({{0, 0, 0}, {64, 64, 64}}, uneven);
   ConversionOptions asked = options(Encoding::float32, Budget::Kind::size);
   asked.budget.bytes = 600000;
-  asked.resume = Resume::on;  // with records on the disk
+  asked.resume = Resume::on;  // the records lie on the disk
   FaultyFileSystem disk(*files_, -1, 0);
   disk.leave_free(600000);
   const std::string message =

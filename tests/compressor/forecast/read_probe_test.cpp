@@ -10,7 +10,7 @@
 namespace weir::read_probe_test {
 namespace {
 
-// Waits at each read.
+// A volume that waits at each read.
 class SlowVolume final : public VolumeSource {
  public:
   const SourceInfo& info() const override { return volume_.info(); }

@@ -45,7 +45,7 @@ TEST_F(SampleCopyTest, HoldsTheValuesOfTheSample) {
   EXPECT_TRUE(list_directory(directory_.path()).empty());
 }
 
-/// Says of each read that it rounded one value by an eighth.
+/// A volume that reports for each read that one value was rounded by an eighth.
 class RoundedVolume final : public VolumeSource {
  public:
   explicit RoundedVolume(VolumeSource& source) : source_(source) {}

@@ -12,7 +12,7 @@ namespace {
 
 using test::MemoryVolume;
 
-// A value that says where it lies.
+// A value that tells its position.
 float at(const Index3& i) { return static_cast<float>(i.x + 1000 * i.y + 1000000 * i.z); }
 
 const Box kDomain{{-4, 3, 0}, {136, 140, 130}};
@@ -32,7 +32,7 @@ TEST(SamplePlaces, VoxelOfASample_LiesWhereItWasTaken) {
     EXPECT_TRUE(sample.places()->cell(voxel).contains(voxel));
     EXPECT_EQ(sample.places()->reach(voxel), nullptr) << "nothing was read around it";
   }
-  // Of a part, too, which is read from the sample.
+  // The same for a part, which is read from the sample.
   for (const SamplePlan& part : plan.parts()) {
     SampledSource of_sample(sample, part, SampledSource::From::copy);
     const Index3 voxel = part.domain().hi - Index3{2, 3, 4};

@@ -38,7 +38,7 @@ TEST(SamplePlan, LargeVolume_IsSampledByRowsInWholeLowerNodes) {
 TEST(SamplePlan, Places_AreSpreadEvenly) {
   const Box domain{{0, 0, 0}, {1024, 1024, 1024}};
   const SamplePlan plan(domain, {}, std::int64_t{64} << 20U, 1);
-  // One of the 32 x 32 places in each square of 32 x 32 voxels of y and z.
+  // Each square of 32 x 32 voxels in y and z has one of the 32 x 32 places.
   for_each_index({{}, plan.counts()}, [&](const Index3& place) {
     const Index3 at = plan.source_corner(place);
     EXPECT_EQ(at.y / 32, place.y);

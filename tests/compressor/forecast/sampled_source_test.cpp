@@ -13,7 +13,7 @@ using test::MemoryVolume;
 
 float at(const Index3& i) { return static_cast<float>(i.x + 1000 * i.y + 1000000 * i.z); }
 
-// What the sample must hold at each of its voxels, by its plan.
+// Returns the values that the sample must hold in `box` according to its plan.
 std::vector<float> expected(const SamplePlan& plan, const Box& box) {
   std::vector<float> values;
   for_each_index(box, [&](const Index3& i) {
@@ -57,7 +57,7 @@ TEST(SampledSource, OfAWholeVolume_IsTheVolume) {
 }
 
 TEST(SampledSource, FindsTheRegionsThatVary) {
-  // Eight regions, of which those with x >= 128 and z < 128 vary.
+  // Of the eight regions, those with x >= 128 and z < 128 vary.
   MemoryVolume volume({{0, 0, 0}, {256, 256, 256}},
                       [](const Index3& i) { return i.x >= 128 && i.z < 128 ? at(i) : -1.0F; });
   const SamplePlan plan(volume.info().domain(), {}, 256 * 128 * 128, 1);

@@ -7,7 +7,7 @@
 namespace weir::work_time_test {
 namespace {
 
-// 1 s, and 2 s for each 100 voxels.
+// A fixed time of 1 s, plus 2 s for each 100 voxels.
 double exactly(double voxels) { return 1 + 0.02 * voxels; }
 
 TEST(WorkTime, WhatEveryConversionTakes_IsCountedOnce) {

@@ -61,10 +61,10 @@ TEST(LeafDifference, NegativeZeroDiffersInBitsOnly) {
 
 TEST(LeafDifference, NonFiniteValuesAreCountedAndLeftOut) {
   Pair leaf;
-  leaf.source[0] = kNaN;  // reads 0
-  leaf.source[1] = kInf;  // reads +Inf: the same bits
+  leaf.source[0] = kNaN;  // decodes to 0
+  leaf.source[1] = kInf;  // decodes to +Inf: the same bits
   leaf.decoded[1] = kInf;
-  leaf.source[2] = -kInf;  // reads +Inf
+  leaf.source[2] = -kInf;  // decodes to +Inf
   leaf.decoded[2] = kInf;
   leaf.decoded[3] = kNaN;  // the source is 0
   leaf.source[4] = 2.0F;

@@ -52,7 +52,7 @@ TEST(LeafLattice, MultiplesOfAStep) {
   expect({100.5F, 101, 103}, 0.5F, 5);
   expect({3e-20F, 3e-20F + std::ldexp(1.0F, -80)}, std::ldexp(1.0F, -80), 1);
   expect({std::ldexp(1.0F, 90), std::ldexp(3.0F, 90)}, std::ldexp(2.0F, 90), 1);
-  expect({0, 0.1F}, 0.1F, 1);  // two values always lie on one
+  expect({0, 0.1F}, 0.1F, 1);  // two values always lie on a lattice
 }
 
 TEST(LeafLattice, ValuesOffAnyLattice_HaveNone) {
@@ -62,7 +62,7 @@ TEST(LeafLattice, ValuesOffAnyLattice_HaveNone) {
   EXPECT_FALSE(lattice_of({0, -0.0F, 2}));
   EXPECT_FALSE(lattice_of({1e-40F, 3e-40F}));
   EXPECT_FALSE(lattice_of({-3e38F, 3e38F}));
-  EXPECT_FALSE(lattice_of({0, 0x1p-80F, 0x1p100F}));  // in units of the largest one's last bit it underflows to 0
+  EXPECT_FALSE(lattice_of({0, 0x1p-80F, 0x1p100F}));  // 2^-80 underflows to 0 in units of the largest value's last bit
   EXPECT_FALSE(lattice_of({0, 0x1p-149F, 0x1p40F}));
   std::mt19937 random(5);
   std::normal_distribution<float> normal(0, 1);
@@ -80,7 +80,7 @@ TEST(LeafLattice, FindsRandomLattices) {
     std::vector<float> values(1 + random() % 510);
     for (float& v : values) v = base + step * static_cast<float>(random() % levels);
     values.push_back(base);
-    values.push_back(base + step);  // so that no coarser one holds them
+    values.push_back(base + step);  // so that no coarser lattice holds the values
     const auto lattice = lattice_of(values);
     if (base <= 0 && std::signbit(base * 0.0F)) continue;
     ASSERT_TRUE(lattice) << step << ' ' << base;

@@ -36,7 +36,7 @@ std::vector<float> noise(std::size_t count, float scale, float offset, unsigned 
   std::mt19937 random(seed);
   std::vector<float> values(count);
   for (float& v : values) {
-    float sum = 0;  // of four: near enough to a normal distribution, the same everywhere
+    float sum = 0;  // four terms are close enough to a normal distribution, and the same on every machine
     for (int k = 0; k < 4; ++k) sum += static_cast<float>(random() % 65536) / 65536.0F - 0.5F;
     v = offset + scale * sum;
   }
@@ -54,7 +54,7 @@ TEST(LeafQuantiser, RefittingBeatsLevelsOverTheRange) {
 }
 
 TEST(LeafQuantiser, OneBitIsTheBestSplitInTwo) {
-  // Two clusters: the least squared error is that about their means, found by trying every split.
+  // Two clusters. The least squared error is the error about the means of the best split, which is found by trying all.
   auto values = noise(300, 0.3F, 1, 2);
   const auto upper = noise(100, 0.5F, 4, 3);
   values.insert(values.end(), upper.begin(), upper.end());
@@ -97,7 +97,7 @@ TEST(LeafQuantiser, SmallSignalOnALargeOffset) {
   }
 }
 
-// Values of many kinds of leaves, the same on every machine.
+// Returns the values of many kinds of leaves, which are the same on every machine.
 std::vector<std::vector<float>> kinds_of_leaves() {
   std::vector<std::vector<float>> kinds;
   for (unsigned seed = 1; seed <= 40; ++seed) {
@@ -108,7 +108,7 @@ std::vector<std::vector<float>> kinds_of_leaves() {
     kinds.push_back(noise(37, 1e-30F, 1e-30F, seed));
     kinds.push_back(noise(512, 0x1p-117F, 0, seed));
     kinds.push_back(noise(512, 0x1p-122F, -0x1p-100F, seed));
-    std::vector<float> density = noise(512, 2, -0.4F, seed);  // empty space and what is in it
+    std::vector<float> density = noise(512, 2, -0.4F, seed);  // empty space with a density in it
     for (float& v : density) v = std::max(v, 0.0F);
     kinds.push_back(density);
     for (float& v : density) v = -v;
@@ -175,7 +175,8 @@ TEST(LeafQuantiser, ARangeTooSmallForFloat_IsOneLevel) {
   }
 }
 
-// Noise over nearly all that float holds: levels cover the middle of it. Errors in parts of what the mean alone leaves.
+// Noise over nearly the whole range of float. Levels cover the middle of that range. Errors are relative to the error
+// of the mean alone.
 TEST(LeafQuantiser, ARangeBeyondFloat_HasLevelsOverAsMuchAsFloatHolds) {
   std::vector<float> values = noise(512, 1, 0, 7);
   const float most = std::fabs(
@@ -212,7 +213,7 @@ TEST(LeafQuantiser, RangeLevelsAreWithinHalfAQuantum) {
   }
 }
 
-// Levels near which most values lie, and a few values that no lattice holds.
+// Most values lie near a few levels, and a few values lie on no lattice.
 std::vector<float> near_a_lattice(std::mt19937& random) {
   const auto uniform = [&] { return static_cast<float>(random() % 65536) / 65536.0F; };
   const auto levels = 2 + random() % (1U << (1 + random() % 8));
@@ -240,7 +241,7 @@ TEST(LeafQuantiser, MoreBitsNeverDoWorse_NearALattice) {
   }
 }
 
-// Where the levels of few bits, as many as those of many, would lie beyond float.
+// The levels of few bits would lie beyond float if there were as many as levels of many bits.
 TEST(LeafQuantiser, MoreBitsNeverDoWorse_NearALatticeOverNearlyAllOfFloat) {
   for (unsigned seed = 1; seed <= 100; ++seed) {
     std::vector<float> values = noise(512, 1e33F, 0, seed);
@@ -255,7 +256,7 @@ TEST(LeafQuantiser, MoreBitsNeverDoWorse_NearALatticeOverNearlyAllOfFloat) {
   }
 }
 
-// As of labels: four values, and a few voxels that two of them share.
+// Like a volume of labels: four values, and a few voxels that are mixtures of two labels.
 TEST(LeafQuantiser, MoreBitsNeverDoWorse_NearFourLevels) {
   std::vector<float> values{0.236F, 0.819F, 1.075F, 1.306F, 2.088F, 2.22F, 2.383F, 2.497F, 2.83F, 3.334F, 3.547F};
   for (int i = 0; i < 501; ++i) values.push_back(static_cast<float>(i % 4));

@@ -1,4 +1,4 @@
-// What is computed of values that repeat each other is the same, bit for bit, as without knowing it.
+// Results for values that are known to repeat each other are the same, bit for bit, as without that knowledge.
 #include "compressor/leaf/leaf_repeats.h"
 
 #include <gtest/gtest.h>

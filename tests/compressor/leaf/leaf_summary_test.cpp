@@ -25,7 +25,7 @@ std::uint32_t bits_of(float v) { return std::bit_cast<std::uint32_t>(v); }
 struct Values {
   std::string name;
   std::vector<float> values;
-  bool exact = false;  // all sums are exact in double: compare without tolerance
+  bool exact = false;  // all sums are exact in double, so the test compares without tolerance
 };
 
 std::ostream& operator<<(std::ostream& out, const Values& v) { return out << v.name; }
@@ -61,7 +61,7 @@ std::vector<Values> value_sets() {
       {"ZerosOfBothSigns", draw(512, [](auto& r) { return r() % 2 == 0 ? 0.0F : -0.0F; }), true},
       {"ZeroPlusMinus", {0.0F, -1.0F, 1.0F, -0.0F}, true},
   };
-  // Every length: lanes and their remainders.
+  // Every length tests the lanes and their remainders.
   for (std::size_t count = 1; count <= 50; ++count) {
     sets.push_back(
         {"Length" + std::to_string(count), draw(count, [](auto& r) { return static_cast<float>(r() % 1024); }), true});
@@ -103,7 +103,7 @@ TEST_P(LeafSummaryTest, HasTheSumsOfTheFiniteValues) {
     EXPECT_EQ(row.residual, static_cast<float>(residual));
   } else {
     EXPECT_NEAR(row.sse, static_cast<double>(squares), static_cast<double>(squares) * 1e-15);
-    // The residual of a rounded mean: far below the spread of the values, so absolute.
+    // The residual of a rounded mean is far below the spread of the values, so the tolerance is absolute.
     const double scale = std::sqrt(static_cast<double>(squares) / static_cast<double>(finite.size()));
     EXPECT_NEAR(static_cast<double>(row.residual), static_cast<double>(residual),
                 std::abs(static_cast<double>(residual)) * 6e-8 + scale * 1e-12);
@@ -182,7 +182,7 @@ TEST(LeafSummary, ZerosOfBothSignsAreNotUniformAndMeanZero) {
 }
 
 TEST(LeafSummary, SumsStayExactAroundOneHundredMillion) {
-  // One ulp of 1e8 is 8: the signal of 1e-3 is gone in the source itself, and the sums stay exact.
+  // One ulp of 1e8 is 8. The source itself has lost the signal of 1e-3, and the sums stay exact.
   std::vector<float> values(512, 1e8F + 1e-3F);
   EXPECT_EQ(summarize_leaf(values, 0).mean, 1e8F);
   for (std::size_t i = 0; i < 512; ++i) values[i] = 1e8F + (i % 2 == 0 ? 8.0F : 0.0F);
@@ -202,7 +202,7 @@ TEST(LeafSummary, SamplePositionIsInRangeAndSpread) {
       ASSERT_LT(at, count);
       ++hits[at];
     }
-    // Six standard deviations around even.
+    // The hits stay within six standard deviations of an even distribution.
     const double mean = 20000.0 / static_cast<double>(count);
     for (const int n : hits) EXPECT_NEAR(n, mean, 6 * std::sqrt(mean) + 1e-9);
   }

@@ -60,8 +60,8 @@ TEST(QuantisedLeaf, WholeNumbersAreExactAtTheFirstWidthThatHoldsTheirRange) {
     values[3] = -20000;
     values[5] = static_cast<float>(static_cast<double>(levels) - 20001.0);
     expect_exact(quantised(values, log2), values);
-    values[7] = values[5] + 1;  // one level more than the codes have
-    values[9] = values[3] + 1;  // and no coarser lattice
+    values[7] = values[5] + 1;  // one level more than there are codes
+    values[9] = values[3] + 1;  // rules out a coarser lattice
     const QuantisedLeaf lossy = quantised(values, log2);
     EXPECT_EQ(lossy.kept, Kept::lossy);
     EXPECT_GT(lossy.squared_error, 0);
@@ -107,7 +107,7 @@ TEST(QuantisedLeaf, ReplacedValuesAreCodedButCountForNoError) {
   LeafValues source = random_values(1);
   for (std::size_t i = 0; i < source.size(); i += 7) source[i] = kNaN;
   LeafValues values = source;
-  for (float& v : values) v = std::isnan(v) ? 50.0F : v;  // far outside the others' range
+  for (float& v : values) v = std::isnan(v) ? 50.0F : v;  // far outside the range of the other values
   const QuantisedLeaf leaf = quantise_leaf(values, source, kNode, kNode, 3);
   double squares = 0;
   for (std::size_t i = 0; i < source.size(); ++i) {

@@ -8,7 +8,7 @@ namespace weir::taken_codes_test {
 namespace {
 
 TEST(TakenCodes, CountsThoseThatMoreThanAFewHave) {
-  // Code c, c times.
+  // Code c occurs c times.
   for (const unsigned bits : {1U, 2U, 4U}) {
     std::vector<std::uint16_t> codes;
     const unsigned end = 1U << bits;

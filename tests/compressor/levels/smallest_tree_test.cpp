@@ -1,4 +1,4 @@
-// The size of the smallest tree as it is known before a value is read, against that which a conversion names.
+// Compares the size of the smallest tree, as it is known before a value is read, with the size that a conversion names.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -14,7 +14,7 @@
 namespace weir::smallest_tree_test {
 namespace {
 
-/// Two levels, the coarse one of two regions and more, with boxes of both that end inside of blocks.
+/// Returns a plotfile of two levels. The coarse level has two regions and more. Boxes of both levels end inside blocks.
 test::PlotfilePlan two_levels() {
   test::PlotfilePlan plan;
   plan.domain = {{3, 0, 0}, {143, 40, 30}};

@@ -12,7 +12,7 @@ namespace {
 
 using Options = std::map<std::string, std::string>;
 
-/// Of each option of input and method: texts that mean the same, each of them not what is meant without it.
+/// Texts with the same meaning, for each option of input and method. No text means the option's default.
 const std::map<std::string, std::vector<std::string>> kSameTexts{
     {"dims", {"4,5,6", "4x5x6"}},
     {"type", {"float32", "float", "f4", "<f4"}},
@@ -50,8 +50,8 @@ TEST(CanonicalOptions, EveryOptionThatDecidesIsInThem_TheSameHoweverItIsWritten)
   for (const auto table : {input_options(), method_options()}) {
     for (const ConversionOption& option : table) {
       const std::string key(option.row.key);
-      // How it is read and certified changes nothing; a brick needs another metric, at-most a size, a
-      // preview packed blocks; a scene a file.
+      // direct-io and certify do not change the file. brick needs another metric, at-most a size, preview packed
+      // blocks, and scene a file.
       if (key == "direct-io" || key == "certify" || key == "brick" || key == "at-most" || key == "scene") continue;
       if (key == "preview") continue;
       ASSERT_TRUE(kSameTexts.contains(key)) << key;

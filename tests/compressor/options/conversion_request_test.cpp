@@ -1,4 +1,4 @@
-// What options ask for together.
+// The conversion that several options request together.
 #include "compressor/options/conversion_request.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The choices of the table are the names that sidecars have.
+// The choices in the option table are the names that sidecars use.
 #include <gtest/gtest.h>
 
 #include <string>

@@ -1,4 +1,4 @@
-// What a budget will buy, judged by a sample, which is all of the small volumes.
+// The outlook for a budget, judged by a sample. The sample of a small volume is the whole volume.
 #include "compressor/outlook/budget_outlook.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ test::MemoryVolume make_volume(const char* kind, std::int64_t edge, const Change
   return {volume.info().domain(), std::move(values)};
 }
 
-// A cube of that many voxels along each edge, surveyed for packed blocks without a preview.
+// A cube of `edge` voxels along each axis, surveyed for packed blocks without a preview.
 class Cube {
  public:
   Cube(const char* kind, std::int64_t edge, const Change& change = {}) : volume_(make_volume(kind, edge, change)) {
@@ -53,7 +53,7 @@ class Cube {
     request.packed.preview = Preview::off;
     return outlook_of(request, *rows_);
   }
-  // The cut of a file of the volume that has 1 / rate of the dense bytes.
+  // Returns the cut of a file of the volume with 1 / rate of the dense bytes.
   std::optional<double> cut(double rate) const {
     GainRule rule;
     rule.encoding = Encoding::packed;
@@ -87,13 +87,14 @@ TEST(BudgetOutlook, DenseTurbulenceHasThemWhereNearlyAllIsKeptAlone) {
   EXPECT_EQ(bought_at("turbulence", 140), NearBlocks::all);
 }
 
-// Of 256^3 voxels all eight regions have something: their preview takes 0.27 MB, ten times that is the least of a file.
+// In 256^3 voxels all eight regions have values. Their preview takes 0.27 MB; a file has it only from ten times that
+// on.
 TEST(BudgetOutlook, FilesThatAreClearlyShorterThanTenPreviewsAreKnown) {
   EXPECT_TRUE(outlook_at("turbulence", 40, 256).short_of_preview);
   EXPECT_FALSE(outlook_at("turbulence", 100, 256).short_of_preview);
 }
 
-// Rows of a dense volume take about as many bytes each; few rows of a sparse one have anything.
+// All rows of a dense volume take about the same number of bytes. In a sparse volume few rows have any values.
 TEST(BudgetOutlook, TheCutOfADenseVolumeLiesInANarrowWindow) {
   for (const char* kind : {"turbulence", "noise", "tiny", "denormal"}) {
     const Cube cube(kind, 256);
@@ -114,7 +115,7 @@ TEST(BudgetOutlook, TheCutOfASparseVolumeMayLieFarAway) {
   }
 }
 
-// What blocks without finite values take is not judged.
+// The sample does not judge what blocks without finite values take.
 TEST(BudgetOutlook, TheCutOfAVolumeWithMissingValuesMayLieFarAway) {
   const Cube cube("turbulence", 256, [](std::vector<float>& values) {
     std::fill_n(values.begin(), values.size() / 10, std::numeric_limits<float>::quiet_NaN());

@@ -1,4 +1,4 @@
-// The sampled blocks of a volume: how many, where, and that both ways to ask agree.
+// The sampled blocks of a volume: their number, their places, and that has() and rows() agree.
 #include "compressor/packed/block_sample.h"
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ TEST(BlockSample, IsAllOfASmallVolumeAndASmallPartOfALargeOne) {
   EXPECT_EQ(BlockSample(make_lattice({{0, 0, 0}, {2048, 2048, 2048}}, kLeafDim)).size(), 8192);
 }
 
-// What is in a few long rows of a sparse volume may be anything.
+// A few long rows of a sparse volume may hold anything, so a long volume needs many rows.
 TEST(BlockSample, HasManyRowsOfALongVolume) {
   EXPECT_GE(BlockSample(make_lattice({{0, 0, 0}, {8 * 65, 320, 200}}, kLeafDim)).size(), 1000);
   EXPECT_GE(BlockSample(make_lattice({{0, 0, 0}, {8 * 129, 320, 200}}, kLeafDim)).size(), 1000);

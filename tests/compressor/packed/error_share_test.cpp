@@ -1,4 +1,4 @@
-// Shares of a block's error as two bytes: the nearest one that there is.
+// A share of a block's error in two bytes is the nearest share that two bytes can hold.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace weir::error_share_test {
 namespace {
 
-// Of eleven significant bits, as the type promises it.
+// Returns the nearest share with eleven significant bits, as the type promises.
 double nearest(double share) {
   int exponent = 0;
   const double mantissa = std::frexp(share, &exponent);

@@ -1,4 +1,4 @@
-// Near rungs of blocks of several kinds: what they take and lose, and that there are none where exact is shorter.
+// Near rungs of several kinds of blocks: their bytes and errors, and that there is none if the exact stream is shorter.
 #include "compressor/packed/ladder_builder.h"
 
 #include <gtest/gtest.h>
@@ -48,7 +48,7 @@ TEST(LadderBuilder, NearRungsOfASmoothBlockTakeFewerBytesTheMoreTheyLose) {
   EXPECT_EQ(ladder.exact, ExactKind::ordered);
 }
 
-// Rounded to the coarser ones of the usual quanta, it is of one value.
+// Rounded to the coarser of the usual quanta, the block has only one value.
 TEST(LadderBuilder, BlocksFarFromZeroHaveNearRungs) {
   const PackedLadder ladder = ladder_of(filled([](double x, double y, double z) {
     return static_cast<float>(1000 + 0.02 * (std::sin(0.3 * x + 0.2 * y) + std::cos(0.4 * z)));
@@ -80,7 +80,7 @@ TEST(LadderBuilder, BlocksOnALatticeAreExactWithoutTheFloatsOrder) {
   EXPECT_LT(ladder.exact_bytes, 1000);
 }
 
-// Whole numbers in floats: rounded to less than half their distance they take more bits.
+// Whole numbers in floats. Rounded to within less than half their distance, they take more bits than exact ones.
 TEST(LadderBuilder, ABoundBelowTheStepOfALatticeTakesNoMoreThanExact) {
   const LeafValues block = filled([](double x, double y, double z) {
     return static_cast<float>(std::fmod(37 * x * x + 11 * y * z + 5 * z * z * x, 251));

@@ -1,5 +1,5 @@
-// Ladders of the rungs that a window can choose: built so or left over of all rungs they are the same (near rungs are
-// always built for the window), and what they have is what a cut in the window chooses of all.
+// Ladders of only those rungs that a window can choose. Built directly or cut down from all rungs, they are the same
+// (near rungs are always built for the window). They hold what a cut in the window chooses among all rungs.
 #include "compressor/packed/ladder_window.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@
 namespace weir::ladder_window_test {
 namespace {
 
-// Waves, with noise, steps or far from zero, of many sizes.
+// Returns waves of many sizes, with noise, with steps or far from zero.
 LeafValues block_of(unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(-1, 1);
@@ -50,7 +50,7 @@ bool same_rung(const PackedRung& a, const PackedRung& b) {
 
 constexpr double kLeastReach = 1.25;
 
-// About a key, where the block's region has no other means.
+// Returns a window about a key, for a region in which no other block has another mean.
 KeyWindow window_of(const LeafRow& row, double key, double reach = KeyWindow::kMostReach) {
   return {key, row.max - row.min, reach};
 }
@@ -72,14 +72,14 @@ Ladders ladders_of(const LeafValues& block, double key, NearRungs near, double r
   return ladders;
 }
 
-// Keys from those of the coarsest rungs to those of near ones.
+// Returns keys from those of the coarsest rungs to those of near rungs.
 std::vector<double> keys_of(const LeafRow& row) {
   std::vector<double> keys;
   for (int octave = -4; octave < 40; octave += 2) keys.push_back(row.sse / 8 * std::ldexp(1.3, -octave));
   return keys;
 }
 
-// From 4 to 64 values that are not zero, next to each other.
+// Returns a block of zeros with 4 to 64 other values next to each other.
 LeafValues sparse_block_of(unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(-1, 1);
@@ -116,7 +116,7 @@ TEST_P(LadderWindowOf, WhatTheSurveyBuildsIsWhatIsLeftOfAllRungs) {
   }
 }
 
-// Squared error plus key times bytes of the best of those rungs, or of the mean alone.
+// Returns the squared error plus key times bytes of the best rung in `range`, or of the mean alone.
 double least_cost(const PackedLadder& ladder, const LadderRange& range, const LeafRow& row, double key) {
   double least = row.sse + key;
   const auto add = [&](const std::optional<RungPoint>& point) {
@@ -131,11 +131,11 @@ LadderRange all_of(const PackedLadder& ladder) {
   return {{PackedLadder::kMeanRungs, ladder.count}, {0, ladder.near_count}};
 }
 
-// Cuts in windows of a reach, and those whose best rung the window does not hold.
+// Counts of cuts in windows of one reach, and of cuts with a best rung that the window does not hold.
 struct Cuts {
   int all = 0;
   int worse = 0;
-  double excess = 0;  // of their cost, as a share, summed
+  double excess = 0;  // sum of the relative excess cost of these cuts
 };
 Cuts cuts_of(LeafValues (*make)(unsigned seed), unsigned seeds, double reach) {
   Cuts cuts;
@@ -161,13 +161,13 @@ Cuts cuts_of(LeafValues (*make)(unsigned seed), unsigned seeds, double reach) {
 TEST_P(LadderWindowOf, HoldsTheBestRungOfEachCutInIt) {
   const Cuts cuts = cuts_of(block_of, 200, GetParam());
   EXPECT_GT(cuts.all, 5000);
-  // Some blocks on a lattice save more by the next rung but one than by the next.
+  // Some blocks on a lattice save more with the rung after the next than with the next one.
   EXPECT_LE(cuts.worse, cuts.all / 100);
   EXPECT_LT(cuts.excess / cuts.all, 0.001);
 }
 
-// A finer rung of a block with few values takes a byte or two more. Rounded to whole bytes, one rung is dear and the
-// next one is cheap: the search goes on beyond a dear one.
+// A finer rung of a block with few values takes a byte or two more. Rounded to whole bytes, one rung may be expensive
+// and the next one cheap, so the search goes on beyond an expensive rung.
 TEST_P(LadderWindowOf, HoldsTheBestRungOfSparseBlocks) {
   const Cuts cuts = cuts_of(sparse_block_of, 400, GetParam());
   EXPECT_GT(cuts.all, 20000);
@@ -193,8 +193,8 @@ TEST(LadderWindow, LeavesOutTheKindOfRungsThatIsFarBehind) {
   EXPECT_GT(transform_alone, 500);
 }
 
-// Where a region's means are so far from each other that they have no codes, rungs of the transform are of no use,
-// which the survey of a block does not know.
+// If the means of a region are so far apart that they have no codes, rungs of the transform are of no use. The survey
+// of a block does not know this.
 TEST(LadderWindow, LeavesOutNeitherKindWhereMeansMayHaveNoCodes) {
   for (unsigned seed = 1; seed < 200; ++seed) {
     const LeafRow row = summarize_leaf(block_of(seed), 0);

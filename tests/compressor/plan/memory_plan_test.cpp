@@ -21,7 +21,7 @@ TEST(MemoryPlan, TwoBlocksAndEveryThreadsRowsFitTheCeiling) {
         const MemoryPlan plan = plan_memory(ceiling, resident, threads, kLarge);
         const std::uint64_t rows =
             threads * static_cast<std::uint64_t>(plan.selection.segment_regions) * 16 * 16 * 16 * sizeof(float) * 12;
-        // The passes follow each other: blocks and rows are never held together.
+        // The passes come one after the other, so blocks and rows are never in memory together.
         EXPECT_LT(resident + kStagingBytes + 2 * plan.block_bytes, ceiling);
         EXPECT_LT(resident + kStagingBytes + rows, ceiling);
         EXPECT_GE(plan.block_bytes, kMiB);
@@ -32,14 +32,14 @@ TEST(MemoryPlan, TwoBlocksAndEveryThreadsRowsFitTheCeiling) {
 }
 
 TEST(MemoryPlan, SelectionsRowsAndStepsFitWhatIsThere) {
-  constexpr std::uint64_t kRegionBytes = 8 * kMiB;  // of packed blocks
+  constexpr std::uint64_t kRegionBytes = 8 * kMiB;  // a region of packed blocks
   for (const std::size_t threads : {1U, 2U, 16U}) {
     for (std::uint64_t ceiling = 64 * kMiB; ceiling < 2048 * kMiB; ceiling += 7 * kMiB) {
       MemoryPlan plan;
       try {
         plan = plan_memory(ceiling, 10 * kMiB, threads, kLarge, kRegionBytes);
       } catch (const Error&) {
-        continue;  // too little for so many threads
+        continue;  // too little memory for `threads` threads
       }
       const std::uint64_t walk = threads * static_cast<std::uint64_t>(plan.selection.segment_regions) * kRegionBytes;
       EXPECT_LE(plan.fixed_bytes + walk + plan.selection.step_bytes, ceiling) << threads << " threads";
@@ -52,7 +52,7 @@ TEST(MemoryPlan, SelectionsRowsAndStepsFitWhatIsThere) {
 
 TEST(MemoryPlan, RecordsStayInMemoryWhereTheyTakeNoMoreThanAQuarter) {
   const std::uint64_t records = 100 * kMiB;
-  std::uint64_t least = 0;  // ceiling that holds them
+  std::uint64_t least = 0;  // least ceiling that holds the records
   for (std::uint64_t ceiling = 200 * kMiB; ceiling < 1024 * kMiB; ceiling += kMiB) {
     const MemoryPlan plan = plan_memory(ceiling, 30 * kMiB, 4, kLarge, kRegionRowsBytes, records);
     const MemoryPlan without = plan_memory(ceiling, 30 * kMiB, 4, kLarge);

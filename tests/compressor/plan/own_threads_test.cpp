@@ -1,4 +1,4 @@
-// Threads of a conversion in a program that has used oneTBB in another floating-point mode.
+// The threads of a conversion in a program that has used oneTBB in another floating-point mode.
 #include "compressor/plan/own_threads.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,8 @@
 namespace weir::own_threads_test {
 namespace {
 
-// work() on a thread that rounds upwards, and has used oneTBB so; says whether it still rounds so afterwards.
+// Calls work() on a thread that rounds upwards and has used oneTBB in that mode. Expects that the thread still rounds
+// upwards afterwards.
 template <typename Work>
 void rounding_upwards(const Work& work) {
   std::jthread([&] {

@@ -1,4 +1,4 @@
-// Planes of a push whose values come later, as from a device.
+// Planes of a push that are announced before their values come, as with values from a device.
 #include <gtest/gtest.h>
 
 #include <string>

@@ -1,4 +1,4 @@
-// Leaves in a spool, and the volume they read as.
+// Leaves in a spool, and the volume that is read from the spool.
 #include "compressor/push/leaf_spool.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ namespace {
 
 using State = SpooledLeaf::State;
 
-// Overhanging leaves at both ends of every axis.
+// Leaves overhang at both ends of every axis.
 constexpr Box kDomain{{-5, 3, 6}, {37, 30, 25}};
 
 class LeafSpoolTest : public testing::Test {
@@ -96,7 +96,7 @@ TEST_F(LeafSpoolTest, KeepsConstantLeavesOutOfTheFile) {
   write({{8, 8, 8}, {24, 16, 16}});
   EXPECT_EQ(file_->size(), 0U);
   std::vector<SpooledLeaf> leaves(4);
-  // Of six leaves along x, from index -8 on, and five along y, from 0 on.
+  // There are six leaves along x, from index -8 on, and five along y, from index 0 on.
   spool_.read_states(1 + 6 * (1 + 4 * 1), leaves);
   EXPECT_EQ(leaves[0].state, State::absent);
   for (const std::size_t i : {1U, 2U}) {
@@ -127,7 +127,7 @@ TEST_F(LeafSpoolTest, ReadsBackWhatWasWrittenAtOnce) {
   expect_reads_everything();
 }
 
-// The parts are those of several processes: cut anywhere.
+// The parts come from several processes and are cut anywhere.
 TEST_F(LeafSpoolTest, PutsPartsOfLeavesTogether) {
   std::mt19937 random(5);
   std::vector<Box> boxes{kDomain};
@@ -177,7 +177,7 @@ TEST_F(LeafSpoolTest, ReadsOnlyTheStoredLeavesOfABox) {
   const Box constant{{8, 8, 8}, {12, 12, 12}};
   source->read(constant, read);
   EXPECT_EQ(source->bytes_read(), 0U);
-  // Three leaves from index 24 on hold 8, and the last 5, of 8 voxels along x.
+  // The leaf at index 24 has 8 voxels along x in the domain, and the last leaf has 5.
   source->read({{24, 8, 8}, {25, 9, 9}}, std::span(read).first(1));
   EXPECT_EQ(source->bytes_read(), 4096U);
   std::vector<float> row(13);

@@ -1,5 +1,5 @@
-// A push in which every call to the file system fails in turn: the next call says
-// so, every later one too, and nothing is left on the disk by then.
+// A push in which each call to the file system fails in turn. The next call of the push and all later ones report the
+// error, and nothing is left on the disk.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -30,7 +30,7 @@ namespace {
 using test::MemoryVolume;
 
 constexpr Index3 kExtent{40, 33, 21};
-// Whole layers out of order: their slices are complete in one order only.
+// Whole layers come out of order, so that their slices become complete in exactly one order.
 constexpr std::int64_t kPlanes[] = {8, 9, 10, 11, 12, 13, 14, 15, 20, 19, 18, 17, 16, 0, 1, 2, 3, 4, 5, 6, 7};
 
 class PushedFaultTest : public testing::Test {
@@ -42,7 +42,7 @@ class PushedFaultTest : public testing::Test {
     return names;
   }
 
-  // One worker, and it is waited for only by the end: the calls then come in one order.
+  // With one worker, and nobody waiting for it before the end, the calls come in one order.
   std::unique_ptr<PushedVolume> begin(FileSystem& files) const {
     ConversionOptions options;
     options.output = directory_ / "out.nvdb";
@@ -95,7 +95,7 @@ TEST_F(PushedFaultTest, EveryCallFailsInTurnAndNothingIsLeft) {
       SCOPED_TRACE("call " + std::to_string(call) + " " + name + ": " + message);
       EXPECT_TRUE(files.failed());
       if (name == "remove_directory") {
-        // The hidden work directory stays, empty; the push itself is done.
+        // The empty hidden work directory stays, but the push itself is done.
         EXPECT_EQ(message, "");
         EXPECT_EQ(listing(), (std::set<std::string>{".out.nvdb.work", "out.nvdb", "out.nvdb.json"}));
         std::filesystem::remove(directory_ / ".out.nvdb.work");
@@ -110,7 +110,7 @@ TEST_F(PushedFaultTest, EveryCallFailsInTurnAndNothingIsLeft) {
   }
 }
 
-// Of a killed simulation two empty names are left, which the next output of that name takes over.
+// A killed simulation leaves two empty files. The next output of the same name takes them over.
 TEST_F(PushedFaultTest, AKilledProcessLeavesNoValues) {
   if (kSanitized) GTEST_SKIP() << "a sanitizer wants its own end";
   std::fflush(nullptr);
@@ -133,7 +133,7 @@ TEST_F(PushedFaultTest, AKilledProcessLeavesNoValues) {
   EXPECT_EQ(listing(), (std::set<std::string>{"out.nvdb", "out.nvdb.json"}));
 }
 
-// Parking, writing and waiting at once: whatever fails, all threads come back with it.
+// Threads park, write and wait at the same time. Whatever fails, all threads return with the error.
 TEST_F(PushedFaultTest, NoThreadHangsOnAFullDisk) {
   const Index3 extent{256, 256, 64};
   std::vector<float> plane(static_cast<std::size_t>(extent.x * extent.y));

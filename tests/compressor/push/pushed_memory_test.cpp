@@ -1,5 +1,5 @@
-// What a push takes of the memory, from the kernel: less than the ceiling, for a
-// volume eight times as large whose planes come in random order.
+// The memory that a push takes, as the kernel reports it. It stays below the ceiling for a volume eight times as large,
+// with planes in random order.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace {
 constexpr std::uint64_t kMemory = std::uint64_t{64} << 20U;
 constexpr Index3 kExtent{512, 512, 512};
 
-// Cheap, and no leaf is constant.
+// Fills a plane with values that are cheap to make; no leaf is constant.
 void simulate(std::int64_t z, std::vector<float>& plane) {
   auto hash = static_cast<std::uint32_t>(z + 1) * 2654435761U;
   for (float& v : plane) {
@@ -30,7 +30,7 @@ void simulate(std::int64_t z, std::vector<float>& plane) {
   }
 }
 
-// Runs in a child process, whose peak is its own; returns what it prints on the pipe.
+// Runs in a child process, so that its peak memory is its own. Returns the text that the child prints on the pipe.
 std::string measure(const std::string& output) {
   std::vector<std::int64_t> planes(static_cast<std::size_t>(kExtent.z));
   std::iota(planes.begin(), planes.end(), 0);

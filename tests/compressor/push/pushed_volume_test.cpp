@@ -1,5 +1,5 @@
-// What a simulation pushed ends with the bytes of a conversion of the same volume,
-// whatever the volume, the order of its slabs, and the threads they come from.
+// A pushed volume ends with the same bytes as a conversion of that volume, whatever the volume, the order of its slabs,
+// and the threads that push them.
 #include "compressor/push/pushed_volume.h"
 
 #include <gtest/gtest.h>
@@ -64,7 +64,7 @@ TEST_P(PushedHardCase, PushedFileEqualsTheConvertedFile) {
 INSTANTIATE_TEST_SUITE_P(Volumes, PushedHardCase, testing::ValuesIn(test::hard_cases()),
                          [](const auto& parameter) { return parameter.param.name; });
 
-// Waves, empty space, and one value of each extreme.
+// Returns waves, empty space, and one voxel of each extreme value.
 template <typename T>
 std::vector<T> waves(const Index3& extent) {
   std::vector<T> values(static_cast<std::size_t>(volume(extent)));
@@ -181,7 +181,7 @@ TEST(PushedVolume, TakesAxesInAnyOrder) {
   EXPECT_TRUE(files.content("out.nvdb") == expected.file);
 }
 
-// So little memory that most slices are parked, some of them more than once.
+// There is so little memory that most slices are parked, some of them more than once.
 TEST(PushedVolume, ParksWhatDoesNotFitTheMemory) {
   const Index3 extent{600, 150, 24};
   std::mt19937 random(7);
@@ -210,7 +210,7 @@ TEST(PushedVolume, ParksWhatDoesNotFitTheMemory) {
   }
 }
 
-// Rows that no slice holds whole.
+// No slice can hold a whole row.
 TEST(PushedVolume, CutsLongRows) {
   const Index3 extent{9001, 17, 20};
   const std::vector<std::int32_t> values = waves<std::int32_t>(extent);

@@ -24,7 +24,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// Two slices a layer, the last layer of two planes, in 16-bit values that are the voxels' linear indices.
+// Two slices per layer; the last layer has two planes. The 16-bit values are the voxels' linear indices.
 constexpr Box kDomain{{0, 0, 0}, {20, 30, 42}};
 constexpr std::int64_t kSlices = 12;
 
@@ -52,7 +52,7 @@ std::vector<std::uint16_t> expected_slice(std::int64_t slice) {
   return values;
 }
 
-// Keeps what it is given; `before` is called before anything is kept.
+// Keeps the values that it is given. Calls `before` before it keeps anything.
 class Keeper {
  public:
   SliceSink sink() {
@@ -165,8 +165,8 @@ TEST_F(SliceIntakeTest, ParksTheLeastRecentlyUsedSlices) {
   intake.add(slab(0, 1));   // slices 0 and 1
   intake.add(slab(8, 1));   // 2 and 3
   intake.add(slab(1, 1));   // 0 and 1 again
-  intake.add(slab(16, 1));  // 4 and 5 in the place of 2 and 3
-  intake.add(slab(2, 6));   // 0 and 1 are whole
+  intake.add(slab(16, 1));  // 4 and 5 replace 2 and 3
+  intake.add(slab(2, 6));   // 0 and 1 are complete
   intake.add(slab(9, 7));
   intake.add(slab(17, 25));
   intake.finish();
@@ -183,7 +183,7 @@ TEST_F(SliceIntakeTest, WaitsForAWorkerThatMakesRoom) {
     opened.wait();
   };
   SliceIntake intake(plan(), 2, {3, 1}, keeper_.sink());
-  intake.add(slab(0, 8));  // two buffers of three
+  intake.add(slab(0, 8));  // takes two of three buffers
   auto adding = std::async(std::launch::async, [&] { intake.add(slab(8, 34)); });
   EXPECT_EQ(adding.wait_for(50ms), std::future_status::timeout);
   EXPECT_EQ(begun, 1);
@@ -202,7 +202,7 @@ TEST_F(SliceIntakeTest, EndsWithTheFirstErrorOfItsSink) {
         if (what == failing && ++calls == 3) throw Error(ErrorKind::io, "the disk is full");
       };
       SliceIntake intake(plan(), 2, {2, workers}, keeper.sink());
-      // All of several threads that wait hear of it.
+      // All threads that wait get the error.
       const std::vector<std::int64_t> planes = shuffled_planes();
       std::atomic<std::size_t> next{0};
       std::atomic<int> refused{0};
@@ -233,13 +233,13 @@ TEST_F(SliceIntakeTest, ReportsOtherExceptionsOfItsSink) {
   keeper_.before = [](const std::string&, std::int64_t) { throw std::bad_alloc(); };
   SliceIntake intake(plan(), 2, {12, 1}, keeper_.sink());
   const auto both = [&] {
-    intake.add(slab(0, 8));  // says it already where a worker was quick
+    intake.add(slab(0, 8));  // already throws if a worker was quick
     intake.finish();
   };
   EXPECT_EQ(message_of(both), std::bad_alloc().what());
 }
 
-// The slab's planes count as given: without an end the volume would lack them unsaid.
+// The planes of the slab count as given. If the intake did not end, the volume would lack them without an error.
 TEST_F(SliceIntakeTest, SlabThatFindsNoMemory_EndsTheIntake) {
   bool taken = false;
   for (int before = 0; !taken; ++before) {
@@ -266,7 +266,7 @@ TEST_F(SliceIntakeTest, FailFromOutsideRefusesFurtherSlabs) {
   EXPECT_EQ(message_of([&] { intake.add(slab(8, 1)); }), "enough");
 }
 
-// Who waits for it would wait forever.
+// A thread that waits for such an intake would wait forever.
 TEST_F(SliceIntakeTest, NeedsBuffersAndWorkers) {
   for (const IntakeRoom room : {IntakeRoom{0, 1}, IntakeRoom{1, 0}}) {
     EXPECT_EQ(message_of([&] { const SliceIntake intake(plan(), 2, room, keeper_.sink()); }),

@@ -1,4 +1,4 @@
-// What is removed beside an output that is done.
+// The files that are removed beside a finished output.
 #include <gtest/gtest.h>
 
 #include <filesystem>

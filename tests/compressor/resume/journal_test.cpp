@@ -26,7 +26,7 @@ constexpr Box kSome{{0, 0, 0}, {4, 4, 1}};
 
 Names saved_names() { return {"./.o.nvdb.work/journal", "./.o.nvdb.work/rows"}; }
 
-// A journal with a survey begun, its rows of 10 bytes.
+// Begins a survey in `journal` with rows of 10 bytes.
 void begin_survey(Journal& journal) {
   journal.open("rows")->preallocate(10);
   journal.state.survey.done.add(kSome);
@@ -94,7 +94,7 @@ TEST(Journal, RestoresOnlyTheSavedState) {
     begin_survey(journal);
     journal.save();
     journal.state.survey.done.add({{0, 0, 1}, {4, 4, 2}});  // not saved
-    journal.open("volume")->preallocate(1000);              // nothing of it counts
+    journal.open("volume")->preallocate(1000);              // none of its bytes count
   }
   EXPECT_EQ(files.names(), saved_names());
   std::string said;
@@ -127,7 +127,7 @@ TEST(Journal, EncodedLeaves_KeepTheVolumeAndRecordFiles) {
     Journal journal(files, "o.nvdb", kIdentity, {});
     EXPECT_EQ(journal.state.files,
               (std::map<std::string, std::uint64_t>{{"records", 20}, {"rows", 10}, {"volume", 30}}));
-    journal.save();  // before any of them is opened
+    journal.save();  // before any file is opened
   }
   EXPECT_EQ(files.names(), all);
   {
@@ -161,7 +161,8 @@ TEST(Journal, SpillFilesGoToTheChosenWorkDirectory) {
   EXPECT_EQ(files.names(), Names{}) << "wherever they are";
 }
 
-// Whoever moves or names it otherwise finds the files beside the journal, not those beside what is at its old place.
+// If the output is moved or named by another path, the journal finds the files beside itself, and not the files beside
+// a new output at the old place.
 TEST(Journal, MovedOutput_ResumesFromTheFilesBesideIt) {
   const TemporaryDirectory directory;
   const auto files = make_posix_file_system();
@@ -203,7 +204,7 @@ TEST(Journal, MovedOutput_KeepsTheSpillFilesOfANewOneAtItsOldPath) {
   EXPECT_TRUE(read_journal(*files, directory / "a/o.nvdb"));
 }
 
-// Two hosts with disks of their own and one work directory for both.
+// Two hosts have disks of their own and share one work directory.
 TEST(Journal, WorkDirectoryWhereAnotherHostConvertsToTheSamePath_IsRefusedAndItsFilesStay) {
   const TemporaryDirectory directory;
   const auto files = make_posix_file_system();
@@ -283,7 +284,7 @@ TEST(Journal, IsDueByTimeAndByCancellation) {
   EXPECT_TRUE(journal.resumable()) << "waited for";
 }
 
-// The work goes on meanwhile, and hears of the failure at the next pause.
+// The work goes on during a save, and gets the error at the next pause.
 TEST(Journal, AFailedSaveIsReportedAndTheOneBeforeCounts) {
   CrashFileSystem memory;
   int sync = 0;

@@ -1,6 +1,5 @@
-// Conversions that die at any call to the file system, by a kill, with the machine
-// or of a full disk, and are run again: the bytes are those of one that was not
-// disturbed.
+// Conversions that die at any call to the file system (killed, with the machine, or because of a full disk) and are run
+// again. The bytes are those of an undisturbed conversion.
 #include <gtest/gtest.h>
 
 #include "compressor/packed/block_sample.h"
@@ -35,7 +34,7 @@ TEST_F(ResumeKill, WhicheverEncodingIsBetter) {
 TEST_F(ResumeKill, Packed) {
   ConversionOptions options = base();
   options.encoding = Encoding::packed;
-  options.memory = 12U << 20U;  // for the steps of its blocks
+  options.memory = 12U << 20U;  // room for the steps of the blocks
   options.budget.kind = Budget::Kind::rate;
   options.budget.rate = 20;
   expect_same_bytes(options, 24);
@@ -44,7 +43,7 @@ TEST_F(ResumeKill, Packed) {
   expect_same_bytes(options, 24);
 }
 
-// Whole numbers, and a voxel or two of each block missing.
+// Whole numbers; a voxel or two of each block are missing.
 class ResumeKillOfMissing : public ResumeTest {
  protected:
   ResumeKillOfMissing()
@@ -53,8 +52,8 @@ class ResumeKillOfMissing : public ResumeTest {
         }) {}
 };
 
-// Ladders of such blocks are built anew once the background is known: whether that was done before the kill must not
-// change what is decided by ladders.
+// Ladders of such blocks are built anew when the background is known. Whether that happened before the kill must not
+// change what the ladders decide.
 TEST_F(ResumeKillOfMissing, PackedNearlyLossless) {
   ConversionOptions options = base();
   options.encoding = Encoding::packed;
@@ -65,7 +64,7 @@ TEST_F(ResumeKillOfMissing, PackedNearlyLossless) {
   expect_same_bytes(options, kSanitized ? 6 : 16);
 }
 
-// Large enough for a look ahead, which misleads: but for the blocks that it sees, all is rough.
+// A volume that is large enough for a look ahead. The look ahead misleads: all blocks that it does not see are rough.
 class ResumeKillOfLarge : public ResumeTest {
  protected:
   static constexpr Box kLarge{{0, 0, 0}, {208, 208, 200}};
@@ -101,7 +100,7 @@ TEST_F(ResumeKill, ErrorTargetOfSeveralAttempts) {
   expect_same_bytes(options, 24);
 }
 
-// The process lives on and says what is kept; all else is gone.
+// The process lives on and says what is kept. Everything else is removed.
 TEST_F(ResumeKill, FullDisk_ResumesToTheSameBytes) {
   ConversionOptions options = base();
   options.encoding = Encoding::fpn;
@@ -124,7 +123,7 @@ TEST_F(ResumeKill, FullDisk_ResumesToTheSameBytes) {
       EXPECT_EQ(error.system_failure()->errno_value, ENOSPC);
       message = error.what();
     }
-    if (message.empty()) {  // the removal of what is not needed any more
+    if (message.empty()) {  // only the removal of files that are not needed any more failed
       EXPECT_TRUE(memory.content("out.nvdb") == expected.file);
       continue;
     }
@@ -142,10 +141,10 @@ TEST_F(ResumeKill, FullDisk_ResumesToTheSameBytes) {
   }
 }
 
-// Where the outputs have their names and what they were made from is not removed yet.
+// The conversion dies when the outputs have their names but the files they were made from are not removed yet.
 TEST_F(ResumeKill, DeathAfterTheRename_LeftoversAreCleared) {
   for (const bool overwrite : {false, true}) {
-    // Whether it died at call number `at` after the volume got its name.
+    // Returns whether the conversion died at call number `at` after the volume got its name.
     const auto dies = [&](CrashFileSystem& memory, int at) {
       ConversionOptions options = base();
       if (overwrite) run(options, memory);
@@ -204,7 +203,7 @@ TEST_F(ResumeKillOfHoles, PaperMethod_ResumesToTheSameBytes) {
   expect_same_bytes(options, 24);
 }
 
-// The result is there: the same command says so, and what it was made from is not needed any more.
+// The result exists. The same command says so, and removes the files that it was made from.
 TEST_F(ResumeKill, AfterTheCommit_TheSameCommandRemovesWhatIsLeft) {
   const ConversionOptions options = base();
   for (const int call : {0, 1, 2}) {
@@ -229,7 +228,7 @@ TEST_F(ResumeKill, AfterTheCommit_TheSameCommandRemovesWhatIsLeft) {
   }
 }
 
-// What is left is removed under a lock that says, until it goes itself, that the output is done.
+// Leftovers are removed under a lock. Until the lock itself is removed, it says that the output is done.
 TEST_F(ResumeKill, AfterTheCommit_ASecondKillWhileLeftoversAreRemoved_LeavesThemToTheNext) {
   const ConversionOptions options = base();
   const auto run_refused = [&](FileSystem& files) {
@@ -264,7 +263,7 @@ TEST_F(ResumeKill, AfterTheCommit_ASecondKillWhileLeftoversAreRemoved_LeavesThem
   EXPECT_GE(killed_again, 4) << "journal, rows, directory, lock";
 }
 
-// Of an --overwrite that somebody interrupted, and will continue.
+// A user interrupted a conversion with --overwrite and will continue it. A refused command in between keeps its work.
 TEST_F(ResumeKill, BeforeTheCommit_ARefusedCommandKeepsWhatIsDone) {
   ConversionOptions options = base();
   CrashFileSystem memory;

@@ -16,7 +16,7 @@
 namespace weir::work_directory_test {
 namespace {
 
-// Remembers directories, and says which lie in memory.
+// A file system that remembers directories and says which of them lie in memory.
 class Directories final : public FileSystem {
  public:
   std::vector<std::string> existing;

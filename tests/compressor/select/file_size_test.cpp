@@ -27,7 +27,7 @@ TEST(Budget, WholeRatesAreExactCeilings) {
   EXPECT_EQ(at_rate(808, 8), 101U);
   EXPECT_EQ(at_rate(809, 8), 102U);
   EXPECT_EQ(at_rate(1, 1000), 1U);
-  // Beyond what double holds.
+  // Numbers that a double cannot hold exactly.
   EXPECT_EQ(at_rate((std::uint64_t{1} << 60U) + 1, 1), (std::uint64_t{1} << 60U) + 1);
   EXPECT_EQ(at_rate((std::uint64_t{1} << 60U) + 1, 2), (std::uint64_t{1} << 59U) + 1);
 }
@@ -35,7 +35,7 @@ TEST(Budget, WholeRatesAreExactCeilings) {
 TEST(Budget, FractionalRatesAreExactCeilingsOfTheDecimalNumber) {
   EXPECT_EQ(at_rate(1000, 2.5), 400U);
   EXPECT_EQ(at_rate(1001, 2.5), 401U);
-  // 2.3 in binary is a little less than 2.3: the quotient must not become 41.
+  // The double 2.3 is a little less than 2.3, but the quotient must not become 41.
   EXPECT_EQ(at_rate(92, 2.3), 40U);
   EXPECT_EQ(at_rate(37, 3.7), 10U);
   EXPECT_EQ(at_rate(1, 0.1), 10U);

@@ -31,7 +31,7 @@ MemoryVolume turbulence(const Index3& dims) {
   return MemoryVolume(*source);
 }
 
-// Squared deviations of the leaves from their means, falling.
+// Returns the squared deviations of the leaves from their means in falling order.
 std::vector<double> falling_errors(const Surveyed& surveyed) {
   std::vector<double> errors;
   for (const LeafRow& row : surveyed.all_rows()) errors.push_back(row.sse);
@@ -54,7 +54,7 @@ TEST(FloatBound, IsWhatTheLeavesOfTheSmallestErrorsLose) {
     const double exact = sum_from(errors, kept);
     const double least = bound.least_error(kept * kLeafBytes + kLeafBytes - 1);
     EXPECT_LE(least, exact);
-    EXPECT_GE(least, exact / 1.5 * (1 - kRounding));  // what is kept of a class is not known by itself
+    EXPECT_GE(least, exact / 1.5 * (1 - kRounding));  // the errors of a class's kept leaves are not known one by one
   }
   EXPECT_GE(bound.least_error(0), sum_from(errors, 0) * (1 - kRounding));
   EXPECT_EQ(bound.least_error(errors.size() * kLeafBytes), 0);

@@ -25,7 +25,7 @@ KeyRange keys_between(double first, double last) { return {key_bits(first), key_
 
 constexpr std::uint64_t kRegionBytes = 33'856;
 
-// Of some leaf of a region.
+// Returns a step of some leaf of a region.
 HeldSteps::Step step(std::int64_t region, double key, std::uint32_t bytes, double gain) {
   return HeldSteps::Step::of_leaf(region, key, 4095, {gain, key, bytes, kExactLevel});
 }
@@ -131,7 +131,7 @@ TEST(HeldSteps, CountsWhatItCannotHold) {
   EXPECT_TRUE(counts.all() == expected.all());
 }
 
-// What is chosen does not depend on whether steps are held, all of them, or too few.
+// The choice does not depend on whether no step, some steps or all steps are held.
 TEST(HeldSteps, SelectionChoosesTheSameWithAndWithoutThem) {
   for (const std::string kind : {"cloud", "turbulence"}) {
     const auto source = open_synthetic(kind, {{150, 140, 260}, 3});
@@ -158,7 +158,7 @@ TEST(HeldSteps, SelectionChoosesTheSameWithAndWithoutThem) {
   }
 }
 
-// How each leaf of each region is kept.
+// Returns how each leaf of each region is kept.
 std::vector<std::vector<KeptLevel>> levels_of(const Selection& selection, const TreeRegions& tree,
                                               const RowStore& rows) {
   std::vector<std::vector<KeptLevel>> levels;
@@ -175,12 +175,12 @@ std::vector<std::vector<KeptLevel>> levels_of(const Selection& selection, const 
   return levels;
 }
 
-// Packed blocks, the widths of FpN, and the paper's bricks; by a size and by an error.
+// Tests packed blocks, the widths of FpN and the paper's bricks, each for a size and for an error.
 TEST(HeldSteps, LevelOfEachLeaf_IsTheOneFoundWithoutThem) {
   for (const std::string kind : {"cloud", "turbulence", "label"}) {
     const auto source = open_synthetic(kind == "label" ? "noise" : kind, {{150, 140, 260}, 3});
     test::MemoryVolume whole(*source);
-    // Of few values, many steps have the same key.
+    // In a volume of few values, many steps have the same key.
     test::MemoryVolume volume(whole.info().domain(), [&](const Index3& i) {
       const float v = whole.values()[static_cast<std::size_t>(linear_index(i, whole.info().domain().extent()))];
       return kind == "label" ? std::floor(v * 4) : v;
@@ -225,7 +225,7 @@ TEST(HeldSteps, LevelOfEachLeaf_IsTheOneFoundWithoutThem) {
           compare(Selection::Search::of_error, [&](Selection& s) { s.choose_error(share * error); });
         }
         if (!packed) continue;
-        // Steps of a window alone are held: the cut lies in it, and where the size is another one, beside it.
+        // Only the steps of a window are held. The cut lies in the window, and for other sizes beside it.
         TreeRegions other(volume.info().domain());
         Selection first(rule, with, other);
         first.choose(least + (most - least) / 2);
@@ -234,10 +234,10 @@ TEST(HeldSteps, LevelOfEachLeaf_IsTheOneFoundWithoutThem) {
         for (const unsigned eighths : {1U, 4U, 7U}) {
           compare(Selection::Search::of_bytes, [&](Selection& s) { s.choose(least + (most - least) / 8 * eighths); });
         }
-        // The same for an error, of which a bound is known.
+        // The same for an error budget with a known bound of the error.
         const double range = static_cast<double>(survey.max) - static_cast<double>(survey.min);
         rule.packed->most_error = range * range * static_cast<double>(volume.info().domain().voxels());
-        for (const double far : {1.0, 0x1p40}) {  // as where the background is far from all values
+        for (const double far : {1.0, 0x1p40}) {  // as if the background were far from all values
           rule.packed->most_error *= far;
           for (const double share : {0.5, 1e-2, 1e-4, 1e-7}) {
             Selection walked(rule, with, other, Selection::Search::no);

@@ -32,7 +32,7 @@ float value_at(const Index3& i) {
   return std::sin(0.3F * static_cast<float>(i.x)) * static_cast<float>(i.y) - 0.05F * static_cast<float>(i.z * i.z);
 }
 
-// Visits the gains of all regions with the leaf's lattice position.
+// Visits the gains of all leaves in all regions, with the lattice position of each leaf.
 template <typename Visit>
 void for_each_gain(const Surveyed& surveyed, const GainRule& rule, Visit&& visit) {
   const TreeRegions tree(surveyed.volume.info().domain());
@@ -116,7 +116,7 @@ TEST(LeafGain, CornersAndKeptNonFiniteValuesAreRequired) {
 }
 
 TEST(LeafGain, ExactTilesHaveZeroGainInEveryMetric) {
-  // The second brick of 16 holds one leaf that its tile reproduces, and three that it does not.
+  // The second brick of 16 voxels holds one leaf that its tile reproduces, and three that its tile does not.
   MemoryVolume volume({{0, 0, 0}, {32, 16, 8}}, [](const Index3& i) {
     return i.x >= 16 && i.x < 24 && i.y < 8 ? 3.0F : static_cast<float>(i.x * i.y);
   });
@@ -145,7 +145,7 @@ TEST(LeafGain, PositionsAndBricksFollowTheLowerNode) {
                 });
 }
 
-// The steps of a region's leaves whose keys are at least `least`, as (leaf, level, key).
+// Returns the steps of a region's leaves with keys of at least `least`, as (leaf, level, key).
 std::vector<std::tuple<std::uint16_t, KeptLevel, double>> steps_from(const RegionGains& gains, double least) {
   std::vector<std::tuple<std::uint16_t, KeptLevel, double>> steps;
   for (const LeafGain& leaf : gains) {
@@ -221,7 +221,7 @@ double fitted_error(const std::vector<float>& values, const LeafRow& row, LeafWi
 TEST(LeafGain, QuantisedErrorOfWideCodesIsNearTheFit) {
   std::mt19937 random(3);
   std::vector<float> values(512);
-  // From all values but one anywhere down to a leaf at a border, whose others all are the least value.
+  // From leaves with nearly all values between the ends to leaves at a border, with nearly all values at one end.
   for (const std::size_t anywhere : {511U, 300U, 100U, 20U}) {
     for (const float end : {0.0F, 1.0F}) {
       std::fill(values.begin(), values.end(), end);
@@ -238,7 +238,7 @@ TEST(LeafGain, QuantisedErrorOfWideCodesIsNearTheFit) {
   }
 }
 
-// Of 500 finite values and 12 that are NaN.
+// Returns the row of a leaf with 500 finite values and 12 values that are NaN.
 LeafRow with_gaps(const std::vector<float>& values) {
   std::vector<float> with_nan = values;
   with_nan.resize(512, kNaN);
@@ -251,7 +251,7 @@ TEST(LeafGain, WhatReplacesNaNWidensTheRangeOfALeaf) {
   std::vector<float> values(500);
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(i % 16);
   const LeafRow row = with_gaps(values);
-  // Sixteen values are exact at 4 bits, but not with 1000.1 beside them, which is on no lattice of theirs.
+  // Sixteen values are exact at 4 bits, but not together with 1000.1, which does not lie on their lattice.
   EXPECT_EQ(quantised_error(row, 500, 1000.1F, LeafWidth::bits4), 0);
   const double quantum = static_cast<double>(1000.1F / 65535.0F);
   EXPECT_EQ(quantised_error(row, 512, 1000.1F, LeafWidth::bits16), 500 * quantum * quantum / 12);
@@ -266,7 +266,7 @@ TEST(LeafGain, WhatReplacesNaNMayLieOnTheLatticeOfTheOthers) {
     float background;
     unsigned bits;
   };
-  // Sixteen multiples of 3, up to 45; then 17, 256 and 257 of them; whole numbers; half numbers.
+  // Sixteen multiples of 3, up to 45, then 17, 256 and 257 multiples, then whole numbers, then half numbers.
   for (const Expected& of : {Expected{0, 4}, {45, 4}, {48, 8}, {765, 8}, {768, 16}, {-3, 8}, {46, 8}, {0.5F, 8}}) {
     for (unsigned log2 = 0; log2 < 5; ++log2) {
       const LeafWidth width = width_of(log2);
@@ -284,7 +284,7 @@ TEST(LeafGain, WhatReplacesNaNMayLieOnTheLatticeOfTheOthers) {
   EXPECT_FALSE(keeps_every_bit(one, 512, 0.1F, LeafWidth::bits16));
 }
 
-// -most, and every third value one part in 512 of it or more above.
+// Returns the row of a leaf with values of -most, except that every third value is at least `most` / 512.
 LeafRow nearly_all_at_one_end(float most) {
   std::vector<float> values(512, -most);
   for (std::size_t i = 0; i < 512; i += 3) values[i] = most / static_cast<float>(1 + i);

@@ -1,4 +1,4 @@
-// What is known of a packed file with a preview before it is planned.
+// The bytes of a packed file with a preview, as far as they are known before the file is planned.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -24,7 +24,7 @@ class PreviewedBytes : public testing::Test {
         plan_(plan_blocks(volume_.info().domain(), volume_.access(), std::uint64_t{1} << 30U)),
         tree_(volume_.info().domain()) {}
 
-  // Steps are held in up to `step_bytes`; those of a window alone, where one is given.
+  // Holds steps in up to `step_bytes`. If `about` is given, holds only the steps of a window about it.
   Selection select(Selection::Search search, std::uint64_t step_bytes, std::optional<double> about = std::nullopt) {
     rows_ = std::make_unique<RowStore>(files_.create_unnamed("rows"), plan_.lattice, SelectionRoom{64, step_bytes});
     rows_->set_ladders(std::make_unique<LeafStore<PackedLadder>>(files_.create_unnamed("ladders"), plan_.lattice));

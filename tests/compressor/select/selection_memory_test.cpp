@@ -1,5 +1,5 @@
-// Selection over a row file sixteen times as large as the memory ceiling: an 8 GiB
-// volume's rows would fit in memory and prove nothing.
+// Selection over a row file sixteen times as large as the memory ceiling. The rows of an 8 GiB volume would fit in
+// memory and prove nothing.
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
@@ -19,7 +19,7 @@ namespace {
 constexpr std::uint64_t kMemory = std::uint64_t{64} << 20U;
 constexpr std::size_t kThreads = 2;
 
-// Rows of a volume whose leaves are worth different amounts, cheap to make.
+// Fills the rows of a volume in which leaves are worth different amounts. They are cheap to make.
 void fill_rows(RowStore& store) {
   std::vector<LeafRow> rows(8192);
   const std::int64_t total = store.leaves().size();
@@ -39,7 +39,7 @@ void fill_rows(RowStore& store) {
   }
 }
 
-// Runs in a child process, whose peak is its own; returns what it prints on the pipe.
+// Runs in a child process, so that its peak memory is its own. Returns the text that the child prints on the pipe.
 std::string measure() {
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, kThreads);
   const Box domain{{0, 0, 0}, {2304, 2304, 2176}};

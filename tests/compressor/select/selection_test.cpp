@@ -59,11 +59,12 @@ GainRule rule_of(const Way& way, float background = 0.25F) {
   return {way.metric, way.brick_leaves, {way.fill, background, NonFinitePolicy::background}};
 }
 
-// Everything that can be bought, in the order of keys; ties by region, then upper node, lower node,
-// leaves by gain, brick and index, bricks as one; at last upper nodes that are worth it by themselves.
+// Everything that can be bought, in the order of keys. Ties go by region, then upper node, lower node, and leaves by
+// gain, brick and index; the leaves of a brick are one item. Upper nodes that are worth their bytes by themselves come
+// last.
 struct Item {
   double key = 0;
-  std::int64_t region = 0;  // behind all regions for an upper node bought for itself
+  std::int64_t region = 0;  // a number behind all regions for an upper node that is bought for itself
   std::uint64_t bytes = 0;
   std::vector<std::int64_t> leaves;
   int upper = -1;
@@ -83,7 +84,7 @@ std::vector<Item> sorted_items(const Chooser& chooser) {
   std::vector<Item> items;
   const auto regions = static_cast<std::int64_t>(tree.regions.size());
   for (std::size_t u = 0; u < tree.uppers.size(); ++u) {
-    // With the first region that has its key; behind all of them where it is worth it by itself.
+    // An upper node comes with the first region that has its key, or behind all regions if it is worth it by itself.
     Item item{tree.uppers[u].key, regions + static_cast<std::int64_t>(u), 270400, {}, static_cast<int>(u), -1};
     for (std::int64_t r = regions - 1; r >= 0; --r) {
       if (tree.upper_of(r) == static_cast<std::int64_t>(u) && tree.regions[static_cast<std::size_t>(r)].key == item.key)
@@ -119,7 +120,7 @@ std::vector<Item> sorted_items(const Chooser& chooser) {
   return items;
 }
 
-// Buys from the top until something does not fit.
+// Buys items from the top until one does not fit.
 Choice sorted_choice(const Chooser& chooser, const std::vector<Item>& items, std::uint64_t file_bytes) {
   const TreeLayout minimum = chooser.selection().bytes().minimum;
   const NodeCounts& counts = minimum.counts;
@@ -218,8 +219,8 @@ INSTANTIATE_TEST_SUITE_P(Ways, SelectionTest, testing::ValuesIn(ways()),
                          [](const auto& parameter) { return name_of(parameter.param); });
 
 TEST(Selection, FindsTheCutAmongKeysThatDifferInTheirLastBits) {
-  // More leaves than are sorted at once, in every region: half of the keys share their first 16 bits, the
-  // other half their first 32, and every fourth of those are one value.
+  // Every region has more leaves than are sorted at once. Half of the keys share their first 16 bits, the other half
+  // their first 32 bits, and every fourth key of the other half has the same value.
   const Box domain{{0, 0, 0}, {512, 512, 640}};
   RowStore rows(test::CrashFileSystem().create_unnamed("rows"), make_lattice(domain, kLeafDim), {64, 0});
   std::vector<LeafRow> all(static_cast<std::size_t>(rows.leaves().size()));
@@ -230,7 +231,7 @@ TEST(Selection, FindsTheCutAmongKeysThatDifferInTheirLastBits) {
                        : draw % 4 == 1 ? 1.5 + static_cast<double>(draw >> 40U) * 0x1p-48
                                        : 1.5;
     all[i].sse = key * 2144;
-    // One leaf a region is required, so that all regions are open and every leaf has its own key.
+    // One leaf per region is required, so that all regions are open and every leaf has its own key.
     const Index3 leaf = rows.leaves().position(static_cast<std::int64_t>(i));
     const bool first = leaf.x % 16 == 0 && leaf.y % 16 == 0 && leaf.z % 16 == 0;
     all[i].finite = first ? 511 : 512;
@@ -244,7 +245,7 @@ TEST(Selection, FindsTheCutAmongKeysThatDifferInTheirLastBits) {
 }
 
 TEST(Selection, KeepsTheSubsetOfLeastErrorOfAllSubsets) {
-  // 3 x 2 x 2 leaves, two of them corners: every subset of the other ten is tried.
+  // There are 3 x 2 x 2 leaves, two of them corners. The test tries every subset of the other ten.
   std::mt19937 random(1);
   MemoryVolume volume({{0, 0, 0}, {24, 16, 16}}, [&](const Index3& i) {
     return static_cast<float>(random() % 1000) * static_cast<float>(1 + i.x / 8 + 3 * (i.y / 8) + 5 * (i.z / 8));
@@ -269,7 +270,8 @@ TEST(Selection, KeepsTheSubsetOfLeastErrorOfAllSubsets) {
 }
 
 TEST(Selection, OpensARegionWhereThatSavesMostPerByte) {
-  // Three regions along x: the corners' and one between, whose best ratio over k is tried by hand.
+  // Three regions along x: those of the corners and one between them. The test finds the best ratio over k of the
+  // region between by hand.
   std::mt19937 random(2);
   MemoryVolume volume({{0, 0, 0}, {384, 8, 8}}, [&](const Index3& i) {
     return i.x < 128 || i.x >= 256 ? 0.0F : static_cast<float>(i.x / 8 + static_cast<int>(random() % 3) * (i.x % 5));

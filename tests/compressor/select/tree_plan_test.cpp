@@ -17,7 +17,7 @@ using test::Surveyed;
 float value_at(const Index3& i) { return static_cast<float>((i.x * 7 + i.y * 3 + i.z * i.z) % 101); }
 
 TEST(TreePlan, NumbersNodesAndLeavesInFileOrder) {
-  // Four upper nodes, several regions in each.
+  // Four upper nodes with several regions each.
   MemoryVolume volume({{-140, 4090, 0}, {130, 4100, 9}}, value_at);
   const Surveyed surveyed(volume);
   Chooser chooser(surveyed, GainRule{});

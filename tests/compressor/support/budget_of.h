@@ -1,11 +1,11 @@
-// A budget by its kind and number.
+// Makes a budget from its kind and a number.
 #pragma once
 
 #include "compressor/select/budget.h"
 
 namespace weir {
 
-/// `value`: the rate of Kind::rate, else the target.
+/// Returns a budget of `kind`. `value` is the rate for Kind::rate, otherwise the target.
 inline Budget budget_of(Budget::Kind kind, double value) {
   Budget budget;
   budget.kind = kind;

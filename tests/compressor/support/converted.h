@@ -1,4 +1,4 @@
-// A whole conversion in memory, and what a file of it must hold by its source.
+// Whole conversions in memory, and the values that their files must hold according to the source.
 #pragma once
 
 #include <cstddef>
@@ -15,22 +15,22 @@ struct Converted {
   Sidecar sidecar;
   std::vector<std::byte> file;
   std::vector<std::string> notices;
-  int files_made = 0;  ///< the last one is kept; others missed what was asked
+  int files_made = 0;  ///< the last one is in `file`; the others missed the target
 
   NvdbGrid grid() const { return NvdbGrid::open(file, "out.nvdb"); }
 };
 
-/// Converts; options.output is ignored, and options.memory is made ample where it is the default.
+/// Converts `volume`. Ignores options.output. If options.memory is the default, gives the conversion ample memory.
 Converted convert(VolumeSource& volume, ConversionOptions options);
 Converted convert_to(VolumeSource& volume, ConversionOptions options, std::uint64_t file_bytes);
-/// The size of the smallest tree, as the message for a budget of one byte gives it.
+/// Returns the size of the smallest tree, from the error message for a budget of one byte.
 std::uint64_t minimum_size(VolumeSource& volume, ConversionOptions options);
 
-/// Bits, for exact comparison with NaN and -0.0.
+/// Returns the bits of a float, for exact comparison with NaN and -0.0.
 std::uint32_t bits_of(float value);
 
-/// What a tile over `box` must hold: the mean of the finite in-domain values, computed in long double, or
-/// the background.
+/// Returns the value that a tile over `box` must hold: the mean of the finite in-domain values, computed in long
+/// double, or the background.
 float expected_tile(const MemoryVolume& volume, const Box& box, FillMode fill, float background);
 
 }  // namespace weir::test

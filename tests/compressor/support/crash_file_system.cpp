@@ -13,10 +13,10 @@ namespace weir::test {
 struct CrashFileSystem::Stored {
   std::mutex mutex;
   Bytes bytes;
-  Bytes flushed;            ///< what was flushed last, where the file has changed since
-  bool is_flushed = false;  ///< bytes are what was flushed last
+  Bytes flushed;            ///< the content of the last flush, if the file has changed since
+  bool is_flushed = false;  ///< whether `bytes` is the content of the last flush
 
-  /// Called before bytes change. A file that is flushed and then left alone, as most are, is never copied.
+  /// Call it before `bytes` changes. A file that does not change after a flush, as most files, is never copied.
   void keep_flushed() {
     if (is_flushed) flushed = bytes;
     is_flushed = false;
@@ -177,7 +177,7 @@ void CrashFileSystem::sync_directory(const std::string& path) {
   std::erase_if(durable_directories_, [&](const std::string& directory) {
     return directory_of(directory) == path && !directories_.contains(directory);
   });
-  // All that happened to the files that were or are named here, so that none of their renames is cut in two.
+  // Makes everything durable that happened to files that have or had a name here, so that no rename is cut in two.
   std::set<const Stored*> concerned;
   for (const Files* files : {&files_, &durable_files_}) {
     for (const auto& [name, stored] : *files) {

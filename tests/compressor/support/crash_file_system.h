@@ -14,21 +14,21 @@
 
 namespace weir::test {
 
-/// Thread-safe. "." exists, and what is made; files may lie in any directory.
+/// Thread-safe. "." exists, and every directory that was made. Files may lie in any directory.
 class CrashFileSystem final : public FileSystem {
  public:
   using Bytes = std::vector<std::byte>;
 
-  /// Content of a file, until it is written again; empty where there is none.
+  /// Returns the content of a file, valid until it is written again; empty if the file does not exist.
   const Bytes& content(const std::string& path) const;
-  /// Content of a file, which is removed; empty where there was none.
+  /// Removes a file and returns its content; empty if the file did not exist.
   Bytes take(const std::string& path);
   std::vector<std::string> names() const;
-  /// Those that were made and not removed.
+  /// Returns the directories that were made and not removed.
   std::vector<std::string> directories() const;
 
-  /// As if the machine had lost power: every file holds what it held when it was last flushed, and has the names that
-  /// it had when their directories were. A rename happens at both places or at none.
+  /// Acts as if the machine lost power. Every file gets the content of its last flush, and the names that it had when
+  /// their directories were last flushed. A rename happens in both directories or in neither.
   void lose_unflushed();
 
   std::unique_ptr<File> create(const std::string& path) override;

@@ -1,9 +1,9 @@
-// Memory that runs out, for tests of what is left behind then.
+// Makes memory run out, for tests of what code leaves behind when that happens.
 #pragma once
 
 namespace weir {
 
-/// While it is there, the calling thread's allocation that comes after `before` others throws std::bad_alloc.
+/// While an object lives, one allocation of the calling thread throws std::bad_alloc: the one after `before` others.
 class FailingAllocation {
  public:
   explicit FailingAllocation(int before);

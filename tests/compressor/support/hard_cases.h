@@ -20,7 +20,8 @@ std::ostream& operator<<(std::ostream& out, const HardCase& c);
 
 std::vector<HardCase> hard_cases();
 
-/// How a volume may be converted: with the default, or by either way to treat the NaN and infinities it holds.
+/// Returns the policies with which a volume can be converted: the default, or both other policies if it holds NaN or
+/// infinities.
 std::vector<NonFinitePolicy> policies_of(const MemoryVolume& volume);
 
 }  // namespace weir::test

@@ -1,5 +1,5 @@
-// What the stock reader finds in a file, held against the volume it was made
-// from and against what its certificate says.
+// Measures a file with the stock reader, and compares the result with the source volume and with the file's
+// certificate.
 #pragma once
 
 #include <cstdint>
@@ -17,12 +17,12 @@ struct Measured {
   float max = 0;
 };
 
-/// Reads every voxel; sums in long double over the finite ones. Expects the stock validator to pass and the bounding
-/// box to be the domain.
+/// Reads every voxel and sums in long double over the finite voxels. Expects that the stock validator passes and that
+/// the bounding box is the domain.
 Measured measure(const MemoryVolume& volume, const Converted& converted, NonFinitePolicy policy);
 
-/// Expects the certificate to say what was measured, to a relative 1e-12; the largest error to the bit, but for
-/// quantised leaves, which give it rounded up to float.
+/// Expects that the certificate agrees with `measured` to a relative 1e-12, and bit for bit in the largest error. For
+/// quantised leaves the certificate gives the largest error rounded up to float.
 void expect_certificate(const Converted& converted, const Measured& measured);
 
 }  // namespace weir::test

@@ -13,11 +13,11 @@ namespace weir::test {
 
 class MemoryVolume final : public VolumeSource {
  public:
-  /// `values` over `domain`, x fastest.
+  /// Holds `values` over `domain`, x fastest.
   MemoryVolume(const Box& domain, std::vector<float> values);
-  /// value(i) at every index of `domain`.
+  /// Holds value(i) at every index i of `domain`.
   MemoryVolume(const Box& domain, const std::function<float(const Index3&)>& value);
-  /// All that `source` holds.
+  /// Holds all values of `source`.
   explicit MemoryVolume(VolumeSource& source);
   MemoryVolume(MemoryVolume&& other) noexcept;
 
@@ -31,11 +31,11 @@ class MemoryVolume final : public VolumeSource {
 
   std::span<const float> values() const { return values_; }
   float at(const Index3& i) const;
-  /// Values of `box` & domain, x fastest.
+  /// Returns the values of the part of `box` that lies in the domain, x fastest.
   std::vector<float> in(const Box& box) const;
 
  private:
-  /// Rows of `inside`, a part of the domain, in their order.
+  /// Calls use(values) for each row along x of `inside`, a part of the domain, in order.
   void for_each_row(const Box& inside, const std::function<void(std::span<const float>)>& use) const;
 
   SourceInfo info_;

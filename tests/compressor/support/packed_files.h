@@ -1,4 +1,4 @@
-// Volumes that packed conversions are tested with, and what a packed file must hold by its source.
+// Volumes for tests of packed conversions, and checks of what a packed file must hold according to its source.
 #pragma once
 
 #include <gtest/gtest.h>

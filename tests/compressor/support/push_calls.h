@@ -1,4 +1,4 @@
-// Calls of a push in memory, and what they answer.
+// Calls of a push in memory, and the answers of these calls.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ class PushCalls : public testing::Test {
     options_.output = "out.nvdb";
   }
 
-  /// Of the Error of `kind` that `call` throws; "no error" where it throws none.
+  /// Returns the message of the Error of `kind` that `call` throws; "no error" if it throws none.
   static std::string message(ErrorKind kind, const std::function<void()>& call) {
     try {
       call();

@@ -23,7 +23,7 @@ double normal(Engine& random) {
 
 struct Kind {
   const char* name;
-  /// Value at `i`; `shape` in 0 .. 1 is drawn once a volume.
+  /// Draws the value at `i`. `shape`, from 0 to 1, is drawn once per volume.
   double (*draw)(Engine& random, double shape, const Index3& i);
 };
 
@@ -60,7 +60,7 @@ RandomVolume random_volume(std::uint64_t seed, std::int64_t most) {
   const auto side = [&] { return 16 + static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(most - 15)); };
   const Index3 extent{side(), side(), side()};
   const double shape = uniform(random);
-  const double quiet = uniform(random) < 0.5 ? uniform(random) : 1;  // part of the volume that holds anything
+  const double quiet = uniform(random) < 0.5 ? uniform(random) : 1;  // share of the volume with values other than 0
   std::vector<float> values(static_cast<std::size_t>(volume(extent)));
   for (std::size_t n = 0; n < values.size(); ++n) {
     const Index3 i = index_at(static_cast<std::int64_t>(n), extent);

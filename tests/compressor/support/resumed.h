@@ -27,7 +27,7 @@ using Names = std::vector<std::string>;
 inline const Names kResult{"out.nvdb", "out.nvdb.json"};
 inline const std::string kHidden = "./.out.nvdb.work/";
 
-// Ten blocks of a MiB, five regions, not on node borders.
+// A domain of ten blocks of 1 MiB in five regions. Its faces do not lie on node borders.
 inline constexpr Box kDomain{{-60, 3, 5}, {4, 64, 645}};
 
 inline float ripples(const Index3& i) {
@@ -35,17 +35,18 @@ inline float ripples(const Index3& i) {
   return static_cast<float>(90 * std::sin(x / 9) * std::cos(y / 7 + z / 50) + 3 * std::sin(x * y) + z / 40);
 }
 
-// To the byte: rounded to a MiB, as the error's advice is, it would leave to chance whether a block has one layer of
-// leaves or two, and so how many calls are made.
+// Returns the least memory ceiling to the byte. Rounded to a MiB, as in the error's advice, chance would decide whether
+// a block has one layer of leaves or two, and so how many calls are made.
 inline std::uint64_t least_memory(MemoryVolume& volume, std::size_t threads) {
   const std::uint64_t resident = resident_bytes() + volume.working_bytes();
   return least_ceiling(resident, threads, volume.info().domain(), region_bytes({}));
 }
 
-// What the process grows by between the question and the conversion; a sanitizer's takes all for one block.
+// The memory by which the process may grow between least_memory() and the conversion. With a sanitizer the margin lets
+// the whole volume be one block.
 inline constexpr std::uint64_t kMargin = std::uint64_t{kSanitized ? 160 : 2} << 20U;
 
-// All but the seconds and bytes of this machine and run.
+// Returns the sidecar's text without the seconds and bytes that depend on the machine and the run.
 inline std::string record_of(Sidecar sidecar) {
   sidecar.timing = {};
   return to_json_text(sidecar);
@@ -69,7 +70,7 @@ class ResumeTest : public ::testing::Test {
     options.budget.kind = Budget::Kind::rate;
     options.resume = Resume::on;
     options.save_interval_s = 0;
-    options.memory = 0;  // above the least there is
+    options.memory = 0;  // bytes above the least memory
     options.threads = 1;
     return options;
   }
@@ -95,7 +96,7 @@ class ResumeTest : public ::testing::Test {
     return result;
   }
 
-  // Number of calls to the file system.
+  // Returns the number of calls to the file system.
   int calls_of(const ConversionOptions& options) {
     CrashFileSystem memory;
     FaultyFileSystem files(memory, -1, 0);
@@ -104,7 +105,7 @@ class ResumeTest : public ::testing::Test {
     return static_cast<int>(files.calls().size());
   }
 
-  // Runs until call `at`, as a killed process does; false where it ends before.
+  // Runs a conversion that dies at call `at`, as a killed process does. Returns false if it ends before that call.
   bool killed(const ConversionOptions& options, CrashFileSystem& memory, int at) {
     FaultyFileSystem files(memory, at, EIO, FaultyFileSystem::After::fails);
     try {
@@ -116,7 +117,7 @@ class ResumeTest : public ::testing::Test {
     return files.failed();
   }
 
-  // Kills at about `points` calls, spread over the conversion, and goes on in another way.
+  // Kills the conversion at about `points` calls, spread over the conversion, and continues it with other options.
   void expect_same_bytes(const ConversionOptions& options, int points) {
     const Result expected = undisturbed(options);
     const int calls = calls_of(options);
@@ -133,7 +134,7 @@ class ResumeTest : public ::testing::Test {
         continue;
       }
       if (i % 2 == 0) memory.lose_unflushed();
-      // Every third one is killed a second time. Where it was killed after the last rename, the user is told to pass
+      // Every third conversion is killed a second time. If it was killed after the last rename, the user must pass
       // --overwrite.
       otherwise.overwrite = !memory.content("out.nvdb").empty();
       if (i % 3 == 0 && killed(otherwise, memory, calls / 5)) memory.lose_unflushed();
@@ -150,7 +151,7 @@ class ResumeTest : public ::testing::Test {
     }
   }
 
-  // Interrupts once `bytes` of the pass `name` are done; returns the message.
+  // Interrupts the conversion when `bytes` of the pass `name` are done. Returns the error message.
   std::string interrupted(ConversionOptions options, FileSystem& files, const std::string& name, std::uint64_t bytes) {
     options.save_interval_s = 3600;  // only the interruption saves
     options.memory += least_memory(volume_, options.threads) + kMargin;

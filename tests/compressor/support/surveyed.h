@@ -14,7 +14,7 @@
 namespace weir::test {
 
 struct Surveyed {
-  /// Blocks of up to `block_bytes`, and what selection has of memory.
+  /// Surveys `of` in blocks of up to `block_bytes`. `room` is the memory that selection may use.
   explicit Surveyed(MemoryVolume& of, std::uint64_t block_bytes = std::uint64_t{1} << 30U,
                     const SelectionRoom& room = {64, std::uint64_t{1} << 24U});
 
@@ -26,15 +26,15 @@ struct Surveyed {
   std::vector<LeafRow> all_rows() const;  ///< in leaf order
 };
 
-/// What was bought for one size.
+/// What selection chose for one size.
 struct Choice {
-  std::vector<bool> kept;    ///< by leaf index
-  std::vector<bool> region;  ///< open ones, by region index
-  std::vector<bool> upper;   ///< open ones
+  std::vector<bool> kept;    ///< kept leaves, by leaf index
+  std::vector<bool> region;  ///< open regions, by region index
+  std::vector<bool> upper;   ///< open upper nodes
   TreePlan plan;
 };
 
-/// One Selection asked again and again.
+/// Uses one Selection for several choices.
 class Chooser {
  public:
   Chooser(const Box& domain, const RowStore& rows, const GainRule& rule);
@@ -45,7 +45,7 @@ class Chooser {
   std::uint64_t minimum() const { return selection_.bytes().minimum.file_bytes; }
   std::uint64_t lossless() const { return selection_.bytes().full.file_bytes; }
   Choice choose(std::uint64_t file_bytes);
-  /// Gains of one region in leaf order.
+  /// Returns the gains of one region in leaf order.
   RegionGains gains(std::int64_t region) const;
 
  private:
@@ -54,11 +54,11 @@ class Chooser {
   Selection selection_;
 };
 
-/// What voxel-by-voxel reading of a choice loses.
+/// The error of a choice, measured voxel by voxel.
 struct MeasuredError {
-  double squared = 0;  ///< summed in long double over the finite voxels
+  double squared = 0;  ///< sum in long double over the finite voxels
   double max_abs = 0;
-  bool lossless = true;  ///< all bits the same
+  bool lossless = true;  ///< all bits are the same
 };
 
 MeasuredError measured_error(const MemoryVolume& volume, const Fill& fill, const TreeRegions& tree,

@@ -1,4 +1,4 @@
-// Threads of this process as the ranks of a team.
+// A team with threads of this process as its ranks.
 #pragma once
 
 #include <barrier>
@@ -14,7 +14,7 @@ class ThreadTeam {
  public:
   explicit ThreadTeam(int size) : parts_(static_cast<std::size_t>(size)), arrived_(size) {}
 
-  /// Calls `work` by one thread for each rank.
+  /// Calls `work` on one thread for each rank.
   void run(const std::function<void(Team&)>& work) {
     std::vector<std::thread> threads;
     for (int rank = 0; rank < static_cast<int>(parts_.size()); ++rank) {

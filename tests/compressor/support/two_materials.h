@@ -1,4 +1,4 @@
-// Two materials that few bits hold, mixed voxel by voxel, and voxels without a value among them.
+// A volume of two materials, mixed voxel by voxel, with voxels without a value among them. Few bits hold its values.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace weir::test {
 
-/// 0 or 1 in a cube of `side` voxels; one voxel of 50 is NaN.
+/// Returns a cube of `side` voxels along each axis with values 0 or 1. One voxel in 50 is NaN.
 inline MemoryVolume two_materials(std::int64_t side) {
   return MemoryVolume({{0, 0, 0}, {side, side, side}}, [side](const Index3& i) {
     const auto n = static_cast<std::uint32_t>(i.x + side * (i.y + side * i.z)) * 2654435761U >> 9U;

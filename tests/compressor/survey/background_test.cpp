@@ -81,7 +81,7 @@ TEST(Background, NegativeIntegersAreCountedToo) {
 
 TEST(Background, TiesGoToTheLowestBinAndTheLowestValue) {
   for (const ScalarType type : {ScalarType::uint8, ScalarType::float32}) {
-    // 8 is as frequent as 7 and as 200.
+    // 7, 8 and 200 are equally frequent.
     MemoryVolume volume = volume_of(type, [](const Index3& i) {
       const auto at = (i.x + 3) % 4;
       return at == 0 ? 200.0F : at == 1 ? 8.0F : at == 2 ? 7.0F : 100 + static_cast<float>((i.x + 3) / 4);
@@ -91,7 +91,7 @@ TEST(Background, TiesGoToTheLowestBinAndTheLowestValue) {
 }
 
 TEST(Background, IsAModeOfTheFullestBinNotOfTheWhole) {
-  // uint16 over its whole range has bins of 64: 64..127 together beat 5000 alone.
+  // uint16 over its whole range has bins of 64 values. The values 64 to 127 together beat 5000 alone.
   MemoryVolume volume = volume_of(ScalarType::uint16, [](const Index3& i) {
     const float at = die(i, 10);
     return i == kSmall.lo ? 0.0F : i == kSmall.lo + Index3{1, 0, 0} ? 65535.0F : at < 3 ? 5000.0F : 64 + die(i * 5, 64);
@@ -115,7 +115,7 @@ TEST(Background, ZerosOfBothSignsCountTogetherAsPlusZero) {
 }
 
 TEST(Background, WhereNoValueOccursTwiceItIsTheMiddleOfTheFullestBin) {
-  // Distinct values: 3/4 of them close to 10, the rest spread.
+  // All values are distinct: 3/4 of them are close to 10, the others are spread.
   float next = 0;
   MemoryVolume volume = volume_of(ScalarType::float32, [&](const Index3&) {
     next += 1;
@@ -133,7 +133,7 @@ TEST(Background, WhereNoValueOccursTwiceItIsTheMiddleOfTheFullestBin) {
 }
 
 TEST(Background, TheMiddleOfABinStaysInTheRange) {
-  // Two values, both once: the only voxels.
+  // The only two voxels have two different values.
   MemoryVolume volume({{0, 0, 0}, {2, 1, 1}}, std::vector<float>{1.0F, 3e38F});
   const Background found = background_of(volume);
   EXPECT_EQ(found.method, "bin");
@@ -188,7 +188,7 @@ TEST(Background, DoesNotDependOnTheBlocks) {
   }
 }
 
-// lo + i/1023 (hi - lo) of the fullest of 1024 bins, in float.
+// Returns lo + i/1023 (hi - lo) for the fullest of 1024 bins, in float, and the bin.
 std::pair<float, std::size_t> paper_formula(const MemoryVolume& volume) {
   float low = std::numeric_limits<float>::max();
   float high = -low;
@@ -227,7 +227,7 @@ TEST(PaperBackground, OfOneValueIsThatValue) {
 }
 
 TEST(PaperBackground, OfZerosOfBothSignsIsPlusZero) {
-  // The sign would otherwise be that of the zero seen first, by whichever thread.
+  // Otherwise the sign would be that of the zero that some thread sees first.
   for (const bool first_negative : {true, false}) {
     MemoryVolume volume = volume_of(ScalarType::float32,
                                     [&](const Index3& i) { return (i == kSmall.lo) == first_negative ? -0.0F : 0.0F; });

@@ -19,7 +19,7 @@ namespace {
 using test::MemoryVolume;
 using test::Surveyed;
 
-// Blocks in any order from three threads, by two surveys whose tallies are merged, as two processes do.
+// Three threads survey blocks in any order with two surveys. Their tallies are merged, as two processes do.
 TEST(BlockSurvey, MergedBlockSurveysEqualTheWholeSurvey) {
   MemoryVolume volume({{-13, 5, 120}, {40, 60, 171}}, [](const Index3& i) {
     if (i == Index3{20, 50, 130} || i == Index3{19, 50, 150}) return NAN;
@@ -76,7 +76,7 @@ TEST(BlockSurvey, MergedBlockSurveysEqualTheWholeSurvey) {
   EXPECT_EQ(std::memcmp(of_last.data(), &seen, sizeof seen), 0);
 }
 
-// The length of a vector of uint8 is often no uint8, and may be larger than any.
+// The length of a vector of uint8 values is often no uint8, and may be larger than any uint8.
 TEST(BlockSurvey, LengthsOfVectorsAreNotCountedAsValuesOfTheirType) {
   for (const ScalarType type : {ScalarType::uint8, ScalarType::int8, ScalarType::uint16, ScalarType::int16}) {
     MemoryVolume volume({{0, 0, 0}, {20, 16, 16}}, [](const Index3& i) {

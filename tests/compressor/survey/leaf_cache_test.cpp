@@ -18,7 +18,7 @@ using test::MemoryVolume;
 
 constexpr std::uint64_t kLeafBytes = std::uint64_t{kLeafVoxels} * sizeof(float);
 
-/// Cuts leaves at all sides of its domain; one leaf has NaN alone.
+/// Returns a volume with a domain that cuts leaves on all sides. One leaf has only NaN.
 MemoryVolume volume_with_edges() {
   return {Box{{-3, 5, 2}, {21, 30, 19}}, [](const Index3& i) {
             if (floor_div(i, kLeafDim) == Index3{1, 2, 1}) return std::numeric_limits<float>::quiet_NaN();
@@ -78,7 +78,7 @@ TEST(LeafCache, KeepsTheFirstOnesUntilItsMemoryIsFull) {
     ++has;
     EXPECT_TRUE(i < 5 || leaves.first + leaves.position(i) == (Index3{1, 2, 1})) << i;
   }
-  EXPECT_EQ(has, 6);  // the one of one value takes no room
+  EXPECT_EQ(has, 6);  // the leaf of one value takes no room
   EXPECT_FALSE(cache.has(volume.info().domain()));
 }
 

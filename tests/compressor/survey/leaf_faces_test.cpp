@@ -12,7 +12,7 @@
 namespace weir::leaf_faces_test {
 namespace {
 
-// Bounds of the finite values of the voxels of `extent` that `is_in` holds for.
+// Returns the bounds of the finite values at those voxels of `extent` for which `is_in` is true.
 template <typename IsIn>
 MinMax bounds_where(const std::vector<float>& values, const Index3& extent, const IsIn& is_in) {
   MinMax bounds = kNoBounds;

@@ -21,8 +21,8 @@ struct Expected {
   std::vector<std::uint64_t> counts;
 };
 
-// The definition: the finest power of two, down to 2^-149, whose bins from the lowest to the highest
-// value are 1024 at most.
+// Computes the histogram by its definition: the bin width is the finest power of two, at least 2^-149, with at most
+// 1024 bins from the lowest to the highest value.
 Expected expected_histogram(const std::vector<float>& values) {
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
   int exponent = -149;
@@ -120,7 +120,7 @@ TEST_P(RangeHistogramTest, IsTheSameInAnyOrderAndPartition) {
       at += count;
     }
     expect_histogram(sequential, expected);
-    // Merged as a tree and as a list, empty ones included.
+    // The histograms are merged as a tree and as a list, including empty ones.
     RangeHistogram list;
     for (const RangeHistogram& h : histograms) list.merge(h);
     expect_histogram(list, expected);
@@ -174,7 +174,7 @@ TEST_P(RangeHistogramTest, HasEdgesAtMultiplesOfTheWidthAndEveryValueInItsBin) {
   for (const float v : values) {
     const std::size_t bin = histogram.bin_of(v);
     ASSERT_LT(bin, bins);
-    // Exact: edges are representable where a value lies in the bin.
+    // These comparisons are exact, because edges are representable if a value lies in the bin.
     EXPECT_LE(histogram.first_edge() + static_cast<double>(bin) * width, static_cast<double>(v));
     EXPECT_GE(histogram.first_edge() + static_cast<double>(bin + 1) * width, static_cast<double>(v));
   }

@@ -12,12 +12,12 @@
 namespace weir::row_store_test {
 namespace {
 
-// Rows whose `sse` is their linear index.
+// Returns rows with their linear index in `sse`.
 RowStore numbered_rows(const Box& domain, std::int64_t segment_regions) {
   RowStore store(test::CrashFileSystem().create_unnamed("rows"), make_lattice(domain, kLeafDim), {segment_regions, 0});
   std::vector<LeafRow> rows(static_cast<std::size_t>(store.leaves().size()));
   for (std::size_t i = 0; i < rows.size(); ++i) rows[i].sse = static_cast<double>(i);
-  // In two writes.
+  // Writes them in two parts.
   const std::size_t half = rows.size() / 2;
   store.write(static_cast<std::int64_t>(half), std::span(rows).subspan(half));
   store.write(0, std::span(rows).first(half));

@@ -12,8 +12,8 @@ namespace {
 
 constexpr Box kDomain{{0, 0, 0}, {64, 64, 64}};
 
-// Opacity 0 below half of [0, 1023], so that values are entries of the table; then a ramp to 0.5 at 767, flat from
-// there.
+// The range [0, 1023] makes values equal entries of the table. The opacity is 0 in the lower half, then a ramp to 0.5
+// at 767, and flat from there.
 Scene ramp() {
   Scene scene;
   scene.volume.range = {0, 1023};
@@ -49,7 +49,7 @@ TEST(Visibility, WeighsByTheSteepestChange) {
   const Visibility v = visibility(ramp());
   EXPECT_EQ(v.weight({0, 511}), 0);
   EXPECT_EQ(v.weight(kNoBounds), 0);
-  // The ramp rises by 0.5 over 256 of 1023 parts of the range; its colours change besides, where it is opaque.
+  // The ramp rises by 0.5 over 256 of 1023 parts of the range. In addition the colours change where it is opaque.
   const double slope = 0.5 * 1023 / 256;
   EXPECT_NEAR(v.weight({511, 767}), (slope + 0.5) * (slope + 0.5), 1e-4);
   EXPECT_NEAR(v.weight({511, 639}), (slope + 0.25) * (slope + 0.25), 1e-4);

@@ -29,7 +29,7 @@ TEST(RegionShare, RunsSplitIntoAtMostFiveBoxesInOrder) {
 }
 
 TEST(RegionShare, EachLeafHasExactlyOneOwner) {
-  // A domain that begins inside a region and ends inside another, below and above zero.
+  // The domain begins inside one region, below zero, and ends inside another, above zero.
   const NodeLattice leaves = make_lattice({{-140, 5, 100}, {130, 300, 390}}, kLeafDim);
   const Box all{{0, 0, 0}, leaves.count};
   for (const int size : {1, 2, 3, 8, 100}) {

@@ -14,7 +14,7 @@
 namespace weir::team_test {
 namespace {
 
-// What `work` gives on each of `size` ranks, by rank.
+// Returns the results of `work` on each of `size` ranks, by rank.
 template <typename Result>
 std::vector<Result> on_ranks(int size, const std::function<Result(Team&)>& work) {
   std::vector<Result> results(static_cast<std::size_t>(size));
@@ -70,7 +70,7 @@ TEST(Team, SumsConcatenatesGathersAndFollows) {
   for (const Items& items : sums) EXPECT_TRUE((items == Items{static_cast<unsigned __int128>(10) << 100U, 5}));
 
   const auto all = on_ranks<std::vector<int>>(4, [](Team& team) {
-    std::vector<int> items(static_cast<std::size_t>(team.rank()), team.rank());  // none of rank 0
+    std::vector<int> items(static_cast<std::size_t>(team.rank()), team.rank());  // rank 0 has no items
     team.concatenate(items);
     return items;
   });

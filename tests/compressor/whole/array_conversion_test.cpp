@@ -1,4 +1,4 @@
-// A conversion of an array in memory ends with the bytes of a conversion of a raw file of the same values.
+// A conversion of an array in memory gives the same bytes as a conversion of a raw file with the same values.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -17,7 +17,8 @@ namespace {
 
 const Index3 kExtent{150, 37, 29};
 
-// Half empty, half a pattern with a peak, one value that no float32 holds and one that says "no data".
+// Returns a volume: half is empty, half is a pattern with a peak, one value that no float32 holds, and one that means
+// "no data".
 std::vector<std::int32_t> pattern() {
   std::vector<std::int32_t> values(static_cast<std::size_t>(volume(kExtent)));
   for_each_index({{}, kExtent}, [&](const Index3& i) {

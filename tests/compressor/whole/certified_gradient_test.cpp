@@ -1,5 +1,5 @@
-// convert_volume with Certify::gradient: the sidecar says of the gradient what a comparison of source and file says,
-// and the volume is the same as without.
+// convert_volume with Certify::gradient. The sidecar gives the same gradient error as a comparison of source and file,
+// and the volume is the same as without it.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -44,7 +44,7 @@ std::string gradient_of(const Sidecar& sidecar) {
   return nlohmann::json::parse(to_json_text(sidecar))["error"]["gradient"].dump();
 }
 
-/// As the sidecar has it.
+/// Returns the gradient error of a comparison, as text in the sidecar's form.
 std::string compared(VolumeSource& source, const NvdbGrid& grid) {
   Sidecar sidecar;
   sidecar.gradient = gradient_error(source, grid, {});

@@ -1,5 +1,5 @@
-// Sources that are rewritten while they are converted: whatever the moment, the
-// conversion ends with an error that names the file, and leaves nothing.
+// Sources that are rewritten while they are converted. Whenever it happens, the conversion ends with an error that
+// names the file, and leaves nothing behind.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -35,7 +35,7 @@ std::vector<float> values_of(int seed, std::int64_t count) {
   return values;
 }
 
-// In place: the inode stays.
+// Writes in place, so that the inode stays.
 void write(const std::string& path, const std::vector<float>& values, std::int64_t first = 0) {
   std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
   if (!file) file.open(path, std::ios::binary | std::ios::out);
@@ -43,7 +43,7 @@ void write(const std::string& path, const std::vector<float>& values, std::int64
   file.write(reinterpret_cast<const char*>(values.data()), static_cast<std::streamsize>(values.size() * sizeof(float)));
 }
 
-// Until the clock of the file system has gone on since `path` was written.
+// Waits until the clock of the file system has moved on since `path` was written.
 void wait_for_a_tick(const std::string& path) {
   const std::string probe = path + ".probe";
   do {
@@ -52,14 +52,14 @@ void wait_for_a_tick(const std::string& path) {
   fs::remove(probe);
 }
 
-// Calls `at` before each read with the number of those before it.
+// Before each read, calls `at` with the number of earlier reads.
 class HookedSource final : public VolumeSource {
  public:
   HookedSource(std::unique_ptr<VolumeSource> source, std::function<void(int)> at)
       : source_(std::move(source)), info_(source_->info()), at_(std::move(at)) {}
 
   const SourceInfo& info() const override { return info_; }
-  /// Without files: only the values tell of a change.
+  /// Removes the list of files, so that only the values can tell that the source changed.
   void forget_files() { info_.files.clear(); }
   AccessShape access() const override { return {4, {64, 64, 8}, {0, 0, 0}}; }
   ConversionLoss read(const Box& box, std::span<float> values) override {
@@ -90,7 +90,7 @@ class ChangedSourceTest : public testing::Test {
     return options;
   }
 
-  // The message; empty where it converted. `pass` gets the one that had begun last.
+  // Returns the error message; empty if the conversion succeeded. Sets `pass` to the pass that began last.
   std::string convert(VolumeSource& source, std::string* pass = nullptr, const std::function<void()>& at_encode = {}) {
     CrashFileSystem files;
     ConversionOptions options;
@@ -212,7 +212,7 @@ TEST_F(ChangedSourceTest, DetachedDataRewritten_IsNamed) {
   EXPECT_TRUE(message.starts_with(path_ + ": changed while it was read: it was written to at ")) << message;
 }
 
-// cp -p and rsync -t leave size and time of modification as they were.
+// cp -p and rsync -t keep the size and the modification time.
 TEST_F(ChangedSourceTest, ResumeOfAnotherFileOfTheSameSizeAndTime_BeginsAnew) {
   const auto run = [&](FileSystem& files, bool interrupt) {
     const auto source = open_source(path_, shape());

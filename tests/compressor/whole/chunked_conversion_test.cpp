@@ -1,5 +1,5 @@
-// Conversions of chunked volumes: what is said where chunks are decoded more than
-// once, and that what it advises is enough.
+// Conversions of chunked volumes: the notice when chunks are decoded more than once, and that the memory it advises is
+// enough.
 #include <gtest/gtest.h>
 
 #include <regex>
@@ -15,7 +15,7 @@ using test::Converted;
 using test::MemoryVolume;
 
 constexpr std::uint64_t kMiB = std::uint64_t{1} << 20U;
-/// What the outputs of the conversions before, held in memory here, may leave behind in the process.
+/// The memory that outputs of earlier conversions, which the test holds in memory, may leave in the process.
 constexpr std::uint64_t kMargin = 24 * kMiB;
 
 std::uint64_t advised_mebibytes(const std::string& line) {
@@ -24,7 +24,7 @@ std::uint64_t advised_mebibytes(const std::string& line) {
   return match.empty() ? 0 : std::stoull(match[1]);
 }
 
-/// The least --memory the volume can be converted with, by the error's own advice.
+/// Returns the least --memory with which the volume can be converted, from the advice in the error message.
 std::uint64_t least_memory(MemoryVolume& volume) {
   ConversionOptions options;
   options.memory = kMiB;

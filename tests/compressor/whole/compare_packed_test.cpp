@@ -1,4 +1,4 @@
-// compare_volumes of a packed grid: of its decoded values, not of its tree.
+// compare_volumes of a packed grid compares the decoded values and not the tree.
 #include <gtest/gtest.h>
 
 #include "compressor/compare/compare.h"

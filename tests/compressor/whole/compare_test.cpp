@@ -28,7 +28,7 @@ constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
 float ramp(const Index3& i) { return static_cast<float>(i.x + 100 * i.y + 10000 * i.z); }
 
-/// The lossless file of `value`, and sources that differ from it where the test says.
+/// Compares the lossless file of `value` with sources that differ from it at voxels that the test chooses.
 class CompareLossless : public testing::Test {
  protected:
   void convert_domain(const Box& domain, const std::function<float(const Index3&)>& value) {
@@ -81,17 +81,17 @@ TEST_F(CompareLossless, KnownDifferences) {
   EXPECT_EQ(c.error.max_abs, 2.0);
   EXPECT_EQ(c.max_abs_at, (Index3{19, 8, 16}));
   EXPECT_EQ(c.different, 2U);
-  const auto range = static_cast<double>(ramp({18, 8, 16}));  // now the largest
+  const auto range = static_cast<double>(ramp({18, 8, 16}));  // now the largest value
   EXPECT_NEAR(c.error.nmse, 4.25 / 3060 / (range * range), 1e-20);
   EXPECT_NEAR(*c.error.psnr_db, 10 * std::log10(range * range / (4.25 / 3060)), 1e-9);
 }
 
 TEST_F(CompareLossless, FirstOfEqualMaximaInFileOrder) {
   convert_domain({{0, 0, 0}, {40, 24, 20}}, [](const Index3&) { return 1.0F; });
-  // In leaf order (20, 1, 0) comes before (1, 9, 0) too, but (1, 1, 9) before (33, 17, 2).
+  // In leaf order, (20, 1, 0) also comes before (1, 9, 0), but (1, 1, 9) comes before (33, 17, 2).
   EXPECT_EQ(compare_with({{at({33, 17, 2}), 3.0F}, {at({1, 1, 9}), -1.0F}}).max_abs_at, (Index3{33, 17, 2}));
   EXPECT_EQ(compare_with({{at({1, 9, 0}), 3.0F}, {at({20, 1, 0}), -1.0F}}).max_abs_at, (Index3{20, 1, 0}));
-  // Within a leaf, whose own order has z fastest.
+  // The same within a leaf, although the leaf's own order has z fastest.
   EXPECT_EQ(compare_with({{at({1, 0, 0}), 3.0F}, {at({0, 0, 1}), 3.0F}}).max_abs_at, (Index3{1, 0, 0}));
 }
 
@@ -110,13 +110,13 @@ TEST_F(CompareLossless, NonFiniteVoxels) {
   });
   EXPECT_TRUE(compare_with({}).error.lossless);
   const Comparison c = compare_with({{at({2, 2, 2}), -kInf}, {at({8, 8, 8}), 6.0F}, {at({0, 0, 0}), 7.0F}});
-  EXPECT_EQ(c.nonfinite, 2U);          // the NaN that is kept, and the new -Inf
-  EXPECT_EQ(c.nonfinite_decoded, 1U);  // 6 reads +Inf
+  EXPECT_EQ(c.nonfinite, 2U);          // the kept NaN and the new -Inf
+  EXPECT_EQ(c.nonfinite_decoded, 1U);  // the 6 decodes to +Inf
   EXPECT_EQ(c.finite, 727U);
   EXPECT_EQ(c.different, 2U);
   EXPECT_EQ(c.nonfinite_different, 1U);
   EXPECT_EQ(c.error.max_abs, 2.0);
-  EXPECT_EQ(c.error.mse, 4.0 / 726);  // over those finite on both sides
+  EXPECT_EQ(c.error.mse, 4.0 / 726);  // over the voxels that are finite on both sides
   EXPECT_FALSE(c.error.lossless);
 }
 
@@ -194,8 +194,8 @@ TEST_F(CompareLossless, ProgressEndsAtTheVolumesBytes) {
   EXPECT_GE(released, 9);
 }
 
-// Lossy files of every synthetic kind: against voxel-by-voxel look-ups and a long double sum, for several
-// block sizes and thread counts, and against the certificate of the conversion itself.
+// Compares lossy files of every synthetic kind, for several block sizes and thread counts. The results must agree with
+// voxel-by-voxel look-ups and a long double sum, and with the certificate of the conversion itself.
 TEST(Compare, AgreesWithTheDefinitionAndTheCertificate) {
   for (const SyntheticKind& kind : synthetic_kinds()) {
     const auto source = open_synthetic(kind.name, {{150, 37, 29}, 3});

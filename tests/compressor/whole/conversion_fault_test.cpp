@@ -1,5 +1,5 @@
-// A whole conversion in which every call to the file system fails in turn: the
-// error is reported, and the directory is what it was before.
+// A whole conversion in which each call to the file system fails in turn. The error is reported, and the directory is
+// as it was before.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ class ConversionFaultTest : public ::testing::Test {
     return names;
   }
 
-  // One thread: the calls then come in one order.
+  // With one thread the calls come in one order.
   void convert(FileSystem& files, Resume resume = Resume::automatic) const {
     const auto source = open_synthetic("cloud", {{40, 33, 21}, 1});
     ConversionOptions options;
@@ -65,7 +65,7 @@ TEST_F(ConversionFaultTest, EveryCallFailsInTurnAndNothingIsLeft) {
       SCOPED_TRACE("call " + std::to_string(call) + " " + name + ": " + message);
       EXPECT_TRUE(files.failed());
       if (name == "remove_directory") {
-        // The hidden work directory stays, empty; the conversion itself is done.
+        // The empty hidden work directory stays, but the conversion itself is done.
         EXPECT_EQ(message, "");
         EXPECT_EQ(listing(), (std::set<std::string>{".out.nvdb.work", "out.nvdb", "out.nvdb.json"}));
         std::filesystem::remove(directory_ / ".out.nvdb.work");

@@ -1,6 +1,5 @@
-// Whole conversions of the hard cases: what the certificate and the sidecar say
-// is what the stock reader finds, whatever the threads, the memory and the way
-// the volume is read.
+// Whole conversions of the hard cases. The certificate and the sidecar agree with what the stock reader finds, whatever
+// the threads, the memory and the way of reading the volume.
 #include "compressor/conversion.h"
 
 #include <gtest/gtest.h>
@@ -109,7 +108,7 @@ TEST_P(HardCaseTest, BytesDoNotDependOnThreadsMemoryOrAccess) {
       expect_same("chunks of " + std::to_string(chunk));
     }
     volume.set_access({});
-    // The least memory there is.
+    // The least possible memory.
     options.memory = 1;
     try {
       test::convert(volume, options);

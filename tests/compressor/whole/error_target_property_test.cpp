@@ -1,5 +1,5 @@
-// What was asked for is what the file that was written holds, or the conversion is refused: over random volumes with
-// heavy tails, for all targets and encodings. WEIR_PROPERTY_VOLUMES sets how many.
+// A written file keeps its error target, or the conversion is refused. Tested over random volumes with heavy tails, for
+// all targets and encodings. WEIR_PROPERTY_VOLUMES sets the number of volumes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +23,8 @@ using test::Converted;
 using test::MemoryVolume;
 using test::RandomVolume;
 
-// The conversion, or why fpn alone cannot do it, which must say what to do.
+// Returns the conversion; nullopt if it is refused because fpn alone cannot meet the target. The message must say what
+// to do.
 std::optional<Converted> converted_or_refused(MemoryVolume& volume, const ConversionOptions& options) {
   try {
     return test::convert(volume, options);

@@ -1,5 +1,5 @@
-// Targets of error instead of size: met by what is decoded, fused or not, and by
-// no smaller a file than need be.
+// Error targets instead of sizes. The decoded values meet them, with fused operations or without, and the file is no
+// larger than needed.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -62,7 +62,7 @@ class ErrorTarget : public testing::TestWithParam<Case> {
   }
 };
 
-// Largest error and sum of squares over the finite voxels, by the stock reader.
+// Largest error, mean squared error and range over the finite voxels, as the stock reader finds them.
 struct Read {
   double max_abs = 0;
   double mse = 0;
@@ -173,7 +173,7 @@ TEST(ErrorTargets, UnreachableTargetIsRefusedWithAReason) {
   const std::string at_most = refusal(Budget::Kind::psnr, 90, Encoding::fp8);
   EXPECT_EQ(at_most.substr(0, at_most.find("about")), "out.nvdb: --psnr 90 cannot be met: --encoding fp8 reaches ");
   EXPECT_EQ(refusal(Budget::Kind::psnr, 300, Encoding::automatic), "no error");  // float32 keeps every bit
-  FileRequest tiny;  // of a range whose square is below every double
+  FileRequest tiny;  // the square of its range is below every double
   tiny.path = "out.nvdb";
   tiny.budget.kind = Budget::Kind::psnr;
   tiny.budget.target = 60;
@@ -183,7 +183,7 @@ TEST(ErrorTargets, UnreachableTargetIsRefusedWithAReason) {
   EXPECT_EQ(refusal(Budget::Kind::max_error, 0, Encoding::automatic), "no error");
 }
 
-// Estimates of what quantised leaves lose are good enough over many of them.
+// Estimates of the errors of quantised leaves are good enough over many leaves.
 TEST(ErrorTargets, TakeOneFileOfAVolumeOfManyLeaves) {
   for (const auto& [kind, width] : {std::pair{"turbulence", 128}, {"cloud", 320}}) {
     const auto source = open_synthetic(kind, {{width, width, width}, 4});
@@ -215,7 +215,7 @@ TEST(ErrorTargets, PsnrOfAFileWithoutBlocks_TakesTheSmallestFile) {
     options.encoding = encoding;
     const std::uint64_t smallest = test::minimum_size(volume, options);
     options.budget.kind = Budget::Kind::psnr;
-    for (const double psnr : {20.0, 45.0}) {  // one voxel of 64,000 is lost: 48 dB
+    for (const double psnr : {20.0, 45.0}) {  // losing one voxel of 64,000 gives 48 dB
       options.budget.target = psnr;
       EXPECT_EQ(test::convert(volume, options).file.size(), smallest) << encoding_name(encoding) << ' ' << psnr;
     }
@@ -225,7 +225,7 @@ TEST(ErrorTargets, PsnrOfAFileWithoutBlocks_TakesTheSmallestFile) {
 }
 
 TEST(ErrorTargets, HoldForADecoderWithFusedMultiplyAdd) {
-  // fma(code, quantum, minimum) may differ by an ulp: the bound leaves room for it.
+  // fma(code, quantum, minimum) may differ by an ulp. The bound leaves room for this.
   const auto source = open_synthetic("turbulence", {{64, 64, 64}, 9});
   MemoryVolume volume(*source);
   for (const double target : {1e-5, 1e-4, 1e-3, 1e-2}) {
@@ -250,7 +250,7 @@ TEST(ErrorTargets, HoldForADecoderWithFusedMultiplyAdd) {
   }
 }
 
-// Float holds no two levels so far apart: such a leaf reads as one value, whose error is known as well.
+// Float cannot hold two levels so far apart. Such a leaf decodes to one value, and the error of that value is known.
 TEST(ErrorTarget, OfALeafThatSpansAllOfFloat_IsThatOfOneLevel) {
   constexpr float kMost = std::numeric_limits<float>::max();
   const auto ends = [](const Index3& i) { return (i.x + i.y + i.z) % 2 == 0 ? kMost : -kMost; };
@@ -267,7 +267,7 @@ TEST(ErrorTarget, OfALeafThatSpansAllOfFloat_IsThatOfOneLevel) {
   }
 }
 
-// Zeros, and of 50 voxels one that is anything.
+// Returns a volume of zeros in which one voxel in 50 has a random value.
 MemoryVolume sparse_noise() {
   MemoryVolume volume({{0, 0, 0}, {32, 32, 32}}, [](const Index3& i) {
     const auto n = static_cast<std::uint32_t>(i.x + 32 * (i.y + 32 * i.z)) * 2654435761U;
@@ -276,7 +276,7 @@ MemoryVolume sparse_noise() {
   return volume;
 }
 
-// Estimates of such leaves are far too high.
+// The estimated errors of leaves with sparse values are far too high.
 TEST(ErrorTargetOfSparseValues, WhatTheEncodingReachesIsNotRefused) {
   MemoryVolume volume = sparse_noise();
   ConversionOptions options;
@@ -295,7 +295,7 @@ TEST(ErrorTargetOfSparseValues, WhatTheEncodingReachesIsNotRefused) {
       << message;
 }
 
-// Two materials, and voxels without a value, whose leaves are estimated as if the background could be anywhere.
+// Two materials, and voxels without a value. Estimates for leaves with such voxels assume any background.
 TEST(ErrorTargetOfMissingValues, WhatIsExactTakesNoMoreBitsThanItNeeds) {
   MemoryVolume volume = test::two_materials(32);
   ConversionOptions options;
@@ -309,7 +309,7 @@ TEST(ErrorTargetOfMissingValues, WhatIsExactTakesNoMoreBitsThanItNeeds) {
   EXPECT_EQ(bits[4], 0U) << "leaves of 16 bits, of 64";
 }
 
-// An early quantised file meets the target: a float file in its place must be planned for no larger an error.
+// An early quantised file meets the target. A float file that replaces it must not be planned for a larger error.
 TEST(ErrorTargets, SpikesOnSmallNoise_ReachThePsnrAsked) {
   std::mt19937_64 engine(1);
   const auto draw = [&] { return std::ldexp(static_cast<double>(engine() >> 11U), -53); };

@@ -1,5 +1,5 @@
-// Volumes some of whose voxels have no value at all (ValueMapping::gaps): these are inactive, read the background and
-// are in no figure, as stock NanoVDB sees it too.
+// Volumes in which some voxels have no value at all (ValueMapping::gaps). These voxels are inactive, read the
+// background and count in no figure, also for stock NanoVDB.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,8 +21,8 @@ using test::bits_of;
 using test::Converted;
 using test::MemoryVolume;
 
-/// Gaps: a corner of the domain, a box that begins and ends inside blocks, one of whole blocks, and one of a whole
-/// region of 128^3.
+/// Returns whether a voxel lies in a gap. Gaps are a corner of the domain, a box that begins and ends inside blocks, a
+/// box of whole blocks, and a whole region of 128^3.
 bool in_gap(const Index3& i) {
   const Box boxes[] = {{{-140, -9, 3}, {-133, 0, 11}},
                        {{3, 5, 12}, {21, 18, 30}},
@@ -60,8 +60,8 @@ ConversionOptions options_for(Encoding encoding, FillMode fill) {
 
 bool is_pinned(const Index3& i) { return i == kDomain.lo || i == kDomain.hi - Index3{1, 1, 1}; }
 
-/// Every voxel: a gap is inactive and reads the background; what has a value is active, unless its block is a tile of
-/// the background.
+/// Checks every voxel. A gap is inactive and reads the background. A voxel with a value is active, unless its block is
+/// a tile of the background.
 void expect_gaps(const Converted& converted, FillMode fill, bool exact_background) {
   const NvdbGrid grid = converted.grid();
   const test::StockReader stock(converted.file);
@@ -97,7 +97,7 @@ TEST(Gaps, AreInactiveAndReadTheBackground_AtEverySizeAndFill) {
   }
 }
 
-/// The statistics of all nodes are what stock NanoVDB computes from the active voxels.
+/// The statistics of all nodes equal those that stock NanoVDB computes from the active voxels.
 TEST(Gaps, StatisticsAreThoseOfTheActiveVoxels) {
   MemoryVolume volume = volume_with_gaps();
   ConversionOptions options = options_for(Encoding::float32, FillMode::mean);
@@ -112,10 +112,10 @@ TEST(Gaps, StatisticsAreThoseOfTheActiveVoxels) {
   const std::vector<std::byte> theirs = stock.grid_with_stock_statistics();
   ASSERT_EQ(ours.size(), theirs.size());
   EXPECT_EQ(std::mismatch(ours.begin(), ours.end(), theirs.begin()).first - ours.begin(), std::ssize(ours));
-  EXPECT_EQ(converted.grid().value_min(), -7.5F);  // of the pinned voxel
+  EXPECT_EQ(converted.grid().value_min(), -7.5F);  // the value of the pinned voxel
 }
 
-/// Blocks at the edge of a gap are kept, so that the file's error counts their voxels alone.
+/// Blocks at the edge of a gap are kept, so that the file's error counts only their voxels with values.
 TEST(Gaps, CountInNoFigureOfTheCertificate) {
   MemoryVolume volume = volume_with_gaps();
   for (const Encoding encoding : {Encoding::float32, Encoding::fpn, Encoding::automatic}) {
@@ -141,7 +141,7 @@ TEST(Gaps, APackedFilesTreeHasInactiveTilesWhereNoVoxelHasAValue) {
   EXPECT_FALSE(stock.active({200, 8, 24}));
   const NvdbGrid grid = converted.grid();
   for_each_index(kDomain, [&](const Index3& i) {
-    if (i.x % 3 != 0 || i.y % 5 != 0 || i.z % 7 != 0) return;  // each decodes a block
+    if (i.x % 3 != 0 || i.y % 5 != 0 || i.z % 7 != 0) return;  // each look-up decodes a block
     EXPECT_EQ(bits_of(grid.value(i)), bits_of(in_gap(i) ? -7.5F : value_at(i)));
   });
 }
@@ -160,8 +160,8 @@ TEST(Gaps, AVolumeOfNothingElse_IsInactive) {
   EXPECT_TRUE(converted.sidecar.error.lossless);
 }
 
-/// NaN that is stored: one in a block of values, a whole block of it, what a gap leaves of a block, and all that a
-/// region has of the domain.
+/// Returns whether a voxel is stored as NaN: one voxel in a block of values, a whole block, the part of a block that a
+/// gap leaves, and all in-domain voxels of a region.
 bool is_stored_nan(const Index3& i) {
   const Box boxes[] = {{{50, 1, 20}, {51, 2, 21}},
                        {{80, 8, 16}, {88, 16, 24}},
@@ -212,7 +212,7 @@ TEST(Gaps, APackedFilesTreeHasActiveTilesWhereNaNIsStored) {
   EXPECT_FALSE(stock.active({-40, 8, 24}));
 }
 
-/// NaN that the source stores is not taken for a gap, and is refused as anywhere.
+/// NaN that the source stores is not taken for a gap. It is refused as in any other volume.
 TEST(Gaps, StoredNaN_IsRefused) {
   MemoryVolume volume(kDomain, [](const Index3& i) {
     return in_gap(i) ? missing_value() : i == Index3{50, 1, 20} ? std::nanf("") : value_at(i);

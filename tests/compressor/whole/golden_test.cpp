@@ -1,6 +1,5 @@
-// The same input and options give the same file: for any number of threads, memory
-// ceiling and kind of reading, today and in a year. A digest that changes is a
-// change of the format or of the selection, to be made on purpose.
+// The same input and options give the same file for any number of threads, memory ceiling and kind of reading, today
+// and in a year. If a digest changes, the format or the selection has changed. Make such a change only on purpose.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -67,7 +66,7 @@ class GoldenTest : public ::testing::TestWithParam<Golden> {
     options.memory = memory;
     const auto files = make_posix_file_system();
     const Sidecar sidecar = convert_volume(*source, options, {}, *files);
-    // The sidecar's figure is the file's, read back by other means.
+    // The sidecar's figures equal those of the file, read back by other means.
     std::ifstream file(options.output, std::ios::binary);
     const std::string bytes(std::istreambuf_iterator<char>(file), {});
     EXPECT_EQ(bytes.size(), sidecar.file.bytes);
@@ -92,7 +91,7 @@ TEST_P(GoldenTest, DigestDoesNotDependOnThreadsMemoryOrReading) {
   try {
     EXPECT_EQ(convert(2, 384 * kMiB, DirectIo::on), expected);
   } catch (const Error& error) {
-    // The place for temporary files is on a file system that has no direct I/O.
+    // The directory for temporary files lies on a file system without direct I/O.
     EXPECT_EQ(error.kind(), ErrorKind::usage) << error.what();
   }
 }

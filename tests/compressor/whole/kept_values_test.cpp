@@ -1,5 +1,5 @@
-// Volumes whose values stay in memory between the two passes, all or some of them: the file is that of a conversion
-// that reads both times, to the byte.
+// Volumes with all or some values kept in memory between the two passes. The file is, byte for byte, the file of a
+// conversion that reads both times.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ using test::MemoryVolume;
 constexpr std::uint64_t kMiB = std::uint64_t{1} << 20U;
 constexpr std::uint64_t kDense = std::uint64_t{150} * 131 * 203 * sizeof(float);
 
-/// A ball with waves in it, and nothing around.
+/// Returns a ball with waves in it and nothing around it.
 MemoryVolume ball() {
   return {Box{{-5, 3, 40}, {145, 134, 243}}, [](const Index3& i) {
             const double x = static_cast<double>(i.x) - 70;
@@ -30,7 +30,7 @@ MemoryVolume ball() {
           }};
 }
 
-/// The same where reading waits for nothing: nothing is kept of it.
+/// The same volume as a source in memory. Reading it waits for nothing, so no values are kept.
 class InMemory final : public VolumeSource {
  public:
   explicit InMemory(VolumeSource& source) : source_(source) {}
@@ -84,7 +84,7 @@ TEST(KeptValuesOfMaskedData, BlocksOfOneNaNTakeNoRoom) {
   options.budget.kind = Budget::Kind::rate;
   options.budget.rate = 4;
   options.non_finite = NonFinitePolicy::background;
-  options.memory = resident_bytes() + 72 * kMiB;  // for about 6 MiB of values
+  options.memory = resident_bytes() + 72 * kMiB;  // room for about 6 MiB of values
   test::convert(volume, options);
   EXPECT_EQ(volume.bytes_read(), std::uint64_t{200} * 160 * 200 * sizeof(float));
 }

@@ -1,5 +1,5 @@
-// Every NaN and infinity is refused unless something else is asked for, and what only float32 makes infinite is told
-// from what is.
+// Every NaN and infinity is refused unless the options say otherwise. Values that only float32 makes infinite are told
+// apart from values that are infinite in the source.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -37,7 +37,7 @@ TEST(NonFinite, NaNOfTheBitsThatMarkMissingData_IsRefused) {
 }
 
 TEST(NonFinite, EveryPatternIsCounted_AndKeptBitForBit) {
-  // A prime step through all 2^24 patterns with an exponent of ones.
+  // Steps by a prime through all 2^24 bit patterns with an exponent of ones.
   const auto pattern = [](std::uint32_t n) {
     const std::uint32_t at = n * 2053 % (1U << 24U);
     return std::bit_cast<float>((at & 0x7FFFFFU) | 0x7F800000U | (at >> 23U) << 31U);
@@ -60,7 +60,7 @@ TEST(NonFinite, EveryPatternIsCounted_AndKeptBitForBit) {
   }
 }
 
-// A block of one value and of voxels without any becomes a tile of that value: nothing is lost of what is finite.
+// A block with one value and with voxels without a value becomes a tile of that value. No finite value is lost.
 TEST(NonFinite, ATileThatKeepsItsFiniteValues_IsLosslessOverValidVoxels) {
   constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
   MemoryVolume volume({{0, 0, 0}, {24, 8, 8}}, [](const Index3& i) {
@@ -80,7 +80,7 @@ TEST(NonFinite, ATileThatKeepsItsFiniteValues_IsLosslessOverValidVoxels) {
     EXPECT_EQ(sidecar.error.max_abs, 0);
     EXPECT_TRUE(sidecar.error.lossless);
     EXPECT_FALSE(sidecar.error.psnr_db);
-    // For those that ask for it, NaN reads as the background, too.
+    // With a lossless budget, NaN also reads as the background.
     options.budget.kind = Budget::Kind::lossless;
     const test::Converted lossless = test::convert(volume, options);
     EXPECT_TRUE(lossless.sidecar.error.lossless);

@@ -1,5 +1,5 @@
-// Conversions against OpenVDB and stock NanoVDB: the same values and active
-// voxels everywhere, and the same bytes in every node.
+// Compares conversions with OpenVDB and stock NanoVDB: the same values and active voxels everywhere, and the same bytes
+// in every node.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -42,7 +42,7 @@ struct Expected {
   }
 };
 
-// The tree that the file claims to hold, with values and states from the volume itself.
+// Builds the tree that the file claims to hold, with values and states from the volume itself.
 StockTree tree_of(const Converted& converted, const Expected& expected) {
   const NvdbGrid grid = converted.grid();
   const Box domain = expected.volume.info().domain();
@@ -71,7 +71,7 @@ StockTree tree_of(const Converted& converted, const Expected& expected) {
   return tree;
 }
 
-// Bytes of a node that stock leaves undefined or inverted where nothing in it is active.
+// Blanks the bytes of a node that stock leaves undefined or inverted if nothing in the node is active.
 void blank_statistics(std::vector<std::byte>& node, const nvdb::InternalLayout& layout) {
   std::fill_n(node.begin(), nvdb::kNodeFlags, std::byte{0});
   std::fill_n(node.begin() + static_cast<std::ptrdiff_t>(layout.min), 16, std::byte{0});
@@ -93,14 +93,14 @@ void expect_same_nodes(Bytes ours, Bytes stock, std::uint64_t count, const nvdb:
   }
 }
 
-// Same bytes from `begin` to `end`, the offsets counted from both spans' starts.
+// Expects the same bytes from `begin` to `end`, counted from the start of each span.
 void expect_same(Bytes ours, Bytes stock, std::uint64_t begin, std::uint64_t end, const std::string& part) {
   const Bytes a = ours.subspan(begin, end - begin);
   const Bytes b = stock.subspan(begin, end - begin);
   EXPECT_EQ(std::mismatch(a.begin(), a.end(), b.begin()).first - a.begin(), std::ssize(a)) << part << " from " << begin;
 }
 
-// The voxel size is the one given; stock derives its own from transformed points, which rounds.
+// The voxel size equals the given spacing. Stock derives its voxel size from transformed points, which rounds.
 void expect_voxel_size(Bytes ours, Bytes stock, std::uint64_t offset, const std::array<double, 3>& spacing) {
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_EQ(load<double>(ours, offset + 8 * i), spacing[i]);
@@ -114,14 +114,14 @@ void expect_stock_bytes(const Converted& converted, Bytes stock_file, const std:
   const Bytes ours = Bytes(converted.file).subspan(grid.grid_offset());
   const Bytes stock = stock_file.subspan(stock_grid);
   const auto [leaves, lowers, uppers] = grid.node_counts();
-  // File meta data: all but grid size, file size, name size, blind-data count.
+  // File meta data: all members except grid size, file size, name size and blind-data count.
   namespace meta = nvdb::meta;
   expect_same(converted.file, stock_file, 0, meta::kGridSize, "file header");
   expect_same(converted.file, stock_file, meta::kNameKey, meta::kVoxelSize, "meta data");
   expect_voxel_size(converted.file, stock_file, meta::kVoxelSize, spacing);
   expect_same(converted.file, stock_file, meta::kNodeCount, meta::kBlindCount, "meta data");
   expect_same(converted.file, stock_file, meta::kVersion, nvdb::kNameOffset, "meta data");
-  // Grid: all but checksum, size and blind data.
+  // Grid: all members except checksum, size and blind data.
   expect_same(ours, stock, 0, nvdb::grid::kChecksum, "grid");
   expect_same(ours, stock, nvdb::grid::kVersion, nvdb::grid::kGridSize, "grid");
   expect_same(ours, stock, nvdb::grid::kName, nvdb::grid::kVoxelSize, "grid");
@@ -141,7 +141,7 @@ void expect_stock_bytes(const Converted& converted, Bytes stock_file, const std:
   EXPECT_TRUE(std::all_of(padding.begin(), padding.end(), [](std::byte b) { return b == std::byte{0}; }));
 }
 
-// The file through the stock reader against the OpenVDB tree through the stock reader.
+// Compares the file with the OpenVDB tree, both read by the stock reader.
 void expect_stock_reads_the_same(const Converted& converted, const Expected& expected, Bytes stock_file) {
   const StockReader ours(converted.file);
   const StockReader stock(stock_file);
@@ -159,7 +159,7 @@ void expect_stock_reads_the_same(const Converted& converted, const Expected& exp
   }
 }
 
-// `scan` reads every voxel too, which the same bytes imply.
+// If `scan` is set, also reads every voxel, although the same bytes already imply the same values.
 void expect_oracle(MemoryVolume& volume, const ConversionOptions& options, std::uint64_t file_bytes, bool scan) {
   SCOPED_TRACE("file of " + std::to_string(file_bytes) + " bytes, " + metric_name(options.metric) + ", fill " +
                fill_name(options.fill) + ", brick " + std::to_string(options.brick) + ", " +
@@ -182,7 +182,7 @@ std::uint64_t lossless_size(MemoryVolume& volume, ConversionOptions options) {
   return test::convert(volume, options).file.size();
 }
 
-// Minimum, lossless, more than lossless, and odd sizes between them.
+// Returns the minimum size, the lossless size, a larger size, and odd sizes between them.
 std::vector<std::uint64_t> sizes(MemoryVolume& volume, const ConversionOptions& options) {
   const std::uint64_t minimum = test::minimum_size(volume, options);
   const std::uint64_t lossless = lossless_size(volume, options);
@@ -198,7 +198,7 @@ float wave(const Index3& i) {
   return std::sin(0.37F * x) + 0.25F * std::cos(0.011F * y * z) + 0.01F * z;
 }
 
-// Half of it one value, so that some regions are worth no node.
+// Half of the volume has one value, so that some regions are not worth a node.
 float island(const Index3& i) { return i.x * i.x + i.y * i.y + i.z * i.z < 60 * 60 ? wave(i) : 0.125F; }
 
 struct Case {
@@ -254,7 +254,7 @@ std::vector<Case> small_cases() {
 class OracleTest : public testing::TestWithParam<Case> {};
 class OracleMetricTest : public testing::TestWithParam<Case> {};
 
-// As many voxels inside, at the lowest value, as outside of the band.
+// A sphere. Many voxels inside the band have the lowest value, as many voxels outside have the highest.
 TEST(OracleClass, LevelSetOfEveryEncoding_IsValidAndKeepsItsBackground) {
   MemoryVolume volume({{0, 0, 0}, {64, 64, 64}}, [](const Index3& i) {
     const Index3 from_centre = i - Index3{32, 32, 32};

@@ -1,5 +1,5 @@
-// Packed files: exact sizes, certificates of what weir's reader decodes, budgets kept, the same bytes whatever the
-// threads, the memory and the shape of access, and what stock readers make of them.
+// Packed files: exact sizes, certificates of the values that weir's reader decodes, kept budgets, the same bytes
+// whatever the threads, the memory and the access shape, and what stock readers see.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -49,7 +49,7 @@ TEST_P(PackedSize, EveryAskedSizeIsWrittenAndMoreBytesNeverLoseMore) {
     ASSERT_EQ(converted.file.size(), bytes);
     EXPECT_EQ(converted.sidecar.file.bytes, bytes);
     expect_certificate(volume, converted, options, std::to_string(bytes));
-    // What is chosen is chosen by coefficients rounded to float: their errors are the values' to parts of a thousand.
+    // Selection uses errors of coefficients rounded to float. They match the errors of values to parts of a thousand.
     EXPECT_LE(converted.sidecar.error.mse, last * 1.001) << bytes;
     last = converted.sidecar.error.mse;
     EXPECT_EQ(converted.grid().index_bbox(), kPackedDomain);
@@ -101,8 +101,7 @@ TEST(PackedConversion, ReachesThePsnrWithLittleMore) {
   }
 }
 
-// Means a million apart have codes of many bits, whose products round.
-// Whose decoded errors are smaller than what the survey counts, since no value falls below zero.
+// Decoded errors of a sparse cloud are smaller than what the survey counts, because no value falls below zero.
 TEST(PackedConversion, ThePsnrOfASparseCloudIsNoLargerThanNeedBe) {
   const auto source = open_synthetic("cloud", {{96, 80, 72}, 1});
   MemoryVolume volume(*source);
@@ -122,6 +121,7 @@ TEST(PackedConversion, AFileOfDenseTurbulenceReachesItsPsnrAtOnce) {
   }
 }
 
+// Means a million apart have codes of many bits, and the products of such codes round.
 TEST(PackedConversion, KeepsTheLargestErrorWhereMeansLieFarApart) {
   std::uint32_t state = 7;
   MemoryVolume volume(kPackedDomain, [&](const Index3& i) {
@@ -148,7 +148,7 @@ TEST(PackedConversion, KeepsTheLargestErrorOfIntegers) {
   }
 }
 
-// Blocks without a single value read the background, whatever other blocks of their region read.
+// Blocks without any value read the background, whatever other blocks of their region read.
 TEST(PackedConversion, MissingBlocksReadTheBackground) {
   MemoryVolume volume({{0, 0, 0}, {64, 64, 64}}, [](const Index3& i) {
     if (i.x < 8 && i.y < 16) return std::numeric_limits<float>::quiet_NaN();
@@ -166,7 +166,7 @@ TEST(PackedConversion, MissingBlocksReadTheBackground) {
   }
 }
 
-// A coast: the voxels of a block on one side of a plane are missing.
+// Like a coast: the voxels on one side of a plane are missing.
 TEST(PackedConversion, BlocksWithSomeMissingVoxelsAreNotStoredRaw) {
   MemoryVolume volume({{0, 0, 0}, {64, 64, 64}}, [](const Index3& i) {
     return i.x + i.y + i.z < 96 ? std::numeric_limits<float>::quiet_NaN() : smooth(i);
@@ -223,7 +223,7 @@ TEST(PackedConversion, LosslessOfWholeNumbersInFloatsIsLittleLongerThanOfInteger
   const Converted converted = test::convert(floats, options);
   EXPECT_TRUE(converted.sidecar.error.lossless);
   expect_certificate(floats, converted, options, "whole numbers");
-  // A byte of each base.
+  // Each block may take one more byte, for its base.
   const auto blocks = static_cast<std::uint64_t>(make_lattice(kPackedDomain, kLeafDim).size());
   EXPECT_LE(converted.file.size(), test::convert(integers, options).file.size() + blocks + 16);
 }
@@ -258,7 +258,7 @@ TEST(PackedConversion, SaysWhatOtherReadersSee) {
   const Converted on = test::convert(volume, options);
   ASSERT_TRUE(on.sidecar.packed.has_value());
   EXPECT_TRUE(on.sidecar.packed->preview);
-  // All regions have streams: others see each block's mean.
+  // All regions have streams, so other readers see the mean of each block.
   const NodeLattice blocks = make_lattice(kPackedDomain, kLeafDim);
   double squares = 0;
   for (std::int64_t b = 0; b < blocks.size(); ++b) {
@@ -287,7 +287,7 @@ TEST_P(PackedHardCases, KeepTheirCertificates) {
       options.budget.kind = Budget::Kind::size;
       const std::uint64_t least = test::minimum_size(volume, options);
       for (const double share : {0.02, 0.3, 0.8}) {
-        // Of floats on no lattice, lossless may take less than the exact blocks of other budgets.
+        // A lossless file of floats on no lattice may be smaller than a file of exact blocks under other budgets.
         const std::uint64_t more = lossless.file.size() > least ? lossless.file.size() - least : 1000;
         options.budget.bytes = least + static_cast<std::uint64_t>(static_cast<double>(more) * share);
         const Converted some = test::convert(volume, options);

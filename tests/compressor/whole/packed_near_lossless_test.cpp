@@ -1,5 +1,5 @@
-// Packed files of nearly everything: what near rungs and floats in order give where transforms end, and budgets next to
-// lossless.
+// Packed files that keep nearly everything: near rungs and ordered floats beyond the reach of transforms, and budgets
+// next to lossless.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,7 +22,7 @@ using test::MemoryVolume;
 using test::packed;
 using test::smooth;
 
-// Far below what selection's sums resolve.
+// Errors at these PSNRs are far below what the sums of selection resolve.
 TEST(PackedNearLossless, ReachesAPsnrNextToLossless) {
   MemoryVolume volume(kPackedDomain, smooth);
   for (const double psnr : {140.0, 200.0, 260.0}) {
@@ -51,7 +51,7 @@ TEST(PackedNearLossless, IsNearlyLosslessWhereTransformsEnd) {
 }
 
 TEST(PackedNearLossless, BlocksOfALargerVolumeAreNearlyLosslessToo) {
-  // More leaves than the survey builds near rungs for.
+  // The volume has more leaves than the survey builds near rungs for.
   const Box domain{{0, 0, 0}, {168, 144, 120}};
   MemoryVolume volume(domain, smooth);
   ASSERT_GT(domain.voxels() / kLeafVoxels, 2 * 2048);
@@ -66,7 +66,7 @@ TEST(PackedNearLossless, BlocksOfALargerVolumeAreNearlyLosslessToo) {
   EXPECT_TRUE(test::convert(volume, other).file == converted.file);
 }
 
-// Waves of many lengths: each further bit of accuracy costs bytes.
+// Waves of many lengths, so that each further bit of accuracy costs bytes.
 float rough(const Index3& i) {
   const auto x = static_cast<double>(i.x);
   const auto y = static_cast<double>(i.y);
@@ -92,7 +92,7 @@ struct NearVolume {
 
 class PackedPsnr : public testing::TestWithParam<NearVolume> {};
 
-// Of more leaves than the survey builds near rungs for.
+// The volumes have more leaves than the survey builds near rungs for.
 TEST_P(PackedPsnr, FilesGrowWithItAndAreNeverLongerThanLossless) {
   MemoryVolume volume({{0, 0, 0}, {168, 144, 120}}, GetParam().value);
   ConversionOptions options = packed(Budget::Kind::lossless, 0);
@@ -127,7 +127,7 @@ TEST(PackedNearLossless, ReachesAPsnrFarAbove160WithFewerBytesThanLossless) {
   EXPECT_LT(converted.file.size(), lossless / 10 * 9);
 }
 
-// The background is known after the survey only.
+// The background is known only after the survey.
 TEST(PackedNearLossless, BlocksWithSomeMissingVoxelsAreNearlyLosslessToo) {
   MemoryVolume volume({{0, 0, 0}, {64, 64, 64}}, with_missing);
   ConversionOptions options = packed(Budget::Kind::psnr, 135);

@@ -1,5 +1,5 @@
-// What the blocks of a region have in common in a packed file: the value that those without a stream read, and the
-// codes of the others' means.
+// What the blocks of a region share in a packed file: the value of blocks without a stream, and the codes for the means
+// of all other blocks.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -27,12 +27,12 @@ float rough(const Index3& i) {
   return std::sin(0.11F * x + 0.05F * y) * std::cos(0.08F * z) + 0.1F * std::sin(2.1F * x + 1.7F * y + 2.9F * z);
 }
 
-// A quarter of it is filled with `fill`, behind a border that lies across blocks.
+// Returns a volume of which a quarter is filled with `fill`, behind a border that lies across blocks.
 MemoryVolume partly_filled(float fill) {
   return {kCube, [fill](const Index3& i) { return 10 * i.x + 7 * i.y > 700 ? fill : rough(i); }};
 }
 
-// But for one block of zeros.
+// Returns a volume that is nearly constant, except for one block of zeros.
 MemoryVolume nearly_constant() {
   return {kCube, [](const Index3& i) { return i.x < 8 && i.y < 8 && i.z < 8 ? 0.0F : 100 + 1e-3F * rough(i); }};
 }
@@ -65,7 +65,7 @@ TEST(PackedRegions, OneVoxelFarFromTheOthers_IsExactAndTheOthersAreMeans) {
 }
 
 TEST(PackedRegions, InTheSmallestFile_OneBlockOfOneValueIsNotReadEverywhere) {
-  constexpr Box kOneMore{{0, 0, 0}, {65, 65, 65}};  // a last block of one voxel, which is of one value
+  constexpr Box kOneMore{{0, 0, 0}, {65, 65, 65}};  // the last block has one voxel, so it has one value
   MemoryVolume volume(kOneMore, [](const Index3& i) { return i == Index3{64, 64, 64} ? 0.0F : 100 + rough(i); });
   const ConversionOptions options = packed(Budget::Kind::size, 0);
   const Converted converted = test::convert_to(volume, options, test::minimum_size(volume, options));

@@ -1,5 +1,5 @@
-// Packed files of volumes that are large enough for a look ahead (compressor/look_ahead.h): the same bytes with it and
-// without, pushed, and where the sampled blocks mislead.
+// Packed files of volumes that are large enough for a look ahead (compressor/look_ahead.h). The bytes are the same with
+// and without it, when the volume is pushed, and when the sampled blocks mislead.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -38,7 +38,7 @@ float waves(const Index3& i) {
   return std::max(0.0F, smooth + 0.1F * std::sin(z * 0.9F + x)) + (i.y > 100 ? 0.02F * hash(i) : 0);
 }
 
-// Flat where the sample looks, or nowhere else.
+// Returns values that are flat in the sampled blocks, or flat everywhere except in the sampled blocks.
 float misleading(const Index3& i, bool flat_sample) {
   static const NodeLattice leaves = make_lattice(kDomain, kLeafDim);
   static const BlockSample sample(leaves);
@@ -52,12 +52,12 @@ std::vector<std::byte> bytes_of(const MemoryVolume& volume) {
   return {bytes.begin(), bytes.end()};
 }
 
-// With a look ahead, without one on one thread with less memory, and pushed.
+// Converts with a look ahead, without one on one thread with less memory, and by a push.
 void expect_same_every_way(MemoryVolume& volume, const ConversionOptions& options, const std::string& what) {
   ASSERT_GE(make_lattice(kDomain, kLeafDim).size(), kLeastForecastBlocks);
   const Converted ahead = test::convert(volume, options);
   expect_certificate(volume, ahead, options, what);
-  // The sample lies in all chunks: a look ahead would decode them all.
+  // The sample lies in all chunks, so a look ahead would decode all of them.
   const Index3 extent = kDomain.extent();
   volume.set_access({4, {extent.x, extent.y, 8}, kDomain.lo});
   ConversionOptions other = options;
@@ -75,7 +75,7 @@ TEST(PackedWindow, BytesAreTheSameWithALookAheadAndWithout) {
   expect_same_every_way(volume, packed(Budget::Kind::psnr, 130), "130 dB");
 }
 
-// What the sample says of the preview is what the plan would, and is the same whoever surveys.
+// The sample decides about the preview as the plan would, and decides the same however the volume is surveyed.
 TEST(PackedWindow, AFileThatIsFarTooShortHasNoPreviewHoweverItIsMade) {
   MemoryVolume volume(kDomain, waves);
   ConversionOptions options = packed(Budget::Kind::psnr, 30);

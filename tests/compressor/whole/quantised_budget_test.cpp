@@ -1,5 +1,5 @@
-// What quantised encodings promise about sizes: the first width that holds a
-// leaf's numbers, the float fallback with its reason, and refusals.
+// What quantised encodings promise about sizes: the first width that holds a leaf's numbers, the fallback to float with
+// its reason, and refusals.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -78,7 +78,7 @@ TEST(QuantisedBudget, WholeNumbersTakeTheFirstWidthThatHoldsThem) {
                                       {65536, LeafWidth::bits16}}) {
     for (const float step : {1.0F, 0.125F, 3.0F, 0x1p-80F}) {
       MemoryVolume volume(kDomain, [&, levels = levels](const Index3& i) {
-        // Both ends in every leaf, so that it needs all of the range.
+        // Every leaf has both ends, so that it needs the whole range.
         const Index3 in_leaf{i.x % 8, i.y % 8, i.z % 8};
         const float code = in_leaf == Index3{1, 2, 3}   ? 0.0F
                            : in_leaf == Index3{4, 5, 6} ? static_cast<float>(levels - 1)
@@ -183,7 +183,7 @@ TEST(QuantisedBudget, TheSmallestTreeHoldsTheCornersAtOneBit) {
   }
 }
 
-// Levels of 8 bits and more are too near to each other for float.
+// Levels of 8 bits and more are too close to each other for float.
 TEST(QuantisedBudget, DefaultOfAVolumeThatCannotReach40Decibels_IsTheRate) {
   const Box domain{{0, 0, 0}, {32, 32, 32}};
   MemoryVolume volume(
@@ -222,7 +222,7 @@ TEST(QuantisedBudget, KeptNonFiniteVoxelsRefuseQuantisation) {
 }
 
 TEST(QuantisedBudget, ReplacedVoxelsAreOnTheLatticeOfTheirLeafOrWidenIt) {
-  // Values 0..15 and a background of 3: 4 bits hold both; of 1000: the leaf spans it.
+  // 4 bits hold values 0 to 15 and a background of 3. A background of 1000 widens the range of its leaf.
   for (const float background : {3.0F, 1000.0F}) {
     MemoryVolume volume(kDomain, [](const Index3& i) { return i.x % 4 == 1 ? kNaN : pseudo_random(i, 16); });
     ConversionOptions options;

@@ -1,6 +1,5 @@
-// Quantised files of the hard cases, read back by stock NanoVDB: the asked size
-// to the byte, the certificate, what lies outside the domain, macrocells, and
-// node statistics.
+// Quantised files of the hard cases, read back by stock NanoVDB: the requested size to the byte, the certificate, the
+// values outside the domain, macrocells, and node statistics.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,14 +31,14 @@ using test::StockReader;
 
 constexpr Encoding kQuantised[] = {Encoding::automatic, Encoding::fpn, Encoding::fp4, Encoding::fp8, Encoding::fp16};
 
-// The policies under which a quantised file can hold the volume.
+// Returns the policies under which a quantised file can hold the volume.
 std::vector<NonFinitePolicy> quantised_policies(const MemoryVolume& volume) {
   std::vector<NonFinitePolicy> policies = test::policies_of(volume);
   std::erase(policies, NonFinitePolicy::keep);
   return policies;
 }
 
-// The size beyond which more bytes buy nothing, as the notice for a much larger file gives it.
+// Returns the size beyond which more bytes buy nothing, from the notice for a much larger file.
 std::uint64_t full_size(MemoryVolume& volume, ConversionOptions options) {
   const std::uint64_t dense = static_cast<std::uint64_t>(volume.info().domain().voxels()) * sizeof(float);
   const Converted converted = test::convert_to(volume, options, 2 * dense + 10'000'000);
@@ -53,15 +52,15 @@ std::uint64_t full_size(MemoryVolume& volume, ConversionOptions options) {
   return 0;
 }
 
-// Minimum, between, all there is to buy, and more.
+// Returns the minimum size, two sizes in between, the size that buys everything, and a larger size.
 std::vector<std::uint64_t> sizes_of(MemoryVolume& volume, const ConversionOptions& options) {
   const std::uint64_t minimum = test::minimum_size(volume, options);
   const std::uint64_t full = full_size(volume, options);
   return {minimum, minimum + (full - minimum) / 5, minimum + (full - minimum) * 2 / 3, full, full + 12345};
 }
 
-// Outside the domain nothing is active; a block that touches it reads there as it does at its nearest voxel inside
-// (a tile its value), but for float leaves, and all else the background.
+// Outside the domain nothing is active. A block that touches the domain reads there as at its nearest voxel inside (a
+// tile reads its value). Float leaves and everything else read the background.
 void expect_outside(const Converted& converted, const StockReader& reader, const Box& domain) {
   const NvdbGrid grid = converted.grid();
   const Index3 margin{9, 9, 9};
@@ -80,7 +79,7 @@ void expect_outside(const Converted& converted, const StockReader& reader, const
   }
 }
 
-// Macrocells are the bounds of every decoded voxel in the cell and its apron, outside the domain the background.
+// Macrocells are the bounds of all decoded voxels in the cell and its apron. Outside the domain the background counts.
 void expect_macrocells(const Converted& converted, const StockReader& reader, const Box& domain) {
   const NvdbGrid grid = converted.grid();
   const MacrocellView view = grid.macrocells();
@@ -109,8 +108,8 @@ void expect_macrocells(const Converted& converted, const StockReader& reader, co
   }
 }
 
-// Stock statistics divide by the quantum, which is zero in a leaf of one value, and invert the box of a node without
-// active voxels: those bytes are left out.
+// Stock statistics divide by the quantum, which is zero in a leaf of one value, and they invert the box of a node
+// without active voxels. These bytes are not compared.
 void expect_stock_statistics(const Converted& converted, const StockReader& reader) {
   const NvdbGrid grid = converted.grid();
   std::vector<std::byte> ours = reader.grid();
@@ -154,7 +153,7 @@ TEST_P(QuantisedConversionTest, HoldsItsCertificateInTheBytesAsked) {
         SCOPED_TRACE(encoding_name(encoding) + ", " + std::to_string(sizes[i]) + " bytes");
         const Converted converted = test::convert_to(volume, options, sizes[i]);
         ASSERT_EQ(converted.file.size(), sizes[i]);
-        // At one size auto may settle for the best that FpN can.
+        // At one of the sizes, auto may settle for the best that FpN can do.
         if (encoding != Encoding::automatic || i == 4) {
           EXPECT_EQ(converted.notices.size(), i == 4 ? 1U : 0U);
         }
@@ -188,7 +187,7 @@ TEST_P(QuantisedConversionTest, FilledWithTheBackground_CertificateAndMacrocells
   }
 }
 
-// A larger file buys more of the same steps. Their gains are estimates, so that this is measured, not proven.
+// A larger file buys more of the same steps. Their gains are estimates, so this is measured and not proven.
 TEST_P(QuantisedConversionTest, LargerFileNeverHasALargerError) {
   MemoryVolume volume = GetParam().make();
   for (const NonFinitePolicy policy : quantised_policies(volume)) {

@@ -1,5 +1,5 @@
-// The quantiser's kernels against the same arithmetic written out one value at a time: bit for bit, whichever
-// instruction set the kernels were cloned for and picked at run time.
+// Compares the quantiser's kernels bit for bit with the same arithmetic written out one value at a time, for whichever
+// instruction set is picked at run time.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::size_t kLanes = 16;
 
-// Lane l sums the values l, l + 16, ...; then lanes are added in halves.
+// Lane l sums the values l, l + 16, ... Then the lanes are added in halves.
 class LaneSum {
  public:
   void add(std::size_t i, float term) { lanes_[i % kLanes] += term; }
@@ -48,7 +48,7 @@ float nearest_code(float value, const Quantiser& q) {
   return std::nearbyint(t);
 }
 
-// The level nearest to the largest value, whether or not it lies above that.
+// Returns the code of the level nearest to the largest value, even if this level lies above that value.
 std::uint32_t nearest_to_largest(const ValueRange& range, Quantiser q, unsigned bits) {
   q.top = (1U << bits) - 1U;
   return static_cast<std::uint32_t>(nearest_code(range.max, q));
@@ -63,7 +63,7 @@ bool below(const Quantiser& q, const ValueRange& range) {
   return range.min == 0 ? q.minimum != 0 : q.minimum < range.min;
 }
 
-// The largest quantum whose level `code` is inside, by stepping down from the quotient.
+// Returns the largest quantum that keeps level `code` inside the range, by stepping down from the quotient.
 float ending_quantum(std::uint32_t code, float minimum, const ValueRange& range) {
   auto quantum = static_cast<float>((static_cast<double>(range.max) - static_cast<double>(minimum)) / code);
   while (quantum > 0 && level(code, {minimum, quantum, 0}) > range.max) quantum = std::nextafter(quantum, 0.0F);
@@ -133,9 +133,9 @@ class Reference {
 
  private:
   struct Sums {
-    double c;   // of codes
-    double cc;  // of their squares
-    double cv;  // of codes times deviations
+    double c;   // sum of codes
+    double cc;  // sum of squared codes
+    double cv;  // sum of codes times deviations
   };
 
   bool usable(const Quantiser& q) const { return q.quantum >= 0x1p-120F && std::isfinite(q.minimum); }
@@ -148,7 +148,7 @@ class Reference {
            minimum * (n * minimum + 2 * (quantum * s.c - deviation_));
   }
 
-  // Least squares of value = minimum + code * quantum with no level below the range.
+  // Sets `q` to the least-squares fit of value = minimum + code * quantum with no level below the range.
   bool refit(const Sums& s, Quantiser& q) const {
     const auto n = static_cast<double>(values_.size());
     const double determinant = n * s.cc - s.c * s.c;
@@ -200,7 +200,7 @@ Quantiser reference_over_range(const std::vector<float>& values, const ValueRang
   return reference.fit;
 }
 
-// Where the values take few levels, those of half the bits are tried, too, and so on.
+// If the values take few levels, also tries the levels of half the bits, and so on.
 Quantiser reference_fit(const std::vector<float>& values, const ValueRange& range, unsigned bits) {
   std::vector<Quantiser> tried{reference_over_range(values, range, bits)};
   for (unsigned width = bits; width > 1; width /= 2) {
@@ -281,7 +281,8 @@ TEST(QuantisedReference, FitsAndCodesHaveTheSameBits) {
   }
 }
 
-// The coarsest lattice by exact arithmetic: doubles hold multiples of the smallest unit of values of one magnitude.
+// Finds the coarsest lattice by exact arithmetic: doubles hold multiples of the smallest unit of values of one
+// magnitude.
 std::optional<LeafLattice> reference_lattice(const std::vector<float>& values, const ValueRange& range) {
   const float magnitude = std::max(std::fabs(range.min), std::fabs(range.max));
   const double unit = std::ldexp(1.0, std::ilogb(magnitude) - 23);
@@ -292,7 +293,7 @@ std::optional<LeafLattice> reference_lattice(const std::vector<float>& values, c
     step = std::gcd(step, std::llround(scaled) - std::llround(static_cast<double>(range.min) / unit));
   }
   const double width = (static_cast<double>(range.max) - static_cast<double>(range.min)) / unit;
-  const std::int64_t power = step & -step;  // the power of two in the step
+  const std::int64_t power = step & -step;  // the largest power of two that divides the step
   if (width / static_cast<double>(power) >= 0x1p24 || width / static_cast<double>(step) > 65535) return std::nullopt;
   return LeafLattice{static_cast<float>(static_cast<double>(step) * unit),
                      static_cast<std::uint32_t>(std::llround(width) / step)};

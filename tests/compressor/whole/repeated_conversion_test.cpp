@@ -1,5 +1,5 @@
-// Volumes whose source knows that voxels repeat each other: the file is that of the same values from a source that does
-// not know it, to the byte.
+// Volumes from a source that knows which voxels repeat each other. The file is, byte for byte, the file of the same
+// values from a source that does not know it.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,7 +19,7 @@ using test::Converted;
 using test::MemoryVolume;
 using test::PlotfilePlan;
 
-/// Smooth, on a lattice, of one value, and with values that are not finite, by the seed.
+/// Returns values that depend on the seed: smooth, on a lattice, all the same, or some of them not finite.
 test::PlotfileValue value_of(std::uint64_t seed) {
   return [seed](std::size_t level, std::size_t /*component*/, const Index3& cell) {
     const double phase = 0.31 * static_cast<double>(cell.x) + 0.17 * static_cast<double>(cell.y * cell.z);
@@ -55,7 +55,7 @@ ConversionOptions options_for(const Wanted& wanted) {
   return options;
 }
 
-/// The file, or what is said where there is none.
+/// Returns the file and its source digest, or the error message if there is no file.
 std::pair<std::vector<std::byte>, std::string> outcome(VolumeSource& source, const ConversionOptions& options) {
   try {
     const Converted converted = test::convert(source, options);

@@ -1,4 +1,4 @@
-// Values that float32 does not hold: bounds count their rounding, and what no error counts is said.
+// Values that float32 does not hold. Error bounds include their rounding, and a notice names what no error counts.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::int64_t kEdge = 20;
 
-// `offset` + a ramp of 0 to 100.
+// Returns a ramp of 0 to 100 plus `offset`.
 std::vector<double> ramp(double offset) {
   std::vector<double> values;
   for (std::int64_t i = 0; i < kEdge * kEdge * kEdge; ++i)

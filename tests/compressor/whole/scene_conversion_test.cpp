@@ -1,5 +1,5 @@
-// A scene decides what matters: what it shows is kept and certified, what it
-// cannot show costs no byte, and pictures stay what they were.
+// A scene decides what matters. What it shows is kept and certified, what it cannot show costs no byte, and pictures do
+// not change.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,10 +25,10 @@ namespace {
 using test::Converted;
 using test::MemoryVolume;
 
-// In one node of each level.
+// The domain lies in one node of each level.
 constexpr Box kDomain{{3, 5, 0}, {76, 58, 41}};
 
-// Smooth hills of three heights on a rippled ground: surfaces, hidden ground and hidden inside.
+// Smooth hills of three heights on a rippled ground: they have surfaces, and the ground and the inside are hidden.
 float hills(const Index3& i) {
   const auto hill = [&](double x, double y, double z, double radius, double height) {
     const double dx = static_cast<double>(i.x) - x;
@@ -42,7 +42,7 @@ float hills(const Index3& i) {
 
 MemoryVolume volume() { return {kDomain, hills}; }
 
-// Values from 40 on can be seen.
+// A scene that shows values from 40 on.
 Scene surface() {
   Scene scene;
   scene.volume.range = {-10, 110};
@@ -61,7 +61,7 @@ ConversionOptions options_for(const Scene& scene, Budget::Kind kind, double targ
   return options;
 }
 
-// What the sidecar must say, from every voxel and its 26 neighbours.
+// The figures that the sidecar must have, found from every voxel and its 26 neighbours.
 struct Seen {
   std::uint64_t blocks = 0;
   std::uint64_t voxels = 0;
@@ -184,7 +184,7 @@ INSTANTIATE_TEST_SUITE_P(Budgets, SceneConversion,
                                          SceneCase{Budget::Kind::lossless, Encoding::packed}),
                          case_name);
 
-// Trilinear, as a renderer looks: clamped to the domain.
+// Interpolates trilinearly and clamps to the domain, as a renderer does.
 double lookup(const std::array<double, 3>& p, const auto& value) {
   double sum = 0;
   const std::array<std::int64_t, 3> lo{kDomain.lo.x, kDomain.lo.y, kDomain.lo.z};
@@ -203,7 +203,7 @@ double lookup(const std::array<double, 3>& p, const auto& value) {
   return sum;
 }
 
-// Every lookup shows the opacity it showed before, and where it has one, the value: a picture does not change.
+// Every lookup gives the same opacity as before and, if not transparent, the same value. So a picture does not change.
 TEST(ScenePictures, LosslessVisibleBlocksLeaveThePictureUnchanged) {
   for (const bool holes : {false, true}) {
     MemoryVolume source(kDomain, [&](const Index3& i) {
@@ -273,7 +273,7 @@ TEST(ScenePictures, NothingVisible_GivesTheSmallestTree) {
 }
 
 TEST(ScenePictures, VisibleBackgroundFill_KeepsHiddenBlocksToo) {
-  // The ground cannot be seen, but what a dropped block would read can.
+  // The ground cannot be seen, but the value of a dropped block could be.
   MemoryVolume source = volume();
   ConversionOptions options = options_for(surface(), Budget::Kind::lossless);
   options.fill = FillMode::background;

@@ -1,5 +1,5 @@
-// A larger budget never does worse: over ladders of sizes of random volumes, for every encoding; and `auto` is never
-// worse than what it chooses from. WEIR_PROPERTY_VOLUMES sets how many.
+// A larger budget never does worse. Tested over ladders of sizes of random volumes, for every encoding. `auto` is never
+// worse than the encodings that it chooses from. WEIR_PROPERTY_VOLUMES sets the number of volumes.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -17,7 +17,7 @@ namespace {
 
 using test::RandomVolume;
 
-// None where the smallest tree takes more than that.
+// Returns the error at `rate`; nullopt if the smallest tree takes more bytes than that.
 std::optional<double> error_at(RandomVolume& random, Encoding encoding, double rate) {
   ConversionOptions options;
   options.encoding = encoding;
@@ -46,7 +46,7 @@ TEST(SizeLadderProperty, ALargerBudget_NeverDoesWorse) {
       for (std::size_t i = 0; i < now.size(); ++i) {
         const Encoding encoding = kEncodings[i];
         now[i] = error_at(random, encoding, rate).value_or(std::numeric_limits<double>::infinity());
-        // Which levels suit a leaf best is found in single precision.
+        // The best levels of a leaf are found in single precision.
         EXPECT_LE(now[i], last[i] * (1 + 1e-6)) << encoding_name(encoding);
       }
       EXPECT_LE(now[0], std::min(now[1], now[2]) * (1 + 1e-12)) << "auto is worse than fpn or float";

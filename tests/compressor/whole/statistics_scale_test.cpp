@@ -1,6 +1,6 @@
-// The statistics of 2^30 voxels against integer arithmetic: sums of a billion
-// squares must not drift. The volume has a closed form and is never stored; only
-// its 7063 different leaves are summed value by value, and quantised.
+// Compares the statistics of 2^30 voxels with integer arithmetic, because sums of a billion squares must not drift. The
+// volume has a closed form and is never stored. Only its 7063 different leaves are summed value by value, and
+// quantised.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -44,7 +44,7 @@ struct Exact {
   double mean() const {
     return static_cast<double>(static_cast<long double>(sum) / static_cast<long double>(count) / kScale);
   }
-  // Sum of (value - fill)^2, exact up to the last conversion: fill has 2^-24 as its unit at most.
+  // Returns the sum of (value - fill)^2, exact up to the last conversion. `fill` must be a multiple of 2^-24.
   double sse_about(float fill) const {
     const auto scaled_fill = static_cast<Wide>(static_cast<double>(fill) * 0x1p24);
     const Wide unit = Wide{1} << 18U;  // 2^24 / 64
@@ -84,7 +84,7 @@ struct Billion {
       kinds[kind] = summarize_leaf(values, 0);
       summarize_widths(values, true, kinds[kind]);
     }
-    // Leaf i is of kind i % kKinds: whole runs of kinds.
+    // Leaf i has kind i % kKinds, so whole runs of kinds are written.
     for (std::int64_t first = 0; first < tree.leaves.size(); first += std::ssize(kinds)) {
       const auto count = std::min<std::int64_t>(std::ssize(kinds), tree.leaves.size() - first);
       rows.write(first, std::span(kinds).first(static_cast<std::size_t>(count)));
@@ -126,7 +126,7 @@ TEST(StatisticsScale, ABillionVoxelsKeepTwelveDigits) {
     EXPECT_NEAR(sums.sse_about(fill), whole.sse_about(fill), whole.sse_about(fill) * 1e-12) << fill;
   }
 
-  // The certificate of the smallest tree: one tile a region, but for the corners' two.
+  // The certificate of the smallest tree: one tile per region, except in the two regions of the corners.
   selection.choose(selection.bytes().minimum.file_bytes);
   ChoiceStore masks(test::CrashFileSystem().create_unnamed("masks"), tree.region_lattice.size());
   const TreePlan plan = plan_tree(selection, rows, tree, masks);
@@ -149,7 +149,7 @@ TEST(StatisticsScale, ABillionVoxelsKeepTwelveDigits) {
   EXPECT_NEAR(certificate.mse, mse, mse * 1e-12);
 }
 
-// A file that is not there: what is written is dropped, and what is read are the records of leaves of known kinds.
+// A file that does not exist. Writes are dropped, and reads return the records of leaves of known kinds.
 class RecordsOfKinds final : public File {
  public:
   explicit RecordsOfKinds(std::vector<LeafRecord> kinds) : kinds_(std::move(kinds)) {}
@@ -185,7 +185,7 @@ TEST(StatisticsScale, TheErrorOfTwoMillionQuantisedLeavesKeepsTwelveDigits) {
   ASSERT_EQ(plan.layout.counts.leaves, leaves);
   EXPECT_EQ(plan.tiles.squared, 0);
 
-  // Differences of the decoded values, which have 24 bits, are exact in double, their squares in long double.
+  // The decoded values have 24 bits, so their differences are exact in double and the squares in long double.
   const Box node{{0, 0, 0}, {8, 8, 8}};
   std::vector<LeafRecord> records(kKinds);
   std::vector<long double> errors(kKinds);

@@ -1,5 +1,4 @@
-// What a file decodes to stays inside the volume's own range, and its sidecar counts the zeros that became something
-// else.
+// Decoded values stay inside the volume's own range, and the sidecar counts the zeros that decode to another value.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,12 +22,12 @@ float wave(const Index3& i) {
   return std::sin(static_cast<float>(i.x) * 0.21F) + std::sin(static_cast<float>(i.y) * 0.17F + 1) +
          std::cos(static_cast<float>(i.z) * 0.13F);
 }
-// Half of it empty, the rest from 0 up.
+// Half of the volume is empty; the rest has values from 0 up.
 float density(const Index3& i) { return std::max(wave(i), 0.0F); }
-// Small values everywhere, above 0.
+// All values are small and above 0.
 float concentration(const Index3& i) { return 1e-6F * std::exp(4 * wave(i)); }
 float depth(const Index3& i) { return -density(i); }
-// The same with noise in every voxel.
+// concentration() with noise in every voxel.
 float noisy(const Index3& i) {
   const auto hash = static_cast<std::uint32_t>(i.x * 73856093 ^ i.y * 19349663 ^ i.z * 83492791) * 2654435761U;
   return concentration(i) * (1 + static_cast<float>(hash >> 8U) * 0x1p-24F);

@@ -1,4 +1,4 @@
-// Reads by a pretended cuFile that fail, and what is said of them.
+// Failing reads of a pretended cuFile, and the messages about them.
 #include "gpu/cuda/load/direct_storage.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ constexpr std::uint64_t kPieces = 64;
 
 std::atomic<int> reads{0};
 
-// Refuses all reads.
+// Returns a library that refuses all reads.
 std::shared_ptr<const CuFile> refusing_library() {
   auto library = std::make_shared<CuFile>();
   library->handle_register = [](cufile::Handle*, cufile::FileDescription*) { return cufile::Status{0, 0}; };
@@ -63,7 +63,7 @@ void expect_end_of_reads(int threads) {
 
 TEST(DirectStorage, RefusedRead_EndsThoseOfAllPieces) { expect_end_of_reads(1); }
 
-// Other threads enter the caller's context: without a device they fail, before or after the read does.
+// Other threads enter the caller's context. Without a device they fail, before or after the read does.
 TEST(DirectStorage, RefusedReadOfOneThread_EndsThoseOfAllThreads) {
   WEIR_NEEDS_DEVICE();
   expect_end_of_reads(4);

@@ -1,4 +1,4 @@
-// Lookups made by kernels, for tests to compare with the host's.
+// Look-ups made by kernels, which tests compare with the host's.
 #pragma once
 
 #include <vector>
@@ -9,22 +9,22 @@
 
 namespace weir::test {
 
-/// Every voxel of the table's domain, x fastest.
+/// Returns every voxel of the table's domain, x fastest.
 template <class Block>
 std::vector<float> read_voxels(const BlockTable<Block>& table);
 
-/// `smooth` at each position, nearest or trilinear.
+/// Returns `smooth` at each position, nearest or trilinear.
 template <class Block>
 std::vector<float> read_smooth(const BlockTable<Block>& table, Filter filter, const std::vector<Float3>& positions);
-/// Of a cache that holds all bricks.
+/// For a cache that holds all bricks.
 std::vector<float> read_smooth(BrickCache& bricks, Filter filter, const std::vector<Float3>& positions);
-/// The mean of `draws` stochastic samples at each position.
+/// Returns the mean of `draws` stochastic samples at each position.
 template <class Block>
 std::vector<float> read_stochastic(const BlockTable<Block>& table, const std::vector<Float3>& positions, int draws);
 std::vector<float> read_stochastic(BrickCache& bricks, const std::vector<Float3>& positions, int draws);
 
 }  // namespace weir::test
 
-/// Skips a test where there is no device to run it on.
+/// Skips a test if there is no device.
 #define WEIR_NEEDS_DEVICE() \
   if (device_count() == 0) GTEST_SKIP() << "no CUDA device"

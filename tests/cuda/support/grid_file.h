@@ -1,5 +1,5 @@
-// .nvdb files for tests of loading, which lie as a test wants them: the grid at a page boundary, as weir writes it,
-// or anywhere, as foreign files have it; with padding at the tail of the grid or without.
+// Writes .nvdb files for tests of loading. The grid lies at a page boundary, as weir writes it, or anywhere, as in
+// foreign files, with or without padding at its end.
 #pragma once
 
 #include <cstddef>
@@ -16,10 +16,10 @@ namespace weir::test {
 
 struct GridFileOptions {
   std::uint64_t grid_offset = nvdb::kPage;  ///< at least 256
-  std::uint64_t tail_bytes = 0;             ///< of padding, 0xEE each
+  std::uint64_t tail_bytes = 0;             ///< bytes of padding, 0xEE each
 };
 
-/// A float32 grid of edge^3 voxels, no two leaves alike, written to `path`.
+/// Writes a float32 grid of edge^3 voxels to `path`. No two leaves are equal.
 inline void write_grid_file(const std::string& path, int edge, const GridFileOptions& options = {}) {
   const Box box{{0, 0, 0}, Index3{edge, edge, edge}};
   const TestGrid stock(box, [](const Index3& i) { return static_cast<float>(i.x + 512 * (i.y + 512 * i.z) + 1); });
@@ -27,7 +27,7 @@ inline void write_grid_file(const std::string& path, int edge, const GridFileOpt
   const std::uint64_t offset = stock.grid().grid_offset();
 
   std::vector<std::byte> bytes(file.begin(), file.begin() + static_cast<std::ptrdiff_t>(offset));
-  bytes.resize(options.grid_offset);  // padding of the name
+  bytes.resize(options.grid_offset);  // padding after the name
   bytes.insert(bytes.end(), file.begin() + static_cast<std::ptrdiff_t>(offset), file.end());
   bytes.resize(bytes.size() + options.tail_bytes, std::byte{0xEE});
   const auto put = [&bytes](std::uint64_t at, auto value) { std::memcpy(bytes.data() + at, &value, sizeof value); };

@@ -1,4 +1,4 @@
-// A rough ball in a packed grid whose blocks are raw: more bricks than a small cache holds.
+// A rough ball in a packed grid of raw blocks. It needs more bricks than a small cache holds.
 #pragma once
 
 #include <algorithm>
@@ -16,10 +16,10 @@
 
 namespace weir::test {
 
-inline constexpr std::uint64_t kSmallCache = 50U << 20U;  ///< bytes, less than all bricks of 200^3 voxels take
-inline constexpr std::uint64_t kSmallCacheWithLevels = 76U << 20U;  ///< the same, with levels of detail
+inline constexpr std::uint64_t kSmallCache = 50U << 20U;  ///< bytes; less than all bricks of 200^3 voxels take
+inline constexpr std::uint64_t kSmallCacheWithLevels = 76U << 20U;  ///< the same with levels of detail
 
-/// Of edge^3 voxels; voxel 77 of block (12, 12, 12) is `odd`, where there is one.
+/// Makes a ball of edge^3 voxels. If block (12, 12, 12) exists, its voxel 77 is `odd`.
 inline PackedFile packed_ball(int edge = 200, float odd = 0.5F) {
   PackedGridOptions options;
   options.domain = {{-3, 5, 0}, {edge - 3, edge + 5, edge}};
@@ -41,7 +41,7 @@ inline PackedFile packed_ball(int edge = 200, float odd = 0.5F) {
   return PackedGridBuilder::build(options);
 }
 
-/// The bytes as a file of that name.
+/// Writes the bytes to a file at `path` and opens it.
 inline std::shared_ptr<const NvdbFile> written(const std::string& path, std::span<const std::byte> bytes) {
   std::ofstream(path, std::ios::binary)
       .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));

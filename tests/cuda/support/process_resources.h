@@ -1,4 +1,4 @@
-// What a process holds of its system and its device, to find leaks.
+// What a process holds of its system and its device; used to find leaks.
 #pragma once
 
 #include <cuda_runtime_api.h>
@@ -15,7 +15,7 @@
 
 namespace weir::test {
 
-/// "VmLck", "VmPin", "VmRSS" in KiB.
+/// Returns the status value of "VmLck", "VmPin" or "VmRSS" in KiB.
 inline std::uint64_t status_kib(const std::string& key) {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);) {
@@ -28,7 +28,7 @@ inline auto open_descriptors() {
   return std::distance(std::filesystem::directory_iterator("/proc/self/fd"), std::filesystem::directory_iterator());
 }
 
-/// Mappings of files whose path has that in it.
+/// Returns the number of mappings of files with `path` in their paths.
 inline int mappings_of(std::string_view path) {
   std::ifstream maps("/proc/self/maps");
   int found = 0;
@@ -36,7 +36,8 @@ inline int mappings_of(std::string_view path) {
   return found;
 }
 
-/// Bytes of the current device that are in use by any process, once its pool keeps nothing for reuse.
+/// Returns the bytes of the current device that any process uses, after its pool has given back what it keeps for
+/// reuse.
 inline std::size_t used_device_bytes() {
   check_cuda(cudaDeviceSynchronize(), "test");
   cudaMemPool_t pool = nullptr;
@@ -48,7 +49,7 @@ inline std::size_t used_device_bytes() {
   return total - free;
 }
 
-/// Bytes of the current device's pool that are handed out.
+/// Returns the allocated bytes of the current device's pool.
 inline std::uint64_t pool_bytes() {
   cudaMemPool_t pool = nullptr;
   std::uint64_t bytes = 0;

@@ -1,4 +1,4 @@
-// What a call is refused with.
+// Returns the message with which a call is refused.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 
 namespace weir::test {
 
-/// The message of the Error of that kind that `call` throws; "none" where it throws none.
+/// Returns the message of the Error of kind `kind` that `call` throws; "none" if it throws none.
 template <class Call>
 std::string refusal(ErrorKind kind, Call call) {
   try {

@@ -42,7 +42,7 @@ RefusedAllocations::~RefusedAllocations() { first_refused = kNever; }
     return __real_##function arguments;                          \
   }
 
-// With the default stream of all threads, and of each.
+// The variants with one default stream for all threads, and with one per thread.
 WEIR_WRAP(cudaMallocAsync, (void** memory, std::size_t bytes, cudaStream_t stream), (memory, bytes, stream))
 WEIR_WRAP(cudaMallocAsync_ptsz, (void** memory, std::size_t bytes, cudaStream_t stream), (memory, bytes, stream))
 WEIR_WRAP(cudaHostAlloc, (void** memory, std::size_t bytes, unsigned flags), (memory, bytes, flags))

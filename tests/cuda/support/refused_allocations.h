@@ -1,19 +1,21 @@
-// A device that refuses memory when a test wants it to: the runtime's functions that allocate something, which the
-// linker leads here first (--wrap), in weir_tests_cuda.
+// A device that refuses memory when a test asks for it. In weir_tests_cuda the linker first leads calls of the
+// runtime's allocating functions here (--wrap).
 #pragma once
 
 #include <cstdint>
 
 namespace weir::test {
 
-/// Allocations so far: of device memory, page-locked memory, arrays, textures, surfaces, streams and events.
+/// Returns the number of allocations so far: device memory, page-locked memory, arrays, textures, surfaces, streams
+/// and events.
 std::uint64_t allocations();
 
-/// Of the allocations of a large volume, each how manieth a test is to refuse: every one on a device, fewer where
+/// Returns n: a test of a large volume refuses every n-th of its allocations. n is 1 on a device, and larger if
 /// kernels run on the host.
 std::uint64_t refusal_step();
 
-/// While it lives, the n-th allocation from its making on (0: the next) is refused, and all later ones where `lasting`.
+/// While the object lives, refuses the n-th allocation after its construction (0: the next one), and all later ones
+/// if `lasting` is set.
 class RefusedAllocations {
  public:
   RefusedAllocations(std::uint64_t nth, bool lasting);

@@ -1,4 +1,4 @@
-// `weir watch --check` as a user who may not write everywhere.
+// Tests `weir watch --check` for a user who may not write everywhere.
 #include "daemon/config/check_access.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ class CheckAccess : public testing::Test {
     write_file(directory_ / "weir.toml",
                cat("[service]\n", service, "[[watch]]\ndirectory = '", directory, "'\noutput = 'out/deep'\n", more));
   }
-  /// As nobody, whom permissions stop, where the test runs as root, whom they do not.
+  /// Runs the check as nobody if the test runs as root, because permissions do not stop root.
   CommandResult check() const {
     std::vector<std::string> command{WEIR_COMMAND, "watch", "--check", directory_ / "weir.toml"};
     if (::geteuid() == 0)
@@ -39,7 +39,7 @@ class CheckAccess : public testing::Test {
     using fs::perms;
     fs::permissions(directory_ / name, allowed ? perms::all : perms::owner_exec | perms::others_exec);
   }
-  /// The message, between path and remedy, of a refusal of `path`.
+  /// Expects a refusal of `path`, with `what` between the path and the remedy.
   void expect_refused(const std::string& path, const std::string& key, const std::string& what) const {
     const CommandResult result = check();
     EXPECT_EQ(result.exit_code, 5);
@@ -51,7 +51,7 @@ class CheckAccess : public testing::Test {
         << result.err;
   }
 
-  /// Of a configuration with further lines in [service], where all may be written.
+  /// Expects a refusal of a configuration with more lines in [service], in which all directories are writable.
   void expect_service_refused(const std::string& lines, const std::string& begin, const std::string& end) const {
     for (const char* name : {"in", "out", "state"}) allow(name, true);
     configure(cat("state = 'state/weir.db'\n", lines, "\n"));
@@ -122,7 +122,7 @@ TEST_F(CheckAccess, DirectoryOfTheStateMissing_IsRefused) {
   EXPECT_TRUE(result.err.ends_with(": No such file or directory; make it, or choose another state\n")) << result.err;
 }
 
-// With it every conversion would fail for good.
+// With such a work_dir, every conversion would fail for good.
 TEST_F(CheckAccess, WorkDirThatIsMissingOrMemory_IsRefused) {
   expect_service_refused("work_dir = 'none'", (directory_ / "none") + ": work_dir cannot be written to by user ",
                          ": No such file or directory; make it, or choose another work_dir");
@@ -131,7 +131,7 @@ TEST_F(CheckAccess, WorkDirThatIsMissingOrMemory_IsRefused) {
                          "/dev/shm: work_dir lies on a memory file system; choose a directory on a disk", "");
 }
 
-// Where root may write, but make no directory.
+// In such a directory root may write, but cannot create a directory.
 TEST_F(CheckAccess, OutputThatTheKernelMakesTheFilesOf_IsRefused) {
   write_file(directory_ / "weir.toml",
              "[service]\nstate = 'weir.db'\n[[watch]]\ndirectory = 'in'\noutput = '/proc/weir/nvdb'\n");

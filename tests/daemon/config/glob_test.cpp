@@ -32,7 +32,7 @@ TEST(Glob, Sets) {
   EXPECT_TRUE(matches_glob("[!]]", "a"));
   EXPECT_FALSE(matches_glob("[^]]", "]"));
   EXPECT_TRUE(matches_glob("[a-]", "-"));
-  EXPECT_TRUE(matches_glob("[ab", "[ab"));  // no set
+  EXPECT_TRUE(matches_glob("[ab", "[ab"));  // an unclosed set is a literal bracket
   EXPECT_TRUE(matches_glob("[\x80-\xff]", "\xe9"));
   EXPECT_TRUE(matches_glob("\\*\\[\\\\", "*[\\"));
   EXPECT_FALSE(matches_glob("\\*", "a"));
@@ -48,7 +48,7 @@ TEST(Glob, TwoStarsMatchAnyNumberOfDirectories) {
   EXPECT_TRUE(matches_glob("a/**", "a"));
   EXPECT_FALSE(matches_glob("a/**", "b/a"));
   EXPECT_TRUE(matches_glob("**/x/**/y", "x/x/z/y/y"));
-  EXPECT_TRUE(matches_glob("a**b", "aXXb"));  // no component of its own: a star
+  EXPECT_TRUE(matches_glob("a**b", "aXXb"));  // not a component of its own, so it is a star
 }
 
 TEST(Glob, HiddenNamesMatchOnlyPatternsWithADot) {

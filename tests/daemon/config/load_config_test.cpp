@@ -23,7 +23,7 @@ class Config : public testing::Test {
     write_file(path_, text);
     return load_config(path_);
   }
-  /// The message without the path before ":LINE:COLUMN: "; empty: it is accepted.
+  /// Returns the message without the path before ":LINE:COLUMN: "; empty if the text is accepted.
   std::string refusal(const std::string& text) {
     try {
       load(text);
@@ -35,16 +35,16 @@ class Config : public testing::Test {
       return message.substr(path_.size() + 1);
     }
   }
-  /// Of a key in the fourth line, in the [[watch]].
+  /// Returns the refusal of a key in the fourth line, in the [[watch]].
   std::string watch_refusal(const std::string& line) { return refusal(kWatch + line); }
-  /// Of a key in the second line, in [service].
+  /// Returns the refusal of a key in the second line, in [service].
   std::string service_refusal(const std::string& line) { return refusal("[service]\n" + line + "\n" + kWatch); }
 
   TemporaryDirectory directory_;
   std::string path_ = directory_ / "watch.toml";
 };
 
-// As systemd sets it for a unit with StateDirectory, where /etc cannot be written.
+// systemd sets this variable for a unit with StateDirectory, which may not write to /etc.
 TEST_F(Config, StateLiesInTheStateDirectoryOfTheUnit) {
   ::setenv("STATE_DIRECTORY", "/var/lib/weir/run42:/var/lib/other", 1);
   EXPECT_EQ(load(kWatch).service.state, "/var/lib/weir/run42/weir.db");
@@ -377,7 +377,7 @@ TEST_F(Config, WatchConflict_IsReportedAtItsKey) {
             "3:10: " + (directory_ / "in") + " is watched and lies in the output " + (directory_ / "in") +
                 ", so that results would be converted again; separate them, " + (directory_ / "in/nvdb") +
                 " is a good output for instance");
-  // No key to point at: the table.
+  // Without a key to point at, the message points at the table.
   EXPECT_EQ(refusal(kWatch + kWatch), "4:1: there is a watch of the label \"" + (directory_ / "in") +
                                           "\" already; give this one a label of its own");
 }

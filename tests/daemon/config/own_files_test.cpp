@@ -24,7 +24,7 @@ class OwnFiles : public testing::Test {
     write_file(path_, text);
     return load_config(path_);
   }
-  /// The message without the path before ":LINE:COLUMN: "; empty: it is accepted.
+  /// Returns the message without the path before ":LINE:COLUMN: "; empty if the text is accepted.
   std::string refusal(const std::string& text) {
     try {
       load(text);

@@ -17,7 +17,7 @@ WatchConfig watch(const std::string& directory, const std::string& output) {
   return config;
 }
 
-/// "WATCH KEY: MESSAGE"; empty: there is none.
+/// Returns the conflict as "WATCH KEY: MESSAGE"; empty if there is none.
 std::string conflict(const std::vector<WatchConfig>& watches) {
   const auto found = find_conflict(watches);
   return found ? cat(found->watch, ' ', found->key, ": ", found->message) : "";

@@ -34,7 +34,7 @@ TEST(FullDisks, SmallerJobFoundNoRoom_HoldsBackSmallerJobsToo) {
   EXPECT_TRUE(disks.admits(1, 9, 16 * kMiB));
 }
 
-// However small its estimate is beside another job's.
+// The job waits even if its estimate is small beside another job's.
 TEST(FullDisks, AJobThatFoundNoRoom_WaitsWhateverItsEstimate) {
   FullDisks disks;
   disks.add(1, "/out", 500 * kMiB, 1, 10'000 * kMiB, 1000 * kMiB, kStart);

@@ -16,7 +16,7 @@ namespace {
 
 using std::chrono::seconds;
 
-// What is known once the disks were looked at.
+// Waits until the disks were looked at, and returns their figures.
 std::vector<OutputDisk> looked_at(const OutputDisks& disks, OutputDisks::Time now) {
   for (int i = 0; i < 1000; ++i) {
     std::vector<OutputDisk> found = disks.disks(now);
@@ -61,7 +61,7 @@ TEST(OutputDisks, NamesTheMount) {
   EXPECT_FALSE(found[0].fills_in_s.has_value());
 }
 
-// A file server that answers for one directory and not for another.
+// A file server may answer for one directory and hang for another.
 TEST(OutputDisks, LookAtASecondDirectoryDoesNotReturn_DiskIsSilent) {
   const TemporaryDirectory directory;
   struct Server {

@@ -36,7 +36,7 @@ TEST(RecentRate, ForgetsEntriesOlderThanTheWindow) {
   rate.add(1000, kStart + seconds(5));
   EXPECT_GT(rate.at(kStart + seconds(599)).per_s, 0);
   EXPECT_EQ(rate.at(kStart + seconds(601)).per_s, 0);
-  rate.add(7, kStart + seconds(605));  // the same slot as the first one had
+  rate.add(7, kStart + seconds(605));  // the same slot as the first event
   EXPECT_DOUBLE_EQ(rate.at(kStart + seconds(606)).bytes_per_s, 7.0 / 600);
 }
 

@@ -274,7 +274,7 @@ TEST_F(ApiTest, UnknownRouteIs404AndWrongMethodIs405) {
   EXPECT_TRUE(control_.asked.empty());
 }
 
-// "/api/jobs/*" is `/api/jobs/ID` there.
+// The document writes "/api/jobs/*" as `/api/jobs/ID`.
 TEST(ApiDocument, HasEveryRouteAndNoOther) {
   const std::string document = read_file(WEIR_SOURCE_DIR "/docs/http-api.md");
   std::set<std::string> described;
@@ -327,7 +327,7 @@ TEST_F(ApiTest, ServesThePage) {
   EXPECT_EQ(ask("GET", "/page/icon.svg").content_type, "image/svg+xml");
   EXPECT_EQ(ask("GET", "/page/..").status, 404U);
   EXPECT_EQ(ask("GET", "/page/%2Fetc%2Fpasswd").status, 404U);
-  // What the content policy forbids does not work, so it should not be there.
+  // The page must not contain anything that its content policy forbids, because it would not work.
   EXPECT_EQ(page.body.find("style="), std::string::npos);
   EXPECT_EQ(page.body.find("onclick"), std::string::npos);
   EXPECT_EQ(page.body.find("//"), std::string::npos) << "an address elsewhere";

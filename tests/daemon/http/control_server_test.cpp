@@ -94,7 +94,7 @@ class ControlSocket : public testing::Test {
     }
     return "";
   }
-  // A socket of another program at path_.
+  // Returns a socket of another program that is bound to path_.
   Descriptor bound_socket(int type) const {
     Descriptor made(::socket(AF_UNIX, type, 0));
     sockaddr_un address{};
@@ -150,14 +150,14 @@ TEST_F(ControlSocket, TcpIsReadOnlyAndTheSocketTakesPosts) {
   EXPECT_NE(here.body.find("\"control_at\":null"), std::string::npos) << here.body;
   EXPECT_EQ(local.ask(post + "\r\n").status, 200);
   EXPECT_EQ(served.run([&] { return control.asked.size(); }), 1U);
-  // Through a tunnel's loopback port, a foreign page whose name was pointed there.
+  // A foreign page's request through a tunnel's loopback port, with a host name that points there.
   EXPECT_EQ(
       local.ask("POST /api/pause HTTP/1.1\r\nHost: rebound.example\r\nX-Weir: 1\r\nContent-Length: 0\r\n\r\n").status,
       421);
 }
 
 TEST_F(ControlSocket, SocketLeftByAKilledServiceIsReplaced) {
-  bound_socket(SOCK_STREAM);  // closed at once, and its path stays
+  bound_socket(SOCK_STREAM);  // closed at once; its path stays
   FakeControl control;
   const Served served(control, "", {}, path_);
   RawClient local(path_);
@@ -174,7 +174,7 @@ TEST_F(ControlSocket, SocketInUseOrForeignFile_IsNotReplaced) {
     RawClient local(path_);
     EXPECT_EQ(local.ask("GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n").status, 200);
   }
-  {  // of a program that takes no lock, and no connection of this kind
+  {  // a program that takes no lock and accepts no stream connections
     const Descriptor other = bound_socket(SOCK_DGRAM);
     EXPECT_EQ(refusal(with_socket()),
               path_ + ": cannot see whether another process listens there: Protocol wrong type for socket");

@@ -1,4 +1,4 @@
-// The server from outside, through raw sockets: what clients may do to it, and what they may not.
+// Tests the server from outside, through raw sockets: what clients may do and what they may not.
 #include "daemon/http/http_server.h"
 
 #include <gtest/gtest.h>
@@ -88,7 +88,7 @@ TEST(HttpServer, SendsNoBodyForHead) {
   EXPECT_EQ(response.header("Content-Length"), "3");
   client.send("HEAD /nowhere HTTP/1.1\r\nHost: localhost\r\n\r\n");
   EXPECT_EQ(client.receive(false).status, 404);
-  EXPECT_EQ(client.ask(kHealth).body, "ok\n");  // nothing was left between
+  EXPECT_EQ(client.ask(kHealth).body, "ok\n");  // no bytes of the first answer are left over
 }
 
 TEST(HttpServer, RefusesMalformedRequests) {
@@ -183,7 +183,7 @@ TEST(HttpServer, RefusesASlowSender) {
   Served served(control, "", short_limits());
   RawClient client(served.port());
   const auto start = Clock::now();
-  // A byte at a time does not buy more time.
+  // Sending one byte at a time does not extend the time limit.
   for (const char c : std::string_view("GET /healthz HTTP/1.1\r\n")) {
     if (!client.send({&c, 1})) break;
     std::this_thread::sleep_for(milliseconds(20));
@@ -220,7 +220,7 @@ TEST(HttpServer, DropsAClientThatDoesNotReadItsAnswers) {
   for (std::size_t i = 0; i < control.all.size(); ++i) control.all[i].source = std::string(4000, 'x');
   Served served(control, "", short_limits());
   RawClient client(served.port());
-  // Megabytes of answers that nobody reads fill the socket's buffers.
+  // Megabytes of unread answers fill the socket's buffers.
   for (int i = 0; i < 8; ++i) client.send("GET /api/jobs?limit=1000 HTTP/1.1\r\nHost: localhost\r\n\r\n");
   std::this_thread::sleep_for(milliseconds(2500));
   int whole = 0;
@@ -253,7 +253,7 @@ TEST(HttpServer, ClosesTheOldestIdleConnectionForANewOne) {
     clients.emplace_back(served.port());
     EXPECT_EQ(clients.back().ask(kHealth).status, 200);
   }
-  EXPECT_EQ(clients[0].ask(kHealth).status, 200);  // now the second one is idle for longest
+  EXPECT_EQ(clients[0].ask(kHealth).status, 200);  // now the second client is idle for the longest time
   RawClient another(served.port());
   EXPECT_EQ(another.ask(kHealth).status, 200);
   EXPECT_TRUE(clients[1].closed_within(milliseconds(2000)));
@@ -274,8 +274,8 @@ TEST(HttpServer, ServesBesideSendersThatNeverFinish) {
   EXPECT_EQ(client.ask(kHealth).status, 200);
 }
 
-// More of them than connections, each back as soon as it is closed: whoever is closed for a new one must be one of
-// them.
+// There are more slow senders than connections, and each reconnects as soon as it is closed. So the connection that
+// is closed for a new one must be that of a slow sender.
 TEST(HttpServer, ServesFreshClientsBesideSlowSendersThatComeBack) {
   FakeControl control;
   HttpLimits limits;
@@ -306,7 +306,7 @@ TEST(HttpServer, ServesFreshClientsBesideSlowSendersThatComeBack) {
   over = true;
   attack.join();
   EXPECT_GE(connected, 300) << "nobody was closed";
-  EXPECT_GE(answered, asked * 19 / 20);  // one may be held up for so long that it is the slowest itself
+  EXPECT_GE(answered, asked * 19 / 20);  // a client may be delayed for so long that it is the slowest itself
 }
 
 TEST(HttpServer, RefusesCodingsOfTheBodyThatItDoesNotKnow) {
@@ -333,7 +333,7 @@ TEST(HttpServer, OutlivesAShortageOfDescriptors) {
   const rlimit tight{process_usage().open_descriptors + 5, before.rlim_max};
   ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &tight), 0);
   for (RawClient& client : clients) client.connect(served.port());
-  const RawResponse meanwhile = clients.back().ask(kHealth);  // idle ones were closed for it
+  const RawResponse meanwhile = clients.back().ask(kHealth);  // idle connections were closed for it
   ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &before), 0);
   EXPECT_EQ(meanwhile.status, 200);
   EXPECT_EQ(RawClient(served.port()).ask(kHealth).status, 200);

@@ -39,7 +39,7 @@ StatusView sample_status() {
   return status;
 }
 
-// Lines of `text` that begin with `prefix`, joined.
+// Returns the lines of `text` that begin with `prefix`, joined.
 std::string lines_with(const std::string& text, const std::string& prefix) {
   std::string found;
   for (const std::string& line : split(text, '\n')) {
@@ -119,7 +119,7 @@ TEST(Metrics, ShowFreeAndTotalBytesOfOutputDisks) {
       "weir_output_disk_free_bytes{disk=\"/scratch\"} 1000\nweir_output_disk_size_bytes{disk=\"/scratch\"} 4000\n");
 }
 
-// Where other disks have room, the service is not paused.
+// While other disks have room, the service is not paused.
 TEST(Metrics, TellWhichDisksHoldJobs) {
   StatusView status = sample_status();
   status.state = "running";
@@ -143,7 +143,7 @@ TEST(Metrics, PassPromtoolCheck) {
   EXPECT_EQ(result.out + result.err, "");
 }
 
-// The format's rules: HELP, TYPE, then the samples of that name, each name once.
+// The format's rules: HELP, TYPE, then the samples of this name; each name once.
 TEST(Metrics, NameEveryFamilyOnce) {
   const std::string text = metrics_text(sample_status(), {}, {});
   ASSERT_TRUE(text.ends_with('\n'));

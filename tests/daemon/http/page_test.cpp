@@ -1,5 +1,5 @@
-// The page in a real browser, against a service that converts nothing; the steps are in page/page_test.py.
-// WEIR_PAGE_SCREENSHOTS=DIRECTORY keeps pictures of it.
+// Tests the page in a real browser with a service that converts nothing; page/page_test.py has the steps.
+// WEIR_PAGE_SCREENSHOTS=DIRECTORY keeps screenshots.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -21,7 +21,7 @@ bool is_installed(const std::string& command) {
   return std::system(("command -v " + command + " >/dev/null").c_str()) == 0;
 }
 
-/// Keeps what it was asked to do where page_test.py can see it: as the reason of job 9999.
+/// Shows the recorded requests to page_test.py as the reason of job 9999.
 class TalkingControl : public FakeControl {
  public:
   std::function<void()> on_pause;

@@ -25,7 +25,7 @@ namespace asio = boost::asio;
 using boost::system::error_code;
 using std::chrono::milliseconds;
 
-/// A relay between `client_`, what a page holds, and `server_`.
+/// A relay between `client_`, the page's end, and `server_`.
 class RelayTest : public testing::Test {
  protected:
   /// `accepted` is called when the relay has connected to the server.
@@ -48,7 +48,7 @@ class RelayTest : public testing::Test {
   bool ended_ = false;
 };
 
-// Of the socket of this process that is connected to `port`; -1: there is none.
+// Returns the descriptor flags of this process's socket that is connected to `port`; -1 if there is none.
 int descriptor_flags_of_connection_to(std::uint16_t port) {
   for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
     const int descriptor = std::stoi(entry.path().filename());
@@ -74,7 +74,7 @@ TEST_F(RelayTest, ConnectionToTheServer_IsClosedOnExec) {
 }
 
 TEST_F(RelayTest, ClientThatTakesNothing_IsLeft) {
-  const std::string picture(64 << 20, 'p');  // more than both connections hold on their way
+  const std::string picture(64 << 20, 'p');  // more than the buffers of both connections hold
   error_code written;
   relay(milliseconds(100), [&] {
     asio::async_write(server_, asio::buffer(picture), [&](const error_code& error, std::size_t) { written = error; });
@@ -84,7 +84,7 @@ TEST_F(RelayTest, ClientThatTakesNothing_IsLeft) {
   EXPECT_TRUE(written) << "the server's connection is closed, too";
 }
 
-// The end of the write and that of its time wait for the thread together.
+// The handlers of the finished write and of its timer are both queued at the same time.
 TEST_F(RelayTest, ClientThatTakesAPieceAtTheLastMoment_IsKept) {
   const std::string picture(4 << 20, 'p');
   std::string told;

@@ -7,7 +7,7 @@
 namespace weir::view_requests_test {
 namespace {
 
-/// "STATUS BODY" of the refusal; empty where there is none.
+/// Returns the refusal as "STATUS BODY"; empty if there is none.
 std::string refusal(const AccessRules& rules, const HttpRequest& request, const ViewerView& viewer) {
   const auto refused = refuse_view(rules, request, viewer);
   return refused ? std::to_string(refused->status) + " " + refused->body : "";
@@ -61,7 +61,7 @@ TEST(ViewRequests, TokenIsNeededForAllButThePage) {
   EXPECT_EQ(refusal(rules, page, kReady).substr(0, 3), "401") << "a WebSocket is no file of the page";
 }
 
-// It may name files.
+// The reason may name files.
 TEST(ViewRequests, WhyAViewerFailedIsForWhoHasTheToken) {
   const AccessRules rules{"se", true};
   const ViewerView failed = in_state(ViewerState::failed, "weir: /runs/secret.nvdb: is damaged");

@@ -1,4 +1,4 @@
-// What a job reports where a file system is full, or its output is another writer's.
+// Tests the report of a job if a file system is full or another process writes its output.
 #include <gtest/gtest.h>
 #include <sys/mount.h>
 
@@ -22,7 +22,7 @@ using Names = std::vector<std::string>;
 
 using ConversionJobDisksTest = OneConversionJob;
 
-// Whatever the message says behind it, as where the work is kept.
+// The message may continue, for example with the place where the work is kept.
 TEST_F(ConversionJobDisksTest, FullDiskAndBusyOutput_AreToldByTheErrorsNumberAndPath) {
   ConversionTask full = task(write_source("a_8x8x8_uint8.raw", 512));
   full.program = directory_ / "weir";
@@ -40,7 +40,7 @@ TEST_F(ConversionJobDisksTest, FullDiskAndBusyOutput_AreToldByTheErrorsNumberAnd
     EXPECT_EQ(report.result.reason, "no room; what is done is kept");
   }
   EXPECT_EQ(report_of(ENOSPC, directory_.path()).full_directory, directory_.path());
-  fs::create_directory(directory_ / "spills");  // a spill has no name: its directory is told
+  fs::create_directory(directory_ / "spills");  // a spill has no name, so its directory is reported
   EXPECT_EQ(report_of(ENOSPC, directory_ / "spills").full_directory, directory_ / "spills");
   EXPECT_EQ(report_of(ENOSPC, directory_ / "out/.a.nvdb.work").full_directory, directory_ / "out") << "it is gone";
   EXPECT_EQ(report_of(EIO, directory_ / "out/a.nvdb").end, TaskEnd::failed);
@@ -48,7 +48,7 @@ TEST_F(ConversionJobDisksTest, FullDiskAndBusyOutput_AreToldByTheErrorsNumberAnd
   EXPECT_EQ(report_of(EWOULDBLOCK, full.source).end, TaskEnd::failed) << "a server that does not answer";
 }
 
-// It is no fault of the job, and there may be room another time.
+// A full disk is no fault of the job, and it may have room later.
 TEST_F(ConversionJobDisksTest, OutputDirectoryThatFindsNoRoom_EndsAsDiskFull) {
   const ConversionTask plain = task(write_source("a_8x8x8_uint8.raw", 512));
   fs::create_directory(directory_ / "disk");

@@ -1,4 +1,4 @@
-// One job with the real `weir`: what it reports for every way it can end.
+// Tests one job with the real `weir`: its report for every way in which it can end.
 #include "daemon/jobs/conversion_job.h"
 
 #include <gtest/gtest.h>
@@ -75,7 +75,7 @@ TEST_F(ConversionJobTest, StoppedProcess_IsTheReasonGivenForAStall) {
   EXPECT_TRUE(stall.ends_with(" s: it was stopped by a signal; SIGCONT lets it go on")) << stall;
 }
 
-// As where libhdf5 runs in circles in a damaged heap.
+// For example, libhdf5 loops forever in a damaged heap.
 TEST_F(ConversionJobTest, ProcessThatComputesAndSaysNothing_IsAStall) {
   ConversionTask endless = task(write_source("a_8x8x8_uint8.raw", 512));
   endless.program = directory_ / "weir";
@@ -131,7 +131,7 @@ TEST_F(ConversionJobTest, ConvertsVerifiesAndRendersOnce) {
   const TaskReport second = run(task(source));
   EXPECT_EQ(second.end, TaskEnd::done);
   EXPECT_FALSE(second.converted);
-  EXPECT_FALSE(first_report_);  // no thumbnail is to come
+  EXPECT_FALSE(first_report_);  // no thumbnail is due
   EXPECT_EQ(second.result.bytes_written, 0U);
   EXPECT_EQ(second.result.outputs, first.result.outputs);
   EXPECT_EQ(fs::last_write_time(output + ".png"), written);
@@ -162,11 +162,11 @@ TEST_F(ConversionJobTest, ChangedSource_EndsAsSourceChanged) {
   ConversionTask stale = task(source);
   ++stale.identity.mtime_ns;
   EXPECT_EQ(run(stale).end, TaskEnd::source_changed);
-  fs::resize_file(source, 10);  // and one that fails for it costs no attempt
+  fs::resize_file(source, 10);  // an attempt that fails for this reason does not count
   EXPECT_EQ(run(stale).end, TaskEnd::source_changed);
 }
 
-// The header, which is what is watched, stays as it is.
+// The header, which is the watched file, stays unchanged.
 TEST_F(ConversionJobTest, DataFileRewrittenDuringConversion_EndsAsSourceChanged) {
   write_source("a.bin", 128 << 14U);
   write_file(directory_ / "a.nhdr",
@@ -197,7 +197,7 @@ TEST_F(ConversionJobTest, ADamagedOutputIsRemovedAndMadeAgainByTheNextAttempt) {
   ASSERT_EQ(run(task(source)).end, TaskEnd::done);
   {
     std::fstream file(output, std::ios::binary | std::ios::in | std::ios::out);
-    file.seekp(-1, std::ios::end).put('x');  // in the padding: only the digest tells
+    file.seekp(-1, std::ios::end).put('x');  // in the padding: only the digest shows the change
   }
   const TaskReport damaged = run(task(source));
   EXPECT_EQ(damaged.end, TaskEnd::failed);
@@ -210,7 +210,7 @@ TEST_F(ConversionJobTest, ADamagedOutputIsRemovedAndMadeAgainByTheNextAttempt) {
   EXPECT_TRUE(again.converted);
 }
 
-// Of sysfs, whose files cannot be mapped: as where a file server answers with an error for a moment.
+// A file of sysfs cannot be mapped. A file server that fails for a moment has the same effect.
 TEST_F(ConversionJobTest, OutputThatVerifyCannotRead_StaysAndTheAttemptFails) {
   const ConversionTask work = task(write_source("a_48x40x32_uint8.raw", 48 * 40 * 32));
   ConversionTask disturbed = work;

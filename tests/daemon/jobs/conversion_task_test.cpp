@@ -78,7 +78,7 @@ TEST(ConversionTask, OptionsTextChangesOnlyWithSettingsOfTheOutput) {
   WatchConfig other = watch;
   other.settle_s = 9;
   other.priority = Priority::newest;
-  other.convert_options.push_back("--backend=cpu");  // the bytes are the same
+  other.convert_options.push_back("--backend=cpu");  // these options do not change the bytes
   other.convert_options.push_back("--direct-io=off");
   EXPECT_EQ(options_text(other), options_text(watch));
   other.name = "x.nvdb";

@@ -1,4 +1,4 @@
-// What must hold of the outputs of a source that is deleted.
+// Tests the conditions on the outputs of a source that is deleted.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -62,7 +62,7 @@ TEST_F(DeletedOutputsTest, FileWhoseValuesAreAllConverted_IsDeleted) {
   EXPECT_FALSE(stays());
 }
 
-// A conversion that a watch ordered before it deleted sources.
+// A conversion that ran before the watch deleted sources.
 TEST_F(DeletedOutputsTest, FileWhoseValuesWereNotCounted_Stays) {
   write_output(R"(, "format": "nifti")");
   delete_done();
@@ -78,7 +78,7 @@ TEST_F(DeletedOutputsTest, RegionOfARawFile_KeepsItsSource) {
   EXPECT_TRUE(logged("its outputs have 4 of the 6 values in it, and what else it holds would go with it"));
 }
 
-// Another conversion to a file of the same size has taken its place.
+// Another conversion has replaced the file by one of the same size.
 TEST_F(DeletedOutputsTest, CertificateOfAnotherVolume_KeepsTheSource) {
   write_output(R"(}, "value_range": [0, 2.5], "error": {"max_abs": 0)");
   deletion_.configure(config_);
@@ -90,7 +90,7 @@ TEST_F(DeletedOutputsTest, CertificateOfAnotherVolume_KeepsTheSource) {
   EXPECT_FALSE(stays());
 }
 
-// Neither is written to: it may be read-only, or a link to where it was moved.
+// Neither file is written to: an output may be read-only, or a link to its new place.
 TEST_F(DeletedOutputsTest, OutputThatCannotBeWritten_IsNoObstacle) {
   fs::permissions(output_, fs::perms::owner_read);
   fs::rename(sidecar_path(output_), directory_ / "moved.json");

@@ -1,4 +1,4 @@
-// Sources that a deletion which was interrupted has left under a hidden name.
+// Tests sources that an interrupted deletion has left under a hidden name.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -96,7 +96,7 @@ TEST_F(InterruptedDeletion, AnotherFileUnderTheHiddenName_GetsItsNameBack) {
   EXPECT_EQ(list_directory(directory_ / "in").size(), 1U);
 }
 
-// As a service left it that deleted links, too.
+// A former version of the service also deleted links and could leave this.
 TEST_F(InterruptedDeletion, LinkToTheSourceUnderTheHiddenName_GetsItsNameBack) {
   const std::string target = directory_ / "in/.target";
   const std::int64_t id = convert();
@@ -132,7 +132,7 @@ TEST_F(InterruptedDeletion, WriterOfTheHiddenSource_IsWaitedFor) {
   EXPECT_EQ(list_directory(directory_ / "in"), Names{});
 }
 
-// Another user's source: neither a lease nor the other processes can be asked.
+// Another user's source: the service can neither take a lease nor look into the other processes.
 class InterruptedDeletionOfAnotherUser : public DeletingWatch {
  protected:
   void SetUp() override {
@@ -197,7 +197,7 @@ TEST_F(InterruptedDeletion, WatchThatKeepsSourcesNow_ReplacesNoNewerOne) {
   EXPECT_EQ(read_file(hidden(id)), "values");
 }
 
-// As after the loss of the state file: another job may have the number.
+// For example after the loss of the state file: another job may have the number.
 TEST_F(InterruptedDeletion, SourceThatNoJobKnows_IsSaidAndStays) {
   const std::int64_t id = convert();
   config_.watches[0].recursive = true;

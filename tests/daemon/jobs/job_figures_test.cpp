@@ -11,7 +11,7 @@ namespace {
 
 using Errors = std::map<std::string, std::uint64_t>;
 
-// A series that begins with its first error has no rate of it.
+// A time series that begins with its first error gives no rate of this error.
 TEST(JobTotals, AtTheStart_HaveEveryKindOfErrorAtZero) {
   const Errors expected{{"input", 0},    {"io", 0},     {"budget", 0},    {"usage", 0},
                         {"internal", 0}, {"killed", 0}, {"disk-full", 0}, {"source-changed", 0}};

@@ -17,7 +17,7 @@ using Names = std::vector<std::string>;
 
 class JobHistoryTest : public testing::Test {
  protected:
-  /// A job that is done, and whose source is there or not.
+  /// Adds a done job; `there` says whether its source exists.
   void done(const std::string& name, bool there) {
     if (there) write_file(directory_ / name, "x");
     const std::int64_t id = store_.observe("w", directory_ / name, {}, "").job.id;
@@ -71,13 +71,13 @@ TEST_F(JobHistoryTest, ForgetsHundredsOfJobsInSeveralPieces) {
   io_.run_for(milliseconds(100));
   EXPECT_EQ(sources().size(), 251U);
   now_ += kDay_ms;
-  history_.keep(1, {});  // a reload begins anew
+  history_.keep(1, {});  // a reload starts a new look
   io_.restart();
   io_.run_for(milliseconds(300));
   EXPECT_EQ(sources(), Names{"there"});
 }
 
-// Nothing tells then whether their sources are gone.
+// While the directory is missing, nothing shows whether the sources are gone.
 TEST_F(JobHistoryTest, KeepsJobsWhileTheDirectoryOfTheirWatchIsNotThere) {
   done("in/gone", false);
   now_ += 2 * kDay_ms;

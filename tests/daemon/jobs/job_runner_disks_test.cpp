@@ -1,4 +1,4 @@
-// What a JobRunner does where file systems have no room.
+// Tests JobRunner with full file systems.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,10 +19,10 @@ namespace {
 namespace fs = std::filesystem;
 using std::chrono::milliseconds;
 
-// /proc is the disk that is full: it is there everywhere, and a file system of its own.
+// /proc plays the full disk: it exists everywhere and is a file system of its own.
 class JobRunnerDisksTest : public RunningJobs {
  protected:
-  /// A `weir` that finds no room at `path`, and counts how often it was started.
+  /// Writes a `weir` that finds no room at `path` and counts its starts.
   std::string full_at(const std::string& path) const {
     return write_program(cat("echo >>", starts_, "\necho '{\"failed\": \"no room\", \"errno\": 28, \"path\": \"", path,
                              "\"}' >&$fd\nexit 5\n"));
@@ -39,7 +39,7 @@ class JobRunnerDisksTest : public RunningJobs {
   std::string starts_ = directory_ / "starts";
 };
 
-// As of a file server behind FUSE.
+// A file server behind FUSE may report no size.
 TEST_F(JobRunnerDisksTest, FullDiskOfUnknownSize_IsWaitedForWithoutAnAttempt) {
   const std::string program = write_program(
       "echo '{\"planned\": 1000}' >&$fd\n"
@@ -55,7 +55,7 @@ TEST_F(JobRunnerDisksTest, FullDiskOfUnknownSize_IsWaitedForWithoutAnAttempt) {
   EXPECT_EQ(store_.job(job.id)->result.reason, "no room");
 }
 
-// As where an output in memory spills to /var/tmp: nothing that is asked for room tells when there is some.
+// For example, an output in memory spills to /var/tmp: no disk that is asked for its room shows when there is some.
 TEST_F(JobRunnerDisksTest, FullDiskOfNeitherOutputNorWorkDir_IsTriedAgainAfterAWhile) {
   JobRunner runner(io_, store_, log_, full_at("/proc"), [](const Job&) {});
   runner.configure(config_);
@@ -113,7 +113,7 @@ TEST_F(JobRunnerDisksTest, FullDiskOfOneOutput_HoldsOnlyItsJobs) {
   EXPECT_TRUE(runner.hold().starts_with("no room in /proc, where ")) << runner.hold();
 }
 
-// A picture is lost by no full disk: the job is done, and nothing would ever ask for it again.
+// A full disk must not lose a picture: the job is done, and nothing else would request the picture again.
 TEST_F(JobRunnerDisksTest, ThumbnailThatFindsNoRoom_IsRenderedWhenThereIsSome) {
   const std::string out = directory_ / "out";
   const std::string ballast = out + "/ballast";

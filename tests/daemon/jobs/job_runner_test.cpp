@@ -1,4 +1,4 @@
-// Jobs from the state file to their results, with the real `weir`.
+// Tests jobs from the state file to their results, with the real `weir`.
 #include "daemon/jobs/job_runner.h"
 
 #include <gtest/gtest.h>
@@ -46,7 +46,7 @@ TEST_F(JobRunnerTest, ConvertsWaitingJobs) {
   EXPECT_NE(log.find(cat(" error quarantined job=", bad.id, ' ')), std::string::npos) << log;
 }
 
-// As while its file system is not mounted: nothing tells whether the source is gone.
+// While the file system is not mounted, nothing shows whether the source is gone.
 TEST_F(JobRunnerTest, JobWaitsWhileTheDirectoryOfItsWatchIsNotThere) {
   const Job job = add("a", "one");
   fs::rename(directory_ / "a", directory_ / "away");
@@ -60,7 +60,7 @@ TEST_F(JobRunnerTest, JobWaitsWhileTheDirectoryOfItsWatchIsNotThere) {
   run_until([&] { return idle() && state(job) == JobState::done; });
 }
 
-// Jobs of an earlier configuration are looked through in pieces, between which others start.
+// Jobs of an earlier configuration are checked in pieces, and other jobs start in between.
 TEST_F(JobRunnerTest, JobThatTheWatchNoLongerTakes_IsForgottenNotConverted) {
   const Job one = add("a", "one");
   const Job two = add("a", "two");
@@ -92,7 +92,7 @@ TEST_F(JobRunnerTest, ThumbnailsThatTheServiceEndedBefore_AreRenderedAtTheNextSt
   const Job moved = add("a", "moved");
   runner_.wake();
   run_until([&] { return idle() && store_.count({JobState::done, "", ""}) == 2; });
-  for (const Job& one : {job, moved}) {  // as if the service had ended before their thumbnails were there
+  for (const Job& one : {job, moved}) {  // as if the service had ended before the thumbnails were rendered
     const JobResult result = store_.job(one.id)->result;
     ASSERT_TRUE(store_.retry(one.id, true));
     store_.enqueue(one.id);
@@ -101,7 +101,7 @@ TEST_F(JobRunnerTest, ThumbnailsThatTheServiceEndedBefore_AreRenderedAtTheNextSt
   }
   const std::string output = store_.job(moved.id)->result.outputs.at(0).path;
   fs::remove(output);
-  fs::remove(job.source);  // delete-after-verify
+  fs::remove(job.source);  // as delete-after-verify does
   config_.watches[0].thumbnails = true;
   runner_.configure(config_);
   runner_.resume_thumbnails();
@@ -197,7 +197,7 @@ TEST_F(JobRunnerTest, AbandonEndsACancelledJob) {
   EXPECT_EQ(list_directory(directory_ / "out"), std::vector<std::string>{});
 }
 
-// Nobody continues it; `retry` begins anew.
+// Nobody continues a cancelled job; `retry` starts from the beginning.
 TEST_F(JobRunnerTest, CancelRemovesResumableWorkFiles) {
   config_.watches[0].convert_options = {"--save-interval=0"};
   runner_.configure(config_);
@@ -260,7 +260,7 @@ TEST_F(JobRunnerTest, ShutDown_JobOutlastsTheGrace_WaitsAgainWithoutAnAttempt) {
   }
 }
 
-// As one that waits for a disk that hangs.
+// For example, a process that waits for a hanging disk.
 TEST_F(JobRunnerTest, Kill_ProcessThatDoesNotEnd_IsLeftBehind) {
   if (!Unkillable::possible()) GTEST_SKIP() << "only root may have processes that it cannot kill";
   JobRunner runner(io_, store_, log_, write_program("exec sleep 600\n"), [](const Job&) {});
@@ -308,7 +308,7 @@ TEST_F(JobRunnerTest, ShutDown_ProcessThatDoesNotEnd_IsLeftBehindAfterTheGrace) 
   EXPECT_EQ(state(job), JobState::running);
 }
 
-// The usual case: what was killed is written down.
+// The usual case: killed jobs are recorded in the state file.
 TEST_F(JobRunnerTest, Kill_EndsTheStopWithTheLastProcess) {
   const Job job = add_long();
   runner_.wake();

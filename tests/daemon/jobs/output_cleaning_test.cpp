@@ -33,13 +33,13 @@ namespace fs = std::filesystem;
 using Names = std::vector<std::string>;
 using std::chrono::milliseconds;
 
-// Where no source is of the service's.
+// Cleans with no source in the service's directory.
 CleaningReport clean(const TemporaryDirectory& directory, bool recursive = false,
                      milliseconds patience = milliseconds(0)) {
   return clean_outputs(directory.path().string(), "/no/such/sources", recursive, patience);
 }
 
-// Of the sources in `sources`.
+// Cleans with `sources` as the service's directory.
 CleaningReport clean(const TemporaryDirectory& directory, const TemporaryDirectory& sources) {
   return clean_outputs(directory.path().string(), sources.path().string(), false, milliseconds(0));
 }
@@ -48,7 +48,7 @@ TEST(OutputCleaning, RemovesOnlyTheLeftoversOfKilledConversions) {
   const TemporaryDirectory directory;
   fs::create_directories(directory / ".a.nvdb.work");
   fs::create_directories(directory / "deep/.b.nvdb.work");
-  fs::create_directories(directory / "precious.nvdb.partial");  // a directory is nobody's partial file
+  fs::create_directories(directory / "precious.nvdb.partial");  // a directory is no partial file
   for (const char* name : {"a.nvdb.partial", "a.nvdb.json.partial", "a.nvdb.png.partial", ".a.nvdb.work/spillAb3dE6",
                            "deep/b.nvdb.partial", "done.nvdb", "done.nvdb.json", "done.nvdb.png", "notes.partial",
                            "old.nvdb.json", "old.nvdb.json.previous", "lost.nvdb.json.previous"}) {
@@ -67,7 +67,7 @@ TEST(OutputCleaning, RemovesOnlyTheLeftoversOfKilledConversions) {
   EXPECT_EQ(list_directory(directory / "deep"), Names{});
 }
 
-// From here on no thread of this process can read a directory on, as where a disk fails.
+// From here on no thread of this process can read a directory, as on a failing disk. Returns whether this works.
 bool fail_directories() {
   std::array<sock_filter, 4> steps{{BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
                                     BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_getdents64, 0, 1),
@@ -78,7 +78,7 @@ bool fail_directories() {
          ::syscall(SYS_seccomp, SECCOMP_SET_MODE_FILTER, SECCOMP_FILTER_FLAG_TSYNC, &filter) == 0;
 }
 
-// More spill files than one call of the system lists: it fails when the first one is removed.
+// There are more spill files than one system call lists, so the second call fails after the first removal.
 TEST(OutputCleaning, WorkDirectoryThatCannotBeReadToItsEnd_StaysAndIsReported) {
   constexpr int kFiles = 6000;
   const TemporaryDirectory directory;
@@ -116,7 +116,7 @@ TEST(OutputCleaning, KillBetweenTheRenames_TheOldVolumeGetsItsSidecarBack) {
   clean(directory);
   EXPECT_EQ(read_file(directory / "out.nvdb.json"), old);
   EXPECT_FALSE(fs::exists(directory / "out.nvdb.json.previous"));
-  // Beside a volume that neither describes, both stay, and that is said.
+  // Beside a volume that neither sidecar describes, both stay, and this is reported.
   write_file(directory / "out.nvdb.json.previous", old);
   fs::rename(directory / "new.nvdb", directory / "out.nvdb");
   const CleaningReport report = clean(directory);
@@ -126,7 +126,7 @@ TEST(OutputCleaning, KillBetweenTheRenames_TheOldVolumeGetsItsSidecarBack) {
   EXPECT_EQ(read_file(directory / "out.nvdb.json.previous"), old);
 }
 
-// Also where size and head checksum of both volumes are the same.
+// This holds even if size and head checksum of both volumes are equal.
 TEST(OutputCleaning, KillBetweenTheRenames_OfVolumesWithEqualHeads_ThePairsAreRestored) {
   const TemporaryDirectory directory;
   const KilledOverwrite killed(directory);
@@ -135,7 +135,7 @@ TEST(OutputCleaning, KillBetweenTheRenames_OfVolumesWithEqualHeads_ThePairsAreRe
   EXPECT_EQ(read_file(killed.sidecar), killed.old_sidecar);
   const Names pair{"noise_64x64x64_uint8.raw", "out.nvdb", "out.nvdb.json"};
   EXPECT_EQ(list_directory(directory.path()), pair);
-  // Killed a moment later.
+  // The same, killed a moment later.
   write_file(killed.output, killed.new_volume);
   write_file(killed.sidecar, killed.new_sidecar);
   write_file(killed.previous, killed.old_sidecar);
@@ -148,7 +148,7 @@ TEST(OutputCleaning, KillBetweenTheRenames_OfVolumesWithEqualHeads_ThePairsAreRe
   EXPECT_EQ(read_file(killed.output), killed.old_volume);
 }
 
-// A reader that has the sidecar open and locked must not make it look like another volume's.
+// A reader that holds the sidecar open and locked must not make it look like another volume's.
 TEST(OutputCleaning, SidecarThatAnotherProcessHasOpen_IsNotReplaced) {
   const TemporaryDirectory directory;
   const std::string source = directory / "a_16x16x16_uint8.raw";
@@ -166,13 +166,13 @@ TEST(OutputCleaning, SidecarThatAnotherProcessHasOpen_IsNotReplaced) {
   EXPECT_EQ(identify(sidecar), live);
 }
 
-// What it describes is not known then, and may be known at the next start.
+// The volume that the sidecar describes is unknown now, but may be known at the next start.
 TEST(OutputCleaning, SidecarThatCannotBeLookedAt_StaysWithThePreviousOne) {
   const TemporaryDirectory directory;
   const std::string sidecar = directory / "a.nvdb.json";
   write_file(directory / "a.nvdb", "volume");
   write_file(sidecar + ".previous", "previous");
-  fs::create_symlink(std::string(300, 'x'), sidecar);  // leads to a name that no file can have
+  fs::create_symlink(std::string(300, 'x'), sidecar);  // a link to a name that no file can have
   const CleaningReport report = clean(directory);
   EXPECT_EQ(report.left, Names{cat(sidecar, ".previous: ", sidecar,
                                    ": cannot look at it: File name too long; choose a shorter name")});
@@ -181,7 +181,8 @@ TEST(OutputCleaning, SidecarThatCannotBeLookedAt_StaysWithThePreviousOne) {
   EXPECT_FALSE(fs::exists(directory / "a.nvdb.partial")) << "the lock";
 }
 
-// What an interrupted conversion of `source` to "a.nvdb" leaves, spill files in `spills` or beside it.
+// Writes the leftovers of an interrupted conversion of `source` to "a.nvdb", with spill files in `spills` or beside
+// it.
 void leave_interrupted(const TemporaryDirectory& directory, const std::string& source, const std::string& spills = "",
                        const ConversionIdentity& more = {}) {
   const FileIdentity identity = identify(source).value_or(FileIdentity{});
@@ -232,7 +233,8 @@ TEST(OutputCleaning, KeepsResumableWorkForAWeekWhileItsSourceIsUnchanged) {
   EXPECT_EQ(list_directory(directory.path()), Names{});
 }
 
-// Its bytes and time are those of all its files together; which of them changed, its next conversion sees.
+// The recorded size and time are of all the source's files together. The next conversion finds out which file
+// changed.
 TEST(OutputCleaning, KeepsResumableWorkWhileItsHeaderExists) {
   const TemporaryDirectory directory;
   const TemporaryDirectory sources;
@@ -274,7 +276,7 @@ TEST(OutputCleaning, SourcesThatCannotBeLookedAt_OwnNothing) {
   EXPECT_EQ(list_directory(directory.path()), kKept);
 }
 
-// Conversions that begin while it cleans keep what they make.
+// A conversion that begins during the cleaning keeps its files.
 TEST(OutputCleaning, RemovesWorkOnlyWhileHoldingItsLock) {
   const TemporaryDirectory directory;
   const std::string work = directory / ".a.nvdb.work";
@@ -291,7 +293,7 @@ TEST(OutputCleaning, RemovesWorkOnlyWhileHoldingItsLock) {
     try {
       lock = files->create(directory / "a.nvdb.partial");
     } catch (const Error&) {
-      continue;  // the cleaner has it
+      continue;  // the cleaner holds the lock
     }
     ++conversions;
     files->make_directory(work);
@@ -354,7 +356,7 @@ TEST(OutputCleaning, LeavesFilesThatAnotherProcessIsWriting) {
   EXPECT_EQ(list_directory(directory.path()), (Names{".a.nvdb.work/", "a.nvdb.partial"}));
 }
 
-// Who renders a picture does not hold its volume's lock.
+// The process that renders a picture does not hold the volume's lock.
 TEST(OutputCleaning, PictureThatIsBeingRendered_IsKeptUntilItsWriterEnds) {
   const TemporaryDirectory directory;
   const std::string picture = directory / "a.nvdb.png.partial";

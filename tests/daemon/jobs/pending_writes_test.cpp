@@ -35,7 +35,7 @@ class PendingWritesTest : public testing::Test {
 TEST_F(PendingWritesTest, FaultStaysUntilSomethingIsWritten) {
   const Error full(ErrorKind::io, "full");
   writes_.log_fault(full);
-  writes_.write();  // nothing
+  writes_.write();  // there is nothing to write
   EXPECT_EQ(writes_.fault(), "full");
   writes_.log_fault(full);
   EXPECT_EQ(faults_said(), 1U);

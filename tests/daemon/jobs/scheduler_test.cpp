@@ -66,14 +66,14 @@ TEST(Scheduler, Paused_StartsNothingUntilResumed) {
 TEST(Scheduler, BandwidthIsKeptOnAverageByDelayingTheNextJob) {
   Scheduler scheduler({1, 0, 100});
   const std::vector<WatchLoad> watches{{"a", true, 0}};
-  scheduler.finished(1000, kStart);  // 10 s worth, in however short a time
+  scheduler.finished(1000, kStart);  // worth 10 s, however fast the job was
   EXPECT_EQ(scheduler.next(watches, kPlenty, kStart + 9s), none());
   EXPECT_EQ(scheduler.bandwidth_until(kStart + 9s), kStart + 10s);
   EXPECT_EQ(scheduler.next(watches, kPlenty, kStart + 10s), "a");
   // A job that was slower than the cap leaves neither debt nor credit.
   scheduler.finished(100, kStart + 20s);
   EXPECT_EQ(scheduler.bandwidth_until(kStart + 30s), std::nullopt);
-  // Two that ran beside each other share the cap.
+  // Two jobs that ran at the same time share the cap.
   scheduler.finished(500, kStart + 100s);
   scheduler.finished(500, kStart + 100s);
   EXPECT_EQ(scheduler.bandwidth_until(kStart + 101s), kStart + 110s);

@@ -1,4 +1,4 @@
-// When sources are deleted. What an interrupted deletion leaves: interrupted_deletion_test.cpp.
+// Tests when sources are deleted. interrupted_deletion_test.cpp tests interrupted deletions.
 #include "daemon/jobs/source_deletion.h"
 
 #include <fcntl.h>
@@ -31,7 +31,7 @@ using std::chrono::milliseconds;
 
 using SourceDeletionTest = DeletingWatch;
 
-// Before the first rename `writer` calls open(SOURCE), and that waits for the lease.
+// Returns a file system in which `writer` calls open(SOURCE) before the first rename and waits for the lease.
 std::unique_ptr<FileSystem> opened_before_rename(std::thread& writer,
                                                  const std::function<void(const std::string&)>& open) {
   auto files = std::make_unique<SteppedFileSystem>();
@@ -46,7 +46,7 @@ std::unique_ptr<FileSystem> opened_before_rename(std::thread& writer,
   return files;
 }
 
-// The kernel lets whoever opens it for writing wait while the service looks at it.
+// The kernel makes a program that opens the source for writing wait while the service holds its lease.
 TEST_F(SourceDeletionTest, OpenedForWritingWhileItIsLookedAt_StaysWithWhatIsWritten) {
   std::thread writer;
   auto files = opened_before_rename(
@@ -62,13 +62,13 @@ TEST_F(SourceDeletionTest, OpenedForWritingWhileItIsLookedAt_StaysWithWhatIsWrit
   EXPECT_EQ(list_directory(directory_ / "in").size(), 1U);
 }
 
-// Its own renames, there and back, make no other file of it.
+// The service's own renames, to the hidden name and back, do not make the source another file.
 TEST_F(SourceDeletionTest, OpenedWhileItIsLookedAtAndNotWritten_IsDeletedLater) {
   std::thread writer;
   auto files = opened_before_rename(
       writer, [](const std::string& source) { const Descriptor opened(::open(source.c_str(), O_WRONLY | O_CLOEXEC)); });
   SourceDeletion deletion(io_, store_, log_, {}, std::move(files));
-  pass_file_tick();  // the renames are seen
+  pass_file_tick();  // the renames change the file's status time
   deletion.configure(config_);
   deletion.done(convert());
   EXPECT_TRUE(run_until([&] { return deletion.idle(); }));
@@ -79,8 +79,8 @@ TEST_F(SourceDeletionTest, OpenedWhileItIsLookedAtAndNotWritten_IsDeletedLater) 
   EXPECT_TRUE(logged(" deleted job=1 source=" + source_));
 }
 
-// What a disk or a server refuses once it does later, and the name that the source had meanwhile makes it no other
-// file.
+// A disk or a server may refuse an operation once and permit it later. The temporary hidden name does not make the
+// source another file.
 TEST_F(SourceDeletionTest, RemovalThatFails_IsSaidOnceAndTriedAgain) {
   auto files = std::make_unique<SteppedFileSystem>();
   int failures = 3;
@@ -88,7 +88,7 @@ TEST_F(SourceDeletionTest, RemovalThatFails_IsSaidOnceAndTriedAgain) {
     if (failures-- > 0) throw io_error(path, "remove", EIO);
   };
   SourceDeletion deletion(io_, store_, log_, {}, std::move(files));
-  pass_file_tick();  // the renames are seen
+  pass_file_tick();  // the renames change the file's status time
   deletion.configure(config_);
   const std::int64_t id = convert();
   deletion.done(id);
@@ -161,14 +161,14 @@ TEST_F(SourceDeletionTest, RemovalThatFailsBehindTheMarker_MakesTheMarkerAgain) 
   EXPECT_EQ(list_directory(directory_ / "in"), std::vector<std::string>{});
 }
 
-// As while it is mounted anew.
+// For example while the directory is remounted.
 TEST_F(SourceDeletionTest, DirectoryThatIsAway_IsWaitedForAndSaidOnce) {
   deletion_.configure(config_);
   deletion_.done(convert());
   fs::rename(directory_ / "in", directory_ / "away");
   ASSERT_TRUE(run_until([&] { return logged(" not-deleted watch="); }));
   EXPECT_TRUE(logged(" reason=\"" + (directory_ / "in") + " is not there; tried again once it is\""));
-  EXPECT_FALSE(run_until([&] { return deletion_.idle(); }, milliseconds(500)));  // looked at again
+  EXPECT_FALSE(run_until([&] { return deletion_.idle(); }, milliseconds(500)));  // it is checked again and again
   const std::string log = read_file(directory_ / "log");
   EXPECT_EQ(log.find("not-deleted"), log.rfind("not-deleted")) << log;
   fs::rename(directory_ / "away", directory_ / "in");
@@ -185,7 +185,7 @@ TEST_F(SourceDeletionTest, OpenForWriting_WaitsForTheClose) {
   EXPECT_FALSE(stays());
 }
 
-// As numpy.memmap does: nothing is written, closed or timed until the memory is given back.
+// numpy.memmap maps files this way: nothing is written or closed, and no time changes, until the memory is released.
 TEST_F(SourceDeletionTest, MappedForWriting_WaitsForTheEndOfTheMapping) {
   Descriptor writer(::open(source_.c_str(), O_RDWR | O_CLOEXEC));
   void* const mapping = ::mmap(nullptr, 6, PROT_READ | PROT_WRITE, MAP_SHARED, writer.get(), 0);
@@ -230,7 +230,7 @@ TEST_F(SourceDeletionTest, ReplacedByOneOfTheSameSizeTimeAndInode_Stays) {
 }
 
 TEST_F(SourceDeletionTest, OutputThatWasWrittenToSinceItWasCertified_KeepsItsSource) {
-  config_.watches[0].delete_after_s = 1;  // more than the next calls take
+  config_.watches[0].delete_after_s = 1;  // longer than the next calls take
   delete_done();
   const auto bytes = fs::file_size(output_);
   pass_file_tick();
@@ -266,7 +266,7 @@ TEST_F(SourceDeletionTest, WhileJobsAreHeld_NothingIsDeleted) {
   EXPECT_FALSE(deletion_.idle());
 }
 
-// logrotate has the service reload: a delay of a week would never end.
+// logrotate makes the service reload: if this restarted the delay, a delay of a week would never end.
 TEST_F(SourceDeletionTest, Reload_GoesOnWaitingUnderTheSameDelay) {
   config_.watches[0].delete_after_s = 0.6;
   delete_done();
@@ -286,7 +286,7 @@ TEST_F(SourceDeletionTest, Reload_WaitsAgainUnderAnotherDelay) {
   EXPECT_FALSE(run_until([&] { return !fs::exists(source_); }, milliseconds(500)));
 }
 
-// One whose hidden name is taken keeps none of those behind it waiting.
+// A source whose hidden name is taken does not hold up the sources behind it.
 TEST_F(SourceDeletionTest, WhatCannotBeDeleted_IsSaidAndTheNextOneGoes) {
   const std::int64_t id = convert();
   write_file(hidden(id), "left by another deletion");
@@ -316,7 +316,7 @@ TEST_F(SourceDeletionTest, MarkerThatCannotBeRemoved_IsSaidOnceAndKeepsItsSource
   EXPECT_FALSE(stays());
 }
 
-// Its certificate may be of one file: where the hierarchy has no chunk yet.
+// If the hierarchy has no chunk yet, its certificate may name a single file.
 TEST_F(SourceDeletionTest, HeadOfADirectory_Stays) {
   config_.watches[0].recursive = true;
   fs::create_directory(directory_ / "in/a.zarr");
@@ -331,7 +331,7 @@ TEST_F(SourceDeletionTest, HeadOfADirectory_Stays) {
   }
 }
 
-// The link would go, and what takes the room would stay.
+// A deletion would remove the link, and the target would still take the disk space.
 TEST_F(SourceDeletionTest, SymbolicLink_StaysWithItsTarget) {
   const std::string target = directory_ / "in/.target";
   fs::rename(source_, target);
@@ -346,7 +346,7 @@ TEST_F(SourceDeletionTest, SymbolicLink_StaysWithItsTarget) {
   EXPECT_FALSE(logged(" deleted "));
 }
 
-// As where the source is moved to another disk, and a link made in its place, at that moment.
+// For example, the source is moved to another disk at this moment and a link put in its place.
 TEST_F(SourceDeletionTest, ReplacedByALinkToItWhileItIsDeleted_GetsItsNameBack) {
   const std::string target = directory_ / "in/.target";
   auto files = std::make_unique<SteppedFileSystem>();

@@ -45,7 +45,7 @@ struct ShellRun {
         [this](std::string_view line) { lines.emplace_back(line); },
         [this](const WorkerEnd& ended) {
           end = ended;
-          worker.reset();  // allowed here
+          worker.reset();  // destroying the worker is allowed here
         });
   }
   void run() { io.run(); }
@@ -77,7 +77,7 @@ TEST(WorkerProcess, IgnoresNoSignalThatTheServiceIgnores) {
   }
 }
 
-// The system reaps it then, and tells nobody how it ended.
+// The system reaps the child, and nobody learns how it ended.
 TEST(WorkerProcess, SigchldIgnored_WorkerCountsAsFailedWithTheReason) {
   const auto before = std::signal(SIGCHLD, SIG_IGN);
   ShellRun shell("echo out; sleep 0.1; exit 3");
@@ -108,8 +108,8 @@ TEST(WorkerProcess, KilledBySignal_ExitCodeIs128PlusTheSignal) {
   EXPECT_EQ(shell.end->exit_code, 128 + SIGSEGV);
 }
 
-// The reactor's state of a descriptor that was closed with an event under way is that of the next descriptor, which
-// gets the event: the child must not be waited for then.
+// Asio's reactor reuses the state of a closed descriptor for the next descriptor, which then receives a pending event
+// of the old one. Such an event must not make the daemon wait for the child.
 TEST(WorkerProcess, EventOfADescriptorThatWasClosed_IsNotTakenForTheEnd) {
   boost::asio::io_context io;
   using Socket = boost::asio::local::stream_protocol::socket;
@@ -147,7 +147,7 @@ TEST(WorkerProcess, EventOfADescriptorThatWasClosed_IsNotTakenForTheEnd) {
   io.poll();
   first_peer.write_some(boost::asio::buffer("x", 1));
   second_peer.write_some(boost::asio::buffer("x", 1));
-  io.run();  // for ever, were the child waited for
+  io.run();  // would never return if the child were waited for
   EXPECT_TRUE(told);
   ASSERT_TRUE(end);
   EXPECT_EQ(end->exit_code, 3);
@@ -196,7 +196,7 @@ TEST(WorkerProcess, KilledProcessThatEndsLater_IsReapedThen) {
   EXPECT_EQ(open_descriptors(), before);
 }
 
-// Of many that hang, each would have the service wait.
+// Otherwise each of many hanging processes would make the service wait.
 TEST(WorkerProcess, KilledProcessThatDoesNotEnd_IsWaitedForOnce) {
   if (!Unkillable::possible()) GTEST_SKIP() << "only root may have processes that it cannot kill";
   ShellRun shell("echo $$ >&3; exec sleep 600", 0, milliseconds(1000));
@@ -257,7 +257,7 @@ TEST(WorkerProcess, SaysWhyAProgramDoesNotStart) {
   EXPECT_EQ(open[2], open[0]);
 }
 
-// From here on this process and its children can give nothing to epoll, as at the limit fs.epoll.max_user_watches.
+// From here on this process and its children cannot add to epoll, as at the limit fs.epoll.max_user_watches.
 bool refuse_epoll() {
   std::array<sock_filter, 4> steps{{BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
                                     BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_epoll_ctl, 0, 1),
@@ -270,7 +270,7 @@ bool refuse_epoll() {
 TEST(WorkerProcess, ProcessThatCannotBeWatched_IsAnIoErrorAndReaped) {
   const std::string answer = answer_of_child([] {
     boost::asio::io_context io;
-    const boost::asio::posix::stream_descriptor before(io);  // makes Asio's own epoll
+    const boost::asio::posix::stream_descriptor before(io);  // creates Asio's own epoll descriptor
     const std::size_t open = open_descriptors();
     if (!refuse_epoll()) return std::string("no seccomp");
     const std::string message = message_of_error(ErrorKind::io, [&] {
@@ -286,7 +286,7 @@ TEST(WorkerProcess, ProcessThatCannotBeWatched_IsAnIoErrorAndReaped) {
 }
 
 TEST(WorkerProcess, DiesWithTheDaemon) {
-  // A process that starts a worker and is killed: the worker's process must go with it.
+  // A process starts a worker and is killed; the worker's process must end, too.
   int ends[2];
   ASSERT_EQ(::pipe(ends), 0);
   const pid_t daemon = ::fork();
@@ -307,7 +307,7 @@ TEST(WorkerProcess, DiesWithTheDaemon) {
   ::waitpid(daemon, nullptr, 0);
   const auto gone = [&] {
     const std::string state = run_command({"ps", "-o", "state=", "-p", cat(worker)}).out;
-    return state.empty() || state.front() == 'Z';  // nobody may be there to reap it
+    return state.empty() || state.front() == 'Z';  // there may be no parent that reaps it
   };
   const auto deadline = steady_clock::now() + std::chrono::seconds(5);
   while (!gone() && steady_clock::now() < deadline) std::this_thread::sleep_for(milliseconds(5));

@@ -26,7 +26,7 @@ class WrongOutputTest : public testing::Test {
   }
 
   std::string remove(FileSystem& files) const { return remove_wrong_output(files, output_, verified_); }
-  /// Where call number `call` fails: 0 takes the lock, 1 and 2 remove, 3 flushes the directory.
+  /// Removes the output while call number `call` fails: 0 takes the lock, 1 and 2 remove, 3 flushes the directory.
   std::string remove_with_fault(int call) const {
     FaultyFileSystem files(*real_, call, EIO);
     return remove(files);
@@ -84,7 +84,7 @@ TEST_F(WrongOutputTest, OutputThatWasReplacedMeanwhile_IsLeft) {
   EXPECT_EQ(names(), (Names{"a.nvdb", "a.nvdb.json"}));
 }
 
-// It may be the lock of a commit that was killed, and says so by what it holds.
+// The file may be the lock of a killed commit, with a content that records it.
 TEST_F(WrongOutputTest, LockThatWasLeftOver_Stays) {
   write_file(output_ + ".partial", "record");
   EXPECT_EQ(remove(*real_), "removed");

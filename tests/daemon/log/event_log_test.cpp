@@ -79,7 +79,7 @@ TEST(EventLog, RotatesAtItsSize) {
   EXPECT_LE(fs::file_size(service.log_file), 1000U);
 }
 
-// As a full disk does: a write beyond the limit writes what has room below it, and the next one fails.
+// Imitates a full disk: a write across the limit is shortened, and the next write fails.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) : former_handler_(std::signal(SIGXFSZ, SIG_IGN)) {

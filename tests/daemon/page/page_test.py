@@ -1,5 +1,5 @@
-"""page_test.py URL CASE [DIRECTORY]: one test of the page at URL in headless Chromium, against the service of
-tests/daemon/http/page_test.cpp. Screenshots go into DIRECTORY, where one is given. Exits with 0 where all holds."""
+"""page_test.py URL CASE [DIRECTORY]: runs one test of the page at URL in headless Chromium, with the service of
+tests/daemon/http/page_test.cpp. Writes screenshots into DIRECTORY if it is given. Exits with 0 if the test passes."""
 
 import json
 import os
@@ -28,13 +28,13 @@ def loaded(browser):
 
 
 def asked_of_service():
-    """What the page made the service do."""
+    """Returns the requests that the page sent to the service."""
     with DIRECT.open(url + "/api/jobs/9999") as answer:
         return json.load(answer)["reason"].split(", ")
 
 
 def tell_service(path):
-    """A change that comes from elsewhere while the page is looked at."""
+    """Sends the service a change from another client while the page is open."""
     with DIRECT.open(urllib.request.Request(url + path, b"", {"X-Weir": "test"})) as answer:
         answer.read()
 
@@ -136,7 +136,7 @@ def plays_the_series(browser):
     equal(browser.text("#series-place"), "22 of 24")
     equal(caption(), "density_22_512x512x512_float32.nvdb")
     browser.press("HOME")
-    equal(caption(), "density_1_512x512x512_float32.nvdb")  # by number, not by letter
+    equal(caption(), "density_1_512x512x512_float32.nvdb")  # sorted by number, not by letter
     browser.press("RIGHT")
     equal(caption(), "density_2_512x512x512_float32.nvdb")
     shown = lambda: browser.script("return document.querySelector('#series-picture img')?.src")
@@ -163,7 +163,7 @@ def works_with_the_keyboard(browser):
     focus = "const e = document.activeElement; return e.id || e.className + ' ' + e.innerText"
     seen = []
     browser.press("TAB")
-    while not browser.script("return document.activeElement === document.body"):  # until once round
+    while not browser.script("return document.activeElement === document.body"):  # until the focus has gone round once
         seen.append(browser.script(focus))
         outlined = browser.script("return getComputedStyle(document.activeElement).outlineStyle")
         equal((seen[-1], outlined), (seen[-1], "solid"))
@@ -173,7 +173,7 @@ def works_with_the_keyboard(browser):
                    "name density_24_512x512x512_float32.nvdb", "name density_25_512x512x512_float32.raw", "all-text",
                    "all-state", "all-watch", "sort Name"]:
         assert wanted in seen, f"{wanted} is not reached: {seen}"
-    # The lists are drawn anew under the focus, which stays.
+    # The lists are redrawn, and the focus stays.
     browser.script("document.querySelector('#problems .name').focus()")
     wait_a_round(browser)
     equal(browser.script(focus), "name density_9_512x512x512_float32.raw")
@@ -216,7 +216,7 @@ def changes_jobs(browser):
 
 
 def only_views(browser):
-    """The service has a control socket, and the page came over TCP."""
+    """Tests the page over TCP while the service has a control socket."""
     browser.open(url)
     loaded(browser)
     browser.wait("it is said", lambda: browser.visible("#view-only"))
@@ -284,7 +284,7 @@ def says_why_there_is_no_viewer(browser):
     browser.click("#job .view")
     browser.wait("that it is taken", lambda: browser.visible("#viewer-force"))
     equal(browser.visible("#job"), False)
-    refused = browser.complaints()  # Chromium's own lines of the two that were taken
+    refused = browser.complaints()  # Chromium's own lines for the two refused requests
     assert refused and all("423 (Locked)" in text for text in refused), refused
 
 
@@ -299,7 +299,7 @@ def says_when_the_service_is_gone(browser):
     equal(browser.visible("#main"), True)
     equal(browser.visible("#pause"), False)
     picture(browser, "unreachable")
-    browser.complaints()  # refused connections, as they should be
+    browser.complaints()  # refused connections, as expected
 
 
 def asks_for_the_token(browser):
@@ -310,14 +310,14 @@ def asks_for_the_token(browser):
     browser.script("document.querySelector('#token').focus()")
     browser.press("guess", "ENTER")
     browser.wait("a refusal", lambda: browser.text("#login-error") == "This is not the token.")
-    browser.press(" secret ", "ENTER")  # as a paste may bring it
+    browser.press(" secret ", "ENTER")  # with blanks, as after a paste
     loaded(browser)
     equal(browser.visible("#login"), False)
     browser.wait("pictures, too", lambda: browser.script(
         "return document.querySelector('#results img')?.src.startsWith('blob:')"))
     browser.wait("the series, too", lambda: browser.script("return !!document.querySelector('#series-picture img')"))
-    browser.complaints()  # 401, as it should be
-    browser.open(url)  # the tab remembers it
+    browser.complaints()  # 401, as expected
+    browser.open(url)  # the tab remembers the token
     loaded(browser)
 
 
@@ -361,7 +361,7 @@ def groups_problems(browser):
     browser.click("#problems .inner li button:not(.name)")
     browser.wait("one less", lambda: browser.text(".retry-group") == "Retry all 14")
     equal(browser.text(".disclosure"), "14 \u00d7 has 101 bytes and should have 512; write it again")
-    focus = browser.script("return document.activeElement.innerText")  # not lost with the job that went
+    focus = browser.script("return document.activeElement.innerText")  # not lost with the removed job
     equal(focus, "Retry")
     browser.script("document.querySelector('.disclosure').focus()")
     browser.press("SPACE")
@@ -394,7 +394,7 @@ def lists_all_jobs(browser):
     browser.wait("the next page", lambda: place() == "51 to 79 of 79")
     equal(len(names()), 29)
     equal(browser.script("return document.activeElement.id"), "all-next")
-    browser.press("ENTER")  # there is no further one
+    browser.press("ENTER")  # there is no next page
     wait_a_round(browser)
     equal(place(), "51 to 79 of 79")
     browser.click("#all-previous")
@@ -455,7 +455,7 @@ def shows_plots(browser):
     told = lambda name: browser.text(f"#plot-{name} .value")
     equal(labels("psnr"), ["51", "52", "53", "54", "step", "1", "5", "10", "15", "20", "lossless"])
     equal(labels("error")[:4], ["0.00", "0.01", "0.02", "0.03"])
-    equal(lines("psnr"), [11, 7, 4])  # a gap at step 12, whose figures are unknown, and at 20, which is lossless
+    equal(lines("psnr"), [11, 7, 4])  # gaps at step 12 (unknown figures) and at step 20 (lossless)
     equal(lines("error"), [11, 12])
     equal(lines("range"), [11, 11, 12, 12])
     equal(browser.script("return document.querySelectorAll('#plot-range .band').length"), 2)
@@ -513,7 +513,7 @@ def enlarges_pictures(browser):
     browser.click("#picture-next")
     equal(title(), "density_23_512x512x512_float32.nvdb")
     browser.click("#picture-previous")
-    browser.press("LEFT", "LEFT")  # round to the last
+    browser.press("LEFT", "LEFT")  # past the first picture to the last
     equal(browser.text("#picture-place"), "12 of 12")
     browser.press("ESCAPE")
     equal(browser.visible("#picture"), False)
@@ -609,7 +609,7 @@ def waits_for_the_viewer(browser):
     browser.wait("it asks again",
                  lambda: browser.script("return performance.getEntriesByType('navigation')[0]?.type") == "reload")
     equal(browser.script("return location.href"), place)
-    browser.complaints()  # it was refused, as it should be
+    browser.complaints()  # it was refused, as expected
 
 
 with Browser() as chromium:

@@ -1,5 +1,5 @@
-"""viewer_test.py URL SOURCES TOKEN: View on the page of a real service at URL, which converts what comes into SOURCES, in
-headless Chromium. Screenshots go to WEIR_PAGE_SCREENSHOTS, where that is set. Exits with 0 where all holds."""
+"""viewer_test.py URL SOURCES TOKEN: tests View on the page of a real service at URL, which converts files in SOURCES,
+in headless Chromium. Writes screenshots to WEIR_PAGE_SCREENSHOTS if that is set. Exits with 0 if the test passes."""
 
 import os
 import pathlib
@@ -38,10 +38,10 @@ with Browser(1200, 900) as page:
     page.wait("its picture", lambda: page.visible("#results .card img"), 60)
     equal(page.visible("#series-view"), True)
     picture(page, "service-view-button")
-    page.complaints()  # of requests before the token was given
+    page.complaints()  # about requests before the token was given
 
     if not pictures:
-        page.set_width(390, 500)  # a small picture, soon done
+        page.set_width(390, 500)  # a small picture is finished sooner
     page.click("#results .card .view")
     page.wait("the viewer's page", lambda: page.script("return location.pathname") == "/view/", 60)
     page.wait("it is filled", lambda: page.visible("#main"))
@@ -55,7 +55,7 @@ with Browser(1200, 900) as page:
         return new Set(data).size""")
     assert shades > 50, f"an empty picture: {shades} values"
 
-    # What a conversion for the scene would come to, in the viewer's share of the service's memory.
+    # The forecast of a conversion for the scene, within the viewer's share of the service's memory.
     page.script("""
         document.querySelector('#convert-panel').open = true;
         const budget = document.querySelector('#budget');
@@ -66,7 +66,7 @@ with Browser(1200, 900) as page:
     assert forecast.startswith("Expected: "), forecast
     page.script("document.querySelector('#convert-panel').open = false")
 
-    # The simulation goes on.
+    # The simulation writes another step.
     data = bytes(i * 7 % 251 for i in range(24 * 20 * 16))
     hidden = pathlib.Path(sources, ".s_2")
     hidden.write_bytes(data)
@@ -81,7 +81,7 @@ with Browser(1200, 900) as page:
     picture(page, "service-viewer")
     equal(page.complaints(), [])
 
-    # Back, and to another step of the same series: the same viewer.
+    # Back, and to another step of the same series: the viewer stays the same.
     page.click("#service")
     page.wait("the service's page", lambda: page.visible("#results .card .view"))
     page.click("#results .card:nth-child(2) .view")
@@ -114,7 +114,7 @@ with Browser(1200, 900) as page:
     equal(page.script("return document.title"), "s_1_24x20x16_uint8.nvdb \u2013 weir view")
     equal(canvas(page) == before, True)
     picture(page, "service-other-file")
-    page.complaints()  # of the requests while there was no viewer
+    page.complaints()  # about requests while there was no viewer
     page.click("#take-back")
     page.wait("that it is being opened by somebody", lambda: "loses it" in page.text("#other-series-note"))
     equal(page.text("#take-back"), "Take it all the same")

@@ -1,4 +1,4 @@
-"""A browser driven by chromedriver's plain WebDriver protocol (https://www.w3.org/TR/webdriver2/), with nothing but the
+"""Drives a browser by chromedriver's plain WebDriver protocol (https://www.w3.org/TR/webdriver2/), with only the
 standard library."""
 
 import base64
@@ -12,15 +12,15 @@ import urllib.request
 
 ELEMENT = "element-6066-11e4-a52e-4f735466cecf"  # the key that the protocol gives an element's id
 
-DIRECT = urllib.request.build_opener(urllib.request.ProxyHandler({}))  # whatever the environment says of proxies
+DIRECT = urllib.request.build_opener(urllib.request.ProxyHandler({}))  # ignores proxies of the environment
 
 KEYS = {"TAB": "\ue004", "ENTER": "\ue007", "ESCAPE": "\ue00c", "SPACE": " ", "END": "\ue010", "HOME": "\ue011",
         "DELETE": "\ue017", "LEFT": "\ue012", "UP": "\ue013", "RIGHT": "\ue014", "DOWN": "\ue015"}
 
 
 def start_driver(attempts=5):
-    """A chromedriver that listens, and its port. It chooses a free port of IPv4 and ends where another process has that
-    port of IPv6, so it is started anew, at most `attempts` times; RuntimeError, with all it said, where none listens."""
+    """Returns a listening chromedriver and its port. It chooses a free IPv4 port and ends if another process has this
+    port of IPv6; then it is started again, up to `attempts` times. RuntimeError with its output if none listens."""
     said = []
     for _ in range(attempts):
         with tempfile.TemporaryFile("w+") as errors:
@@ -74,7 +74,7 @@ class Browser:
         self.ask("POST", "/url", {"url": url})
 
     def script(self, text, *arguments):
-        """The value of a function body run in the page."""
+        """Runs a function body in the page and returns its value."""
         return self.ask("POST", "/execute/sync", {"script": text, "args": list(arguments)})
 
     def text(self, selector):
@@ -91,7 +91,7 @@ class Browser:
         self.ask("POST", f"/element/{found[ELEMENT]}/click", {})
 
     def double_click(self, selector):
-        """On its middle, by a mouse as a browser gets it."""
+        """Double-clicks the middle of the element with mouse events."""
         found = self.ask("POST", "/element", {"using": "css selector", "value": selector})
         self.script("document.querySelector(arguments[0]).scrollIntoView({block: 'center'})", selector)
         click = [{"type": "pointerDown", "button": 0}, {"type": "pointerUp", "button": 0}]
@@ -100,7 +100,7 @@ class Browser:
         self.ask("POST", "/actions", {"actions": [mouse]})
 
     def press(self, *keys):
-        """Keys by their name in KEYS, or text."""
+        """Presses keys, given by their name in KEYS or as text."""
         actions = []
         for key in keys:
             for value in [KEYS[key]] if key in KEYS else key:
@@ -118,18 +118,18 @@ class Browser:
                       mobile=False)
 
     def screenshot(self, path):
-        """The whole page, beyond what the window shows."""
+        """Saves a picture of the whole page, beyond the window."""
         image = self.devtools("Page.captureScreenshot", captureBeyondViewport=True)
         with open(path, "wb") as file:
             file.write(base64.b64decode(image["data"]))
 
     def complaints(self):
-        """What the browser's console has said since the last call: errors, refusals of the content policy."""
+        """Returns the errors and warnings of the browser's console since the last call, e.g. of the content policy."""
         return [entry["message"] for entry in self.ask("POST", "/se/log", {"type": "browser"})
                 if entry["level"] in ("SEVERE", "WARNING")]
 
     def wait(self, what, condition, seconds=10):
-        """Until condition() is true; its value."""
+        """Waits until condition() is true and returns its value."""
         end = time.monotonic() + seconds
         while not (value := condition()):
             if time.monotonic() > end:

@@ -1,4 +1,4 @@
-// The running service: signals, reloads, and what is asked over HTTP.
+// Tests the running service: signals, reloads and HTTP requests.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/socket.h>
@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 using std::chrono::milliseconds;
 using Names = std::vector<std::string>;
 
-/// A source that takes seconds: a gibibyte of zeros that takes no disk.
+/// Adds a source whose conversion takes seconds: a gibibyte of zeros that takes no disk space.
 std::string add_long(const ServiceHarness& service) {
   const std::string name = "long_1024x1024x1024_uint8.raw";
   write_file(service.path("long.tmp"), "");
@@ -31,7 +31,7 @@ std::string add_long(const ServiceHarness& service) {
   return name;
 }
 
-/// What lies among the outputs, but for what `name` can be continued from.
+/// Returns the files in the output directory without the work files of `name`.
 Names outputs_without_leftovers(const ServiceHarness& service, const std::string& name) {
   Names names = list_directory(service.out());
   std::erase_if(names, [&](const std::string& path) { return path.starts_with(cat(".", name, ".nvdb.work/")); });
@@ -159,7 +159,7 @@ TEST(WatchControl, Retry_DoneJob_ConvertsAgainOnlyWithForce) {
   service.post(retry + "?force=1");
   ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" info done ") == 3; })) << service.log();
   EXPECT_GT(fs::last_write_time(service.out(name + ".nvdb")), made);
-  service.post(retry);  // the force was for once
+  service.post(retry);  // the force is used up after one run
   ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" info done ") == 4; })) << service.log();
   EXPECT_EQ(service.logged("converted=yes"), 2U);
   EXPECT_EQ(service.logged("converted=\"no, done already\""), 2U) << service.log();
@@ -185,14 +185,14 @@ TEST(WatchControl, ABadReloadChangesNothingAndAGoodOneTakesEffect) {
   service.configure("", "size = \"400000\"\n");
   service.signal(SIGHUP);
   ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" reload config=") == 1; })) << service.log();
-  // Other options: what was done is done again.
+  // With other options, done jobs are converted again.
   ASSERT_TRUE(ServiceHarness::eventually([&] {
     return fs::file_size(service.out(std::string("one") + ServiceHarness::kSuffix + ".nvdb")) == 400000 &&
            fs::file_size(service.out(std::string("two") + ServiceHarness::kSuffix + ".nvdb")) == 400000;
   })) << service.log();
 }
 
-// What a start ends with exit code 5 for.
+// At a start, such a path gives exit code 5.
 TEST(WatchControl, ReloadWithAPathThatCannotBeUsed_ChangesNothing) {
   ServiceHarness service;
   service.start();
@@ -248,7 +248,7 @@ TEST(WatchControl, ReloadWithoutAWatch_FinishesItsJobAndForgetsWaitingOnes) {
   EXPECT_EQ(service.logged(" start "), 2U) << "the first one is known";
 }
 
-// Else its output would lie as far from the output directory as its source from the new one.
+// Otherwise an output would lie as far from the output directory as its source from the new directory.
 TEST(WatchControl, WatchGivenAnotherDirectory_ForgetsJobsOfTheFormerOne) {
   ServiceHarness service("", "label = \"w\"\n");
   service.start();
@@ -280,7 +280,7 @@ TEST(WatchControl, RenamedLog_IsReopenedOnSighup) {
   EXPECT_EQ(service.logged(" done "), 1U);
 }
 
-// As logrotate renames it, whatever has become of the configuration.
+// logrotate renames the log whether or not the configuration is valid.
 TEST(WatchControl, RenamedLog_IsReopenedThoughTheConfigurationIsRefused) {
   ServiceHarness service("log_size = \"0\"\n");
   service.start();

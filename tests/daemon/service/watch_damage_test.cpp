@@ -1,4 +1,4 @@
-// A state file that is damaged while the service runs: it ends, and the next start rebuilds the file.
+// Tests a state file that is damaged while the service runs: the service ends, and the next start rebuilds the file.
 #include <gtest/gtest.h>
 
 #include <csignal>
@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 using std::chrono::milliseconds;
 using Names = std::vector<std::string>;
 
-// More jobs than SQLite keeps in memory, so that what is damaged on disk is read.
+// Adds more jobs than SQLite keeps in memory, so that the damaged part is read from disk.
 void fill_state_file(const ServiceHarness& service) {
   JobStore store(service.path("weir.db"));
   store.together([&] {
@@ -28,7 +28,7 @@ void fill_state_file(const ServiceHarness& service) {
   });
 }
 
-// All but the header, which shows whose file it is.
+// Damages the whole file but its header, which shows the owning program.
 void damage_state_file(const ServiceHarness& service) {
   const auto size = fs::file_size(service.path("weir.db"));
   ASSERT_GT(size, 8U << 20U);
@@ -47,7 +47,7 @@ void expect_end(ServiceHarness& service) {
   EXPECT_EQ(service.logged("error end reason="), 1U) << service.log();
 }
 
-// Reads all jobs, so that nothing else is kept in memory.
+// Reads all jobs, so that no other page stays in memory.
 void read_all_jobs(const ServiceHarness& service) { EXPECT_EQ(service.get("/api/jobs?text=nothing")["total"], 0); }
 
 TEST(WatchDamage, FoundWithNewFiles_EndsTheServiceAndIsRebuilt) {

@@ -1,4 +1,4 @@
-// What goes wrong around the service, and what it says and does then.
+// Tests faults around the service, and its messages and actions.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -49,7 +49,7 @@ TEST(WatchFaults, FullDiskOfTheStateFile_PausesAllJobsUntilThereIsRoom) {
   }
   for (int i = 0; i < 20; ++i) service.add(cat("v", i));
   ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" state-file-fault ") > 0; })) << service.log();
-  std::this_thread::sleep_for(milliseconds(2500));  // tried again each second
+  std::this_thread::sleep_for(milliseconds(2500));  // the service tries again each second
   EXPECT_LE(service.logged(" state-file-fault "), 2U) << "said once by each who needs it\n" << service.log();
   const auto watch = service.get("/api/status")["watches"][0];
   EXPECT_EQ(watch["up"], false) << "what is found cannot be written down: /readyz says so";
@@ -77,7 +77,7 @@ TEST(WatchFaults, FullDiskOfTheStateFile_WhileJobsWait_IsNotSaidEachSecond) {
   }
   service.post("/api/resume");
   ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" state-file-fault ") > 0; })) << service.log();
-  std::this_thread::sleep_for(milliseconds(3500));  // tried again each second
+  std::this_thread::sleep_for(milliseconds(3500));  // the service tries again each second
   EXPECT_LE(service.logged(" state-file-fault "), 2U) << service.log();
   fs::remove(service.path("state/ballast"));
   ASSERT_TRUE(service.eventually_done(20)) << service.log();
@@ -140,7 +140,8 @@ TEST(WatchFaults, OutputNotMounted_JobsWaitAndNothingIsWrittenBelowTheMountPoint
   EXPECT_EQ(service.stop(), 0);
 }
 
-// One output is larger than the rest of its disk, and one than the whole of another: neither holds up what fits.
+// One output is larger than the free space of its disk, another one larger than a whole disk. Neither delays outputs
+// that fit.
 TEST(WatchFaults, OutputThatDoesNotFit_DelaysOnlyJobsAsLargeOnThatDisk) {
   ServiceHarness service("", "size = \"400000\"\nsettle = 0.2\n");
   ScopedMount mount(service.out(), 2 << 20);
@@ -214,16 +215,16 @@ TEST(WatchFaults, AFileThatMayNotBeReadIsTriedAgain) {
   EXPECT_NE(job["reason"].get<std::string>().find("Permission denied; give this user the right to read it"),
             std::string::npos)
       << job;
-  // Wait for the delay of 10 s, longer than a busy machine takes to notice.
+  // Wait for the attempt with a delay of 10 s, which is longer than a busy machine takes to notice the change.
   ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" attempt-failed ") == 2; })) << service.log();
   const auto due = service.job(name + ".raw")["next_attempt_at"];
   ASSERT_TRUE(due.is_number());
-  fs::permissions(service.in(name + ".raw"), fs::perms::all);  // the file itself is as it was
+  fs::permissions(service.in(name + ".raw"), fs::perms::all);  // the content of the file is unchanged
   ASSERT_TRUE(service.eventually_done(1)) << service.log();
   EXPECT_LT(service.job(name + ".raw")["changed_at"], due) << "it was not noticed at once";
 }
 
-// As behind a file server that does not answer: what cannot be looked at is not deleted.
+// For example behind a file server that does not answer: a file that cannot be looked at is not deleted.
 TEST(WatchFaults, FileInAnUnreadableDirectory_KeepsItsJob) {
   ServiceHarness service("", "recursive = true\n");
   service.run_unprivileged();
@@ -259,7 +260,7 @@ TEST(WatchFaults, FileInAnUnreadableDirectory_IsReportedOnceAndTriedAgain) {
                     ".raw: cannot look at it: Permission denied; check the permissions or choose another place\"")),
             1U)
       << service.log();
-  // It may be just being looked at again.
+  // The file may be under a new look at this moment.
   EXPECT_TRUE(ServiceHarness::eventually([&] { return service.count("discovered") == 1; })) << service.log();
   fs::permissions(service.in("sub"), fs::perms::all);
   ASSERT_TRUE(service.eventually_done(2)) << service.log();
@@ -300,7 +301,7 @@ TEST(WatchFaults, ForeignOutput_IsNotReplaced) {
   ASSERT_TRUE(service.eventually_done(1)) << service.log();
 }
 
-// Without the job nobody would be told.
+// Without a job, nobody would be told.
 TEST(WatchFaults, RawFileWithoutATypeInAWatchWithDims_FailsWithWhatIsMissing) {
   ServiceHarness service("", "dims = [24, 20, 16]\n");
   service.start();
@@ -335,7 +336,7 @@ TEST(WatchFaults, LeftoversOfAKilledConversionAreCleanedAtStart) {
   EXPECT_EQ(service.logged(" cleaned "), 3U) << service.log();
 }
 
-// A modification time in the future, and one that goes backwards: both are only different ones.
+// A modification time in the future, and one that goes back, both count only as different.
 TEST(WatchFaults, SourceTimeJumpsByYears_IsConvertedAgain) {
   ServiceHarness service;
   service.start();

@@ -1,6 +1,6 @@
-// How files come into a watched directory, with the real `weir watch`: each is converted exactly once, to the bytes
-// of a plain `weir convert`, and none half-read. By inotify with polling out of reach, and by polling with inotify out
-// of reach.
+// Tests how files arrive in a watched directory, with the real `weir watch`. Each is converted exactly once, to the
+// bytes of a plain `weir convert`, and never half-read. Runs with inotify and polling disabled, and with polling and
+// inotify disabled.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -184,7 +184,7 @@ TEST_P(WatchFiles, HeaderNamingAFileOutside_NeedsFollowAnywhere) {
   ASSERT_TRUE(service.eventually_done(1)) << service.log();
 }
 
-// As on a file system whose times are whole seconds: size, time and inode are those of what was converted.
+// On a file system with times in whole seconds, the rewritten file has the same size, time and inode.
 TEST(WatchRacyTimes, RewriteWithTheSameSizeAndTime_IsConverted) {
   ServiceHarness service("", "watch = \"inotify\"\nsettle = 0.2\n");
   service.start();
@@ -220,7 +220,7 @@ TEST_P(WatchFiles, SourceIsConvertedOnlyAfterItsMarkerAppears) {
       << "the source and its marker are deleted";
 }
 
-// A text file of VTK with 4^3 values of each array.
+// Returns a text file of VTK with 4^3 values of each array.
 std::string vtk_file(const std::vector<std::string>& arrays) {
   std::string text =
       "# vtk DataFile Version 3.0\nfields\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 4 4 4\nORIGIN 0 0 0\n"
@@ -245,8 +245,8 @@ TEST(WatchDeletion, AFileWithAnotherFieldStays) {
   EXPECT_TRUE(fs::exists(service.in("two.vtk")));
 }
 
-/// The kernel's limit on queued events, the whole machine's, made small while this lives: for a moment only, since a
-/// queue keeps the limit that it was made with, and a test that is killed meanwhile leaves it so.
+/// Makes the machine-wide limit on queued inotify events small while the object lives. This is only for a moment: a
+/// queue keeps the limit of its creation, and a test that is killed in between leaves the limit small.
 class SmallQueue {
  public:
   SmallQueue() : before_(read_file(kPath)) { std::ofstream(kPath) << 16; }
@@ -260,7 +260,7 @@ class SmallQueue {
   std::string before_;
 };
 
-// WEIR_MANY_FILES sets how many; each is a conversion of three processes.
+// WEIR_MANY_FILES sets the number of files; each conversion runs three processes.
 TEST(WatchManyFiles, ManyAtOnceThroughASmallQueue) {
   auto small = std::make_unique<SmallQueue>();
   if (!small->works()) GTEST_SKIP() << "fs.inotify.max_queued_events cannot be set here";
@@ -293,7 +293,7 @@ TEST_P(WatchFiles, NameThatIsNotUtf8_IsQuarantinedWithItsEvent) {
   EXPECT_EQ(service.count("quarantined"), 1U);
 }
 
-// By inotify: a poll does not see how a file came.
+// Only with inotify: polling does not see how a file arrived.
 TEST(WatchFilesByRename, FileThatIsCreatedAndSet_WaitsForItsRename) {
   ServiceHarness service("", "watch = \"inotify\"\ncomplete = \"rename\"\n");
   service.add("first");
@@ -305,7 +305,7 @@ TEST(WatchFilesByRename, FileThatIsCreatedAndSet_WaitsForItsRename) {
   const auto reason = [&] { return service.job(name).value("reason", ""); };
   EXPECT_TRUE(ServiceHarness::eventually([&] { return reason() == "it has not got its name by a rename"; }))
       << service.log();
-  std::this_thread::sleep_for(milliseconds(600));  // twice settle
+  std::this_thread::sleep_for(milliseconds(600));  // twice the settle time
   EXPECT_EQ(service.count("discovered"), 1U) << service.log();
   fs::rename(service.in(name), service.in("." + name));
   fs::rename(service.in("." + name), service.in(name));

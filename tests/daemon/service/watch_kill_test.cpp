@@ -1,5 +1,5 @@
-// kill -9 at random moments over a batch: in the end everything is there, right, and nothing else. WEIR_KILLS sets how
-// many there are beside writers.
+// Tests kill -9 at random moments during a batch: in the end all results are there and correct, and nothing else is.
+// WEIR_KILLS sets the number of kills in the test with writers.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -35,7 +35,7 @@ int number_from(const char* variable, int otherwise) {
 TEST(WatchKill, FiftyKillsLoseNothingAndRedoNothing) {
   ServiceHarness service("jobs = 2\nwork_dir = \"work\"\n", "thumbnails = true\nsettle = 0.05\n");
   fs::create_directory(service.path("work"));
-  // Some take a while, so that kills meet conversions in all their stages.
+  // Some conversions take longer, so that kills hit them in all stages.
   std::string big(std::size_t{192} * 192 * 192, '\0');
   std::minstd_rand noise;
   for (char& value : big) value = static_cast<char>(noise() >> 20U);
@@ -55,7 +55,7 @@ TEST(WatchKill, FiftyKillsLoseNothingAndRedoNothing) {
     for (const auto& entry : fs::directory_iterator(service.out())) {
       const std::string name = entry.path().filename().string();
       if (!name.ends_with(".nvdb")) continue;
-      // A name is a whole file, at any moment; and one that was whole is not made again.
+      // A name always stands for a whole file, and a whole file is not made again.
       const auto [known, is_new] = finished.emplace(name, entry.last_write_time());
       EXPECT_EQ(known->second, entry.last_write_time()) << name << " was converted again after kill " << kill;
       if (is_new) {
@@ -79,8 +79,7 @@ TEST(WatchKill, FiftyKillsLoseNothingAndRedoNothing) {
   }
 }
 
-// Writers that take their time over files of several formats, while the service is killed and deletes what it has
-// verified.
+// Writers that write files of several formats slowly, while the service is killed and deletes verified sources.
 class PausingWriter {
  public:
   PausingWriter(const ServiceHarness& service, int files) : service_(service), files_(files) {}
@@ -88,7 +87,7 @@ class PausingWriter {
   void run() {
     for (int i = 0; i < files_; ++i) write(i);
   }
-  /// What each file had in the end.
+  /// The final content of each file.
   const std::map<std::string, std::string>& written() const { return written_; }
 
  private:
@@ -125,7 +124,7 @@ class PausingWriter {
     std::optional<Descriptor> file(std::in_place, ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644));
     ASSERT_GE(file->get(), 0);
     switch (i % 4) {
-      case 0:  // in one go
+      case 0:  // in one write
         put(*file, bytes, 0, bytes.size());
         break;
       case 1:  // with a pause in the middle
@@ -133,14 +132,14 @@ class PausingWriter {
         pause();
         put(*file, bytes, bytes.size() / 2, bytes.size());
         break;
-      case 2:  // of its full size at once, with its values later
+      case 2:  // with its full size at once and its values later
         put(*file, bytes, 0, 200);
         ASSERT_EQ(::ftruncate(file->get(), static_cast<off_t>(bytes.size())), 0);
         pause();
         pause();
         put(*file, bytes, 200, bytes.size());
         break;
-      default: {  // by two descriptors, of which one is closed with the file at its full size
+      default: {  // through two descriptors; one is closed when the file has its full size
         const Descriptor other(::open(path.c_str(), O_RDWR | O_CLOEXEC));
         std::string first = bytes;
         first.back() = static_cast<char>(first.back() + 1);

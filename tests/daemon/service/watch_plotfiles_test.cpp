@@ -1,5 +1,5 @@
-// Plotfiles of AMReX below a watched directory, with the real `weir watch`: each is one input, converted when all of it
-// is there, whichever of its files comes first.
+// Tests AMReX plotfiles below a watched directory, with the real `weir watch`. Each is one input and is converted
+// when all its files are there, in whatever order they arrive.
 #include <gtest/gtest.h>
 
 #include <algorithm>

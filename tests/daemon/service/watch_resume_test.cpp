@@ -1,4 +1,4 @@
-// A service that ends in the middle of a large conversion, and the next one, which goes on where it was.
+// Tests a service that ends in the middle of a large conversion, and the next one, which continues it.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 using Names = std::vector<std::string>;
 
-// Whether the first leaf is surveyed: reserved space reads as zeros, and no digest is zero.
+// Returns whether the first leaf is surveyed: reserved space reads as zeros, and no digest is zero.
 bool is_begun(const fs::path& rows) {
   std::string row(64, '\0');
   std::ifstream(rows, std::ios::binary).read(row.data(), static_cast<std::streamsize>(row.size()));
@@ -23,7 +23,7 @@ bool is_begun(const fs::path& rows) {
 
 TEST(WatchResume, ALargeConversionGoesOnAfterAStop) {
   ServiceHarness service("grace = 0\nmemory = \"400MiB\"\nthreads = 1\n", "thumbnails = false\n");
-  // A gibibyte that takes no disk.
+  // A gibibyte that takes no disk space.
   const std::string name = "zeros_1024x1024x1024_uint8";
   write_file(service.path(name), "");
   fs::resize_file(service.path(name), std::uintmax_t{1} << 30U);

@@ -1,4 +1,4 @@
-// What `weir watch` checks before it runs, and what its unit makes of the exit code.
+// Tests the checks of `weir watch` before it runs, and how its systemd unit handles the exit code.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -69,7 +69,7 @@ TEST(WatchStart, WrongConfiguration_EndsItWith3AsCheckDoes) {
   EXPECT_NE(end.err.find("rate is \"much\""), std::string::npos) << end.err;
 }
 
-// systemd looks at RestartPreventExitStatus for ExecStart alone: a check that failed before it began anew for ever.
+// systemd applies RestartPreventExitStatus only to ExecStart: a check that failed before it was repeated forever.
 TEST(WatchStart, UnitStartsTheServiceAloneAndStaysDownAfter2And3) {
   const std::string unit = read_file(WEIR_SOURCE_DIR "/daemon/weir@.service");
   EXPECT_NE(unit.find("\nExecStart=/usr/bin/weir watch /etc/weir/%i.toml\n"), std::string::npos) << unit;

@@ -1,4 +1,5 @@
-// The viewer of the running service: a real `weir view` behind it, asked for over HTTP, and its page in a real browser.
+// Tests the viewer of the running service: a real `weir view` behind it, opened over HTTP, and its page in a real
+// browser.
 #include <gtest/gtest.h>
 
 #include <csignal>
@@ -19,7 +20,7 @@ using Json = nlohmann::json;
 
 class WatchViewer : public testing::Test {
  protected:
-  /// Converts s_1 and s_2; the number of the job of s_1.
+  /// Converts s_1 and s_2. Returns the ID of the job of s_1.
   std::int64_t start(ServiceHarness& service) {
     service.add("s_1", 1);
     service.add("s_2", 2);
@@ -37,7 +38,7 @@ class WatchViewer : public testing::Test {
     RawClient client(port(service));
     return client.ask(cat("GET ", target, " HTTP/1.1\r\nHost: localhost\r\n", more, "\r\n"));
   }
-  /// The process that views: the service's only child.
+  /// Returns the viewer's process: the service's only child.
   static pid_t viewer_process(const ServiceHarness& service) {
     const Json viewer = service.get("/api/viewer");
     const CommandResult found = run_command({"pgrep", "-f", cat("^weir view ", viewer["file"].get<std::string>())});
@@ -125,13 +126,13 @@ TEST_F(WatchViewer, Page_OpensItAndShowsStepsThatCome) {
   if (std::system("command -v chromium >/dev/null && command -v chromedriver >/dev/null") != 0) {
     GTEST_SKIP() << "chromium or chromedriver is not installed; see tools/setup.sh";
   }
-  // A sanitizer's own memory counts against the share of a forecast.
+  // A sanitizer's own memory counts against the forecast's share.
   ServiceHarness service(cat("token = \"secret\"\n", kSanitized ? "viewer_memory = \"512MiB\"\n" : ""),
                          "thumbnails = true\n");
   service.add("s_1", 1);
   service.start();
   CommandOptions options;
-  options.timeout = std::chrono::minutes(5);  // a browser on a busy machine
+  options.timeout = std::chrono::minutes(5);  // for a browser on a busy machine
   const CommandResult result = run_command({kPython, "-B", WEIR_SOURCE_DIR "/tests/daemon/page/viewer_test.py",
                                             cat("http://127.0.0.1:", port(service)), service.in(), "secret"},
                                            options);

@@ -1,5 +1,5 @@
-// Zarr hierarchies in directories below a watched one, with the real `weir watch`: each is one input, converted when
-// nothing in it changes any more.
+// Tests Zarr hierarchies in directories below a watched one, with the real `weir watch`. Each is one input and is
+// converted when nothing in it changes any more.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 constexpr int kChunks = 4;
 
-/// The metadata of an array of 8 * `chunks` x 16 x 16 bytes in the directory `store`, of version 2 or 3.
+/// Writes the metadata of an array of 8 * `chunks` x 16 x 16 bytes in the directory `store`, in version 2 or 3.
 void begin(const std::string& store, int version, int chunks = kChunks) {
   fs::create_directories(store);
   const std::string shape = cat("[", 8 * chunks, ", 16, 16]");
@@ -115,7 +115,8 @@ TEST(WatchZarrAgain, AStoreThatIsAppendedTo_IsConvertedAgain) {
   EXPECT_EQ(service.difference("a.zarr", "a.nvdb", {"--lossless"}), "");
 }
 
-/// A group of version 2 with one array, density, of `steps` steps of 8 x 16 x 16 bytes; the last one is written anew.
+/// Writes a group of version 2 with one array, density, of `steps` steps of 8 x 16 x 16 bytes. Only the last step is
+/// written again.
 void write_steps(const std::string& group, int steps) {
   const std::string array = group + "/density";
   fs::create_directories(array);

@@ -1,4 +1,4 @@
-// What the store lists, finds, groups and counts.
+// Tests what the store lists, finds, groups and counts.
 #include <gtest/gtest.h>
 
 #include "format/base/text.h"
@@ -53,7 +53,7 @@ TEST_F(JobListing, ListsFiltersAndCountsJobs) {
 TEST_F(JobListing, ListsSourcesInPieces) {
   const std::int64_t late = waiting("/in/late.raw", {1, 200, 1});
   const std::int64_t one = waiting("/in/one.raw", {1, 100, 1});
-  const std::int64_t two = waiting("/in/two.raw", {1, 100, 1});  // of the same time
+  const std::int64_t two = waiting("/in/two.raw", {1, 100, 1});  // has the same time
   const std::int64_t early = waiting("/in/early.raw", {1, -5, 1});
   waiting("/in/other.raw", {1, 100, 1}, "another watch");
   observe("/in/discovered.raw", {1, 100, 1});

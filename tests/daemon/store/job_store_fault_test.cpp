@@ -38,7 +38,7 @@ TEST_F(StoredJobs, TogetherCommitsAllOrNothing) {
   EXPECT_EQ(store_->count({JobState::waiting, "", ""}), 2000U);
 }
 
-// The second of its times cannot be had: that of the next attempt.
+// The second reading of the clock fails, the one for the next attempt.
 TEST_F(StoredJobs, PostponementThatFailsHalfway_ChangesNothing) {
   store_.reset();
   int times = 10;
@@ -70,7 +70,7 @@ TEST_F(StoredJobs, FullDisk_RefusesWritesAndKeepsStoredJobs) {
   try {
     write_file(place + "/filler", filler);
   } catch (const std::system_error&) {
-    // Now it is full.
+    // Now the disk is full.
   }
   std::string message;
   int added = 0;
@@ -95,11 +95,11 @@ TEST_F(StoredJobs, FullDisk_RefusesWritesAndKeepsStoredJobs) {
   EXPECT_EQ(store->job(known)->result, success());
 }
 
-// A process does one step after the other and says each that returned; it is killed at a random moment.
+// A process makes one step after the other and announces each completed step; it is killed at a random moment.
 TEST_F(StoredJobs, KillAtAnyMoment_LosesNoCompletedStep) {
   store_.reset();
   std::mt19937 random(5);
-  std::vector<JobState> reached;  // of the jobs 1, 2, ..., as far as was said
+  std::vector<JobState> reached;  // announced states of the jobs 1, 2, ...
   for (int round = 0; round < 30; ++round) {
     int said[2];
     ASSERT_EQ(pipe(said), 0);
@@ -135,7 +135,7 @@ TEST_F(StoredJobs, KillAtAnyMoment_LosesNoCompletedStep) {
     close(said[0]);
     const JobStore store(directory_ / "weir.db");
     ASSERT_EQ(store.notice(), "");
-    // One step may have been taken and not said.
+    // One step may have been made and not announced.
     const std::uint64_t jobs = store.count({});
     ASSERT_TRUE(jobs == reached.size() || jobs == reached.size() + 1) << jobs << " of " << reached.size();
     for (std::size_t i = 0; i < jobs; ++i) {

@@ -206,7 +206,7 @@ TEST_F(StoredJobs, ClockSetBack_DelaysNoJob) {
   EXPECT_EQ(candidates(Priority::oldest), Names{"/in/a.raw"});
   EXPECT_EQ(store_->next_due_ms(), std::nullopt);
   EXPECT_EQ(store_->queue_age_ms(), 0);
-  waiting("/in/b.raw");  // writes, with which all times are set back
+  waiting("/in/b.raw");  // a write, which sets all times back
   EXPECT_EQ(candidates(Priority::oldest).size(), 2U);
 }
 
@@ -250,7 +250,7 @@ TEST_F(StoredJobs, TimesInTheFuture_AreSetBackToNow) {
   now_ += 7'200'000;
   waiting("/in/late.raw");
   now_ -= 7'200'000;
-  open();  // while the service was down
+  open();  // the clock is set back while the service is down
   EXPECT_EQ(job(store_->find("w", "/in/late.raw")->id).changed_ms, now_);
 }
 
@@ -276,7 +276,7 @@ TEST_F(StoredJobs, ForgetOtherWatches_KeepsDoneCancelledAndRunningJobs) {
   }
   for (const int at : {1, 2, 4, 5}) store_->enqueue(ids[static_cast<std::size_t>(at)]);
   for (const int at : {2, 4, 5}) store_->start(ids[static_cast<std::size_t>(at)]);
-  JobResult wrong_options = success();  // of the first of several volumes
+  JobResult wrong_options = success();  // outputs of the first of several volumes
   wrong_options.exit_code = 2;
   store_->fail(ids[2], wrong_options);
   store_->quarantine(ids[3], "bad");

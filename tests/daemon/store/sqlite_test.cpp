@@ -51,7 +51,7 @@ TEST_F(Sqlite, ReusedStatement_HasNoOldBindings) {
   Statement outer = database.prepare(select);
   ASSERT_TRUE(outer.step());
   {
-    Statement inner = database.prepare(select);  // while the same text runs
+    Statement inner = database.prepare(select);  // while a statement with the same text runs
     ASSERT_TRUE(inner.step());
     EXPECT_EQ(inner.integer(0), 7);
   }

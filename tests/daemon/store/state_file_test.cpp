@@ -11,7 +11,7 @@ namespace {
 
 class StateFile : public testing::Test {
  protected:
-  /// The message of opening; empty: it went well.
+  /// Returns the error message of opening; empty if it succeeds.
   std::string refusal() {
     try {
       open_state_file(path_, notice_);
@@ -21,7 +21,7 @@ class StateFile : public testing::Test {
       return error.what();
     }
   }
-  /// A state file with a row.
+  /// Creates a state file with one row.
   void make() {
     const Database database = open_state_file(path_, notice_);
     database.run("INSERT INTO outputs VALUES (42, 0, '', 0, 0, NULL, '', NULL, NULL, NULL)");
@@ -211,7 +211,7 @@ TEST_F(StateFile, TruncatedFile_IsMovedAside) {
 TEST_F(StateFile, WithADamagedPageIsMovedAside) {
   make();
   std::string bytes = read_file(path_);
-  // The second page is a table's; its first byte says what kind of page it is.
+  // The second page belongs to a table; its first byte is the page type.
   bytes.replace(4096, 512, 512, '\x7f');
   write_file(path_, bytes);
   EXPECT_EQ(marked(), 0);

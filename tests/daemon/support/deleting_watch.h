@@ -1,4 +1,4 @@
-// A watch that deletes its sources, of which one is converted, for tests of SourceDeletion.
+// Test fixture for SourceDeletion: a watch that deletes its sources, with one converted source.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -36,14 +36,14 @@ class DeletingWatch : public testing::Test {
     write_output("");
   }
 
-  /// A raw file's, `more` behind the keys of its source.
+  /// Writes the output and certificate of a raw file; `more` is appended to the keys of its source.
   void write_output(const std::string& more) const {
     write_file(output_, "volume");
     write_file(sidecar_path(output_), R"({"source": {"path": ")" + source_ + R"(", "bytes": 6, "mtime": ")" +
                                           utc_text(identify(source_)->mtime_ns) +
                                           R"(", "format": "raw", "type": "uint8", "extent": [1, 2, 3])" + more + "}}");
   }
-  /// The job of the source, done, with one output of such a maximum.
+  /// Converts the source: creates its done job with one output of maximum `max`. Returns the job's ID.
   std::int64_t convert(std::optional<double> max = std::nullopt) {
     const std::int64_t id = store_.observe("w", source_, *identify(source_), options_text(config_.watches[0])).job.id;
     store_.enqueue(id);

@@ -1,5 +1,4 @@
-// A service that converts nothing: it shows the jobs a test gives it and writes
-// down what it was asked to do.
+// A service that converts nothing: it returns the jobs that a test sets, and records the requests.
 #pragma once
 
 #include <algorithm>
@@ -15,15 +14,15 @@ namespace weir {
 
 class FakeControl : public Control {
  public:
-  std::vector<JobView> all;   ///< in the order jobs() gives them
-  StatusView now;             ///< counts are those of `all`
-  bool stays_paused = false;  ///< when it is resumed: a fault holds all jobs
+  std::vector<JobView> all;   ///< in the order that jobs() returns them
+  StatusView now;             ///< the job counts are taken from `all`
+  bool stays_paused = false;  ///< stays paused when it is resumed, because a fault holds all jobs
   MetricsView figures;
   Readiness readiness_now{true, ""};
   std::map<std::pair<std::int64_t, std::size_t>, std::string> thumbnails;
   bool view_taken = false;              ///< somebody looks at another series
   std::vector<std::string> asked;       ///< "retry 3", "pause", ...
-  JobQuery asked_for;                   ///< by the last call of jobs()
+  JobQuery asked_for;                   ///< the query of the last call of jobs()
   std::function<void()> before_answer;  ///< called first by status(); may throw
 
   JobPage jobs(const JobQuery& query) override {

@@ -1,4 +1,4 @@
-// One ConversionJob of the real `weir`, run to its end, for tests of it.
+// Test fixture: runs one ConversionJob of the real `weir` to its end.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ class OneConversionJob : public testing::Test {
     return task;
   }
 
-  /// The last report; the one before it, if any, is first_report_.
+  /// Returns the last report. The report before it, if any, is first_report_.
   TaskReport run(const ConversionTask& task, const std::function<void(ConversionJob&)>& meanwhile = {}) {
     boost::asio::io_context io;
     std::optional<TaskReport> report;

@@ -1,4 +1,4 @@
-// A connection, of TCP or to a Unix socket, that sends any bytes and shows exactly what comes back.
+// A TCP or Unix socket connection that sends any bytes and returns exactly the bytes that come back.
 #pragma once
 
 #include <arpa/inet.h>
@@ -24,7 +24,7 @@ struct RawResponse {
   std::string head;  ///< status line and headers
   std::string body;
 
-  /// The value of the header, empty where it is not there.
+  /// Returns the value of the header; empty if it is missing.
   std::string header(std::string_view name) const {
     const std::size_t at = head.find(cat("\r\n", name, ": "));
     if (at == std::string::npos) return "";
@@ -35,7 +35,7 @@ struct RawResponse {
 
 class RawClient {
  public:
-  /// A socket that is not connected yet.
+  /// Creates a socket that is not connected yet.
   explicit RawClient(int family = AF_INET) : socket_(::socket(family, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
     if (socket_ < 0) throw std::system_error(errno, std::generic_category(), "socket");
   }
@@ -65,7 +65,7 @@ class RawClient {
     }
   }
 
-  /// All of `bytes`; false where the server has closed the connection.
+  /// Sends all of `bytes`. Returns false if the server has closed the connection.
   bool send(std::string_view bytes) {
     while (!bytes.empty()) {
       const ssize_t n = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
@@ -74,7 +74,8 @@ class RawClient {
     }
     return true;
   }
-  /// One response, by its Content-Length; status 0 where the connection ends or 5 s pass before it is whole.
+  /// Receives one response, by its Content-Length. Its status is 0 if the connection ends or 5 s pass before it is
+  /// complete.
   RawResponse receive(bool has_body = true) {
     RawResponse response;
     std::size_t end = 0;
@@ -96,7 +97,7 @@ class RawClient {
     send(request);
     return receive();
   }
-  /// Whether the server closes the connection within `limit`, sending nothing more before.
+  /// Returns whether the server closes the connection within `limit` without sending more.
   bool closed_within(std::chrono::milliseconds limit) { return received_.empty() && wait(limit) && !more(); }
 
  private:

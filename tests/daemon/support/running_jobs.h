@@ -1,4 +1,4 @@
-// Two watches, a and b, whose jobs a JobRunner runs with the real `weir`, for tests of it.
+// Test fixture: two watches, a and b, and a JobRunner that runs their jobs with the real `weir`.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ class RunningJobs : public testing::Test {
     runner_.configure(config_);
   }
 
-  /// A complete source, and its job waiting.
+  /// Writes a complete source and adds its waiting job.
   Job add(const std::string& label, const std::string& name, std::size_t bytes = 24 * 20 * 16) {
     const std::string source = directory_ / (label + "/" + name + "_24x20x16_uint8.raw");
     write_file(source, std::string(bytes, 'x'));
@@ -44,7 +44,7 @@ class RunningJobs : public testing::Test {
     EXPECT_TRUE(store_.enqueue(job.id));
     return job;
   }
-  /// A job that takes a while: a gibibyte of zeros.
+  /// Adds a job that takes some time: a gibibyte of zeros.
   Job add_long() {
     const std::string source = directory_ / "a/long_1024x1024x1024_uint8.raw";
     write_file(source, "");
@@ -58,7 +58,7 @@ class RunningJobs : public testing::Test {
     while (!over() && std::chrono::steady_clock::now() < deadline) io_.run_one_for(std::chrono::milliseconds(50));
     EXPECT_TRUE(over());
   }
-  /// A `weir` that does what these lines of shell say; $fd is where it announces.
+  /// Writes a `weir` that runs these lines of shell; $fd is the descriptor for its announcements.
   std::string write_program(const std::string& lines) const {
     const std::string program = directory_ / "weir";
     write_file(program, "#!/bin/sh\nfor a; do case $a in --progress-fd=*) fd=${a#*=};; esac; done\n" + lines);

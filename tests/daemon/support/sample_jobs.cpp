@@ -25,7 +25,7 @@ double unix_time() {
 
 std::string step_name(int step) { return cat("density_", step, "_512x512x512_float32"); }
 
-// A plume that rises with the step.
+// Returns a picture of a plume that rises with the step.
 Image plume(int step, int width, int height) {
   Image image;
   image.width = width;
@@ -133,7 +133,7 @@ void set_counts(WatchView& watch, std::initializer_list<std::pair<JobState, std:
   for (const auto& [state, count] : counts) watch.jobs[static_cast<std::size_t>(state)] = count;
 }
 
-// Fifteen files that were cut.
+// Adds fifteen truncated files.
 void add_alike_problems(FakeControl& control, double now) {
   for (int i = 0; i < 15; ++i) {
     JobView cut = job_of(401 + i, cat(kRun, "/pressure_", i + 1, ".raw"), JobState::quarantined, now - 100 - 10 * i);
@@ -157,7 +157,7 @@ void add_files_not_taken(FakeControl& control, double now) {
   }
 }
 
-// 180 letters.
+// Returns a name of 180 letters.
 std::string long_name(const std::string& begin, const std::string& end) {
   return cat(begin, std::string(180 - begin.size() - end.size(), 'x'), end);
 }
@@ -178,7 +178,7 @@ void add_long_names(FakeControl& control, double now) {
   control.all.push_back(job_of(505, kRun + "/stopped.raw", JobState::cancelled, now - 5000));
 }
 
-// Results of the second watch: three, and one with a long name at the front.
+// Adds the results of the second watch: three, and one with a long name in front.
 void add_scans(FakeControl& control, const std::filesystem::path& directory, double now) {
   const auto scan = [&](int id, const std::string& source, double changed_at, double psnr_db, double max_error,
                         int width, int height) {
@@ -239,7 +239,7 @@ void show_sample_jobs(FakeControl& control, const std::filesystem::path& directo
 void show_busy_sample(FakeControl& control, const std::filesystem::path& directory) {
   show_sample_jobs(control, directory);
   const double now = unix_time();
-  OutputView& unknown = control.all[kSteps - 12].outputs[0];  // that of step 12, by an older weir
+  OutputView& unknown = control.all[kSteps - 12].outputs[0];  // the output of step 12, made by an older weir
   unknown.psnr_db = unknown.max_error = unknown.min = unknown.max = std::nullopt;
   add_alike_problems(control, now);
   add_files_not_taken(control, now);

@@ -1,5 +1,5 @@
-// A service in the middle of its work, for looking at: a series of 24 results with thumbnails, a queue, two running
-// jobs, some that went wrong.
+// Sample content of a busy service, to look at: a series of 24 results with thumbnails, a queue, two running jobs,
+// and some failed jobs.
 #pragma once
 
 #include <filesystem>
@@ -11,8 +11,8 @@ namespace weir {
 /// Fills `control`; thumbnails are written into `directory`.
 void show_sample_jobs(FakeControl& control, const std::filesystem::path& directory);
 
-/// That, and: fifteen problems alike, files that are not taken yet for several reasons, names of 180 letters, results
-/// of a second watch, a disk without room.
+/// Does the same, and adds fifteen problems with the same reason, files that are not taken yet for several reasons,
+/// names of 180 letters, results of a second watch, and a full disk.
 void show_busy_sample(FakeControl& control, const std::filesystem::path& directory);
 
 }  // namespace weir

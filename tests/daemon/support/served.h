@@ -35,7 +35,7 @@ class Served {
   std::uint16_t port() const { return port_; }
   std::string address() const { return cat("127.0.0.1:", port_); }
 
-  /// `work()` on the server's thread, where the control may be touched.
+  /// Runs `work()` on the server's thread, which may use the control. Returns its result.
   template <typename Work>
   auto run(Work work) {
     std::packaged_task<decltype(work())()> task(std::move(work));
@@ -43,11 +43,11 @@ class Served {
     boost::asio::post(io_, std::move(task));
     return result.get();
   }
-  /// Stops listening, with all connections closed.
+  /// Stops listening and closes all connections.
   void close() {
     run([this] { server_.reset(); });
   }
-  /// The same, from the server's own thread: after what it does now.
+  /// Does the same from the server's own thread, after its present work.
   void close_soon() {
     boost::asio::post(io_, [this] { server_.reset(); });
   }

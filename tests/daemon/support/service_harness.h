@@ -1,5 +1,5 @@
-// A real `weir watch` over directories of its own, seen from outside: files go
-// in, results, log and HTTP answers come out.
+// A real `weir watch` over its own directories, seen from outside: files go in; results, log and HTTP answers come
+// out.
 #pragma once
 
 #include <chrono>
@@ -19,27 +19,27 @@ class ServiceHarness {
   using Json = nlohmann::json;
   static constexpr std::chrono::seconds kPatience{30};
 
-  /// The directories in/ and out/, and a configuration of one watch over them. Keys that a test needs otherwise are
-  /// said by `service` and `watch`, lines of TOML ("jobs = 2\n").
+  /// Creates the directories in/ and out/, and a configuration of one watch over them. `service` and `watch` are
+  /// lines of TOML with other keys that a test needs ("jobs = 2\n").
   explicit ServiceHarness(std::string service = "", std::string watch = "");
   ~ServiceHarness();
   ServiceHarness(const ServiceHarness&) = delete;
   ServiceHarness& operator=(const ServiceHarness&) = delete;
 
-  /// From now on the service runs as nobody, whom permissions stop, where the test runs as root, whom they do not.
+  /// From now on runs the service as nobody if the test runs as root, because permissions do not stop root.
   void run_unprivileged();
-  /// From now on the service is started with SIGCHLD ignored, as by a program that does not wait for its children.
+  /// From now on starts the service with SIGCHLD ignored, like a parent program that does not wait for its children.
   void ignore_sigchld() { launcher_ = {"env", "--ignore-signal=CHLD"}; }
   /// Starts `weir watch` and waits until it is ready.
   void start();
-  /// Starts it without waiting.
+  /// Starts the service without waiting.
   void launch();
-  /// SIGTERM, and the end; the exit code.
+  /// Sends SIGTERM and waits for the end. Returns the exit code.
   int stop();
   void kill();
   void signal(int signal) { process_->send_signal(signal); }
   bool running() { return process_ && process_->running(); }
-  /// Waits for the end; the exit code. `result`: where the rest of it goes.
+  /// Waits for the end. Returns the exit code, and the rest of the result in `result`.
   int wait(CommandResult* result = nullptr);
 
   std::string in(const std::string& name = "") const { return directory_ / ("in/" + name); }
@@ -48,30 +48,30 @@ class ServiceHarness {
   /// Writes the configuration again, with other keys.
   void configure(const std::string& service, const std::string& watch);
 
-  /// in/STEM_24x20x16_uint8.raw with values from `seed`; its stem with dimensions.
+  /// Writes in/STEM_24x20x16_uint8.raw with values from `seed`. Returns its name without .raw.
   std::string add(const std::string& stem, int seed = 1) const;
   static std::string volume(int seed);
   static constexpr const char* kSuffix = "_24x20x16_uint8";
 
-  /// GET or POST; the JSON answer.
+  /// Sends a GET or POST request. Returns the JSON answer.
   Json get(const std::string& target) const;
   Json post(const std::string& target) const;
-  /// Number of jobs in that state.
+  /// Returns the number of jobs in this state.
   std::uint64_t count(const std::string& state) const;
-  /// The job of in/NAME.
+  /// Returns the job of in/NAME.
   Json job(const std::string& name) const;
   std::string log() const;
-  /// Lines of the log with `text`.
+  /// Returns the number of log lines with `text`.
   std::size_t logged(const std::string& text) const;
 
-  /// Waits up to `patience`; whether it came to hold.
+  /// Waits until `holds` returns true, up to `patience`. Returns whether it did.
   static bool eventually(const std::function<bool()>& holds, std::chrono::milliseconds patience = kPatience);
   bool eventually_done(std::uint64_t jobs, std::chrono::milliseconds patience = kPatience) const;
 
-  /// Empty where out/STEM.nvdb has the bytes of a plain `weir convert` of in/SOURCE; else what is wrong.
+  /// Returns "" if out/STEM.nvdb has the bytes of a plain `weir convert` of in/SOURCE, otherwise the difference.
   std::string difference(const std::string& source, const std::string& output,
                          const std::vector<std::string>& options = {}) const;
-  /// Names in out/ that are no result: anything but X.nvdb, X.nvdb.json and X.nvdb.png.
+  /// Returns the names in out/ that are no results: all except X.nvdb, X.nvdb.json and X.nvdb.png.
   std::vector<std::string> leftovers() const;
 
  private:
@@ -79,7 +79,7 @@ class ServiceHarness {
   std::string request(const std::string& method, const std::string& target) const;
 
   TemporaryDirectory directory_;
-  std::vector<std::string> launcher_;  ///< before the command
+  std::vector<std::string> launcher_;  ///< put before the command
   std::unique_ptr<ChildProcess> process_;
 };
 

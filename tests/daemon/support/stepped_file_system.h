@@ -1,4 +1,4 @@
-// The real file system, with a step of a test before a rename or a removal.
+// The real file system, which calls a test's function before a rename or a removal.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace weir {
 
 class SteppedFileSystem final : public FileSystem {
  public:
-  std::function<void(const std::string& from)> before_rename = [](const std::string&) {};  ///< before each rename_new
+  std::function<void(const std::string& from)> before_rename = [](const std::string&) {};  ///< before rename_new
   std::function<void(const std::string& path)> before_remove = [](const std::string&) {};
 
   std::unique_ptr<File> create(const std::string& path) override { return real_->create(path); }

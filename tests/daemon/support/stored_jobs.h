@@ -1,4 +1,4 @@
-// A state file of its own, with a clock that a test sets, and jobs on their way.
+// Test fixture: a state file with a clock that the test sets, and functions that add jobs in several states.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// Processes that this one may not kill, for tests of what it does with a process that does not end: one that waits for
-// a device or a file server that hangs ends by no signal either. Root only.
+// Makes processes that the test may not kill, to test the handling of a process that does not end: a process that
+// waits for a hanging device or file server ignores all signals, too. Root only.
 #pragma once
 
 #include <unistd.h>
@@ -8,7 +8,7 @@
 
 namespace weir {
 
-/// While it lives, signals of this process reach none that was started before.
+/// While the object lives, no signal of this process reaches a process that was started before.
 class Unkillable {
  public:
   static bool possible() { return ::geteuid() == 0; }
@@ -16,7 +16,7 @@ class Unkillable {
     if (::setresuid(kNobody, kNobody, 0) != 0) throw std::runtime_error("setresuid failed");
   }
   ~Unkillable() {
-    if (::setresuid(0, 0, 0) != 0) ::_exit(1);  // the tests behind it would run as another user
+    if (::setresuid(0, 0, 0) != 0) ::_exit(1);  // otherwise the following tests would run as another user
   }
   Unkillable(const Unkillable&) = delete;
   Unkillable& operator=(const Unkillable&) = delete;

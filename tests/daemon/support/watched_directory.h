@@ -1,4 +1,4 @@
-// A real directory being watched in a test, and what was told of it.
+// A real directory that a test watches, and the events that were reported.
 #pragma once
 
 #include <algorithm>
@@ -35,15 +35,15 @@ class WatchedDirectory {
     config.recursive = true;
     config.include = {"*.raw"};
     config.watch = method;
-    // What is not told by inotify would be told too late by looking.
+    // Polling must not find a change that inotify fails to report.
     config.poll_interval_s = method == WatchMethod::poll ? 0.02 : 3600;
     open_inotify = method == WatchMethod::poll ? no_inotify() : open_system_inotify;
   }
 
   std::string root() const { return temporary_ / "in"; }
-  /// The path of `name` in the watched directory.
+  /// Returns the path of `name` in the watched directory.
   std::string operator/(std::string_view name) const { return root() + "/" + std::string(name); }
-  /// One beside the watched directory.
+  /// Returns the path of `name` beside the watched directory.
   std::string outside(std::string_view name) const { return temporary_ / name; }
 
   void start() {
@@ -52,7 +52,7 @@ class WatchedDirectory {
                                   [this](const std::string& line) { notices.push_back(line); }},
                                  open_inotify);
   }
-  /// Watches until `enough`, for 10 s at most; whether it was.
+  /// Watches until `enough` returns true, for at most 10 s. Returns whether it did.
   bool run_until(const std::function<bool()>& enough) {
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(10);
     io.restart();
@@ -66,7 +66,7 @@ class WatchedDirectory {
     io.restart();
     io.run_for(time);
   }
-  /// Until all that was there when it was called has been looked at and all of it is watched.
+  /// Waits until everything that was there at the call has been looked at and is watched.
   bool settle() {
     write_file(*this / "settled.raw", "x");
     const bool told = run_until([this] { return last(*this / "settled.raw").has_value(); });
@@ -82,7 +82,7 @@ class WatchedDirectory {
   bool run_until_told(Kind kind, const std::string& path) {
     return run_until([&] { return told(kind, path); });
   }
-  /// Waits for what says that a file is there with its content: closed by inotify, found by looking.
+  /// Waits for the event that the file is there with its content: closed with inotify, found with polling.
   bool run_until_written(const std::string& path) {
     return run_until_told(config.watch == WatchMethod::poll ? Kind::found : Kind::closed, path);
   }

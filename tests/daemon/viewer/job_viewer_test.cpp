@@ -1,4 +1,4 @@
-// The manager of the viewer, with scripts in place of weir.
+// Tests the manager of the viewer, with scripts in place of weir.
 #include "daemon/viewer/job_viewer.h"
 
 #include <gtest/gtest.h>
@@ -33,12 +33,12 @@ ServiceConfig service(std::uint64_t viewer_memory = std::uint64_t{256} << 20) {
 
 class JobViewerTest : public testing::Test {
  protected:
-  /// A program that says `then` in a shell, with its arguments as a line of `calls`.
+  /// Writes a program that runs `then` in a shell and appends its arguments as a line to `calls`.
   void program(const std::string& then) {
     write_file(program_, cat("#!/bin/sh\necho \"$@\" >> ", directory_ / "calls", "\n", then, "\n"));
     std::filesystem::permissions(program_, std::filesystem::perms(0755));
   }
-  /// One that answers at the test's own port.
+  /// Writes a program that announces the test's own port.
   void answering_program() {
     program(cat("echo '{\"address\": \"127.0.0.1:", acceptor_.local_endpoint().port(),
                 "\", \"token\": \"to\"}' >&3\nexec sleep 60"));
@@ -59,7 +59,7 @@ class JobViewerTest : public testing::Test {
   bool comes_to(JobViewer& viewer, ViewerState state) {
     return eventually([&] { return viewer.view().state == state; });
   }
-  /// A client's end of a connection that the viewer answers.
+  /// Returns a client's end of a connection that the viewer answers.
   asio::local::stream_protocol::socket connect(JobViewer& viewer, bool socket) {
     asio::local::stream_protocol::socket ours(io_);
     asio::local::stream_protocol::socket theirs(io_);
@@ -317,7 +317,7 @@ TEST_F(JobViewerTest, ForecastsKeepToBandwidthAndWorkDirectory) {
   config.work_dir = "/scratch";
   viewer.configure(config);
   viewer.open("/out/s_1.nvdb", false);
-  // The shell makes the file before it writes the line.
+  // The shell creates the file before it writes the line.
   ASSERT_TRUE(eventually([&] { return std::filesystem::exists(directory_ / "calls") && !calls().empty(); }));
   EXPECT_TRUE(calls().back().ends_with(" --threads=3 --forecast-bandwidth=1000 --work-dir=/scratch")) << calls().back();
 }

@@ -1,4 +1,4 @@
-// What both ways of watching must tell, each with the other disabled.
+// Tests what both watch methods must report, each with the other method disabled.
 #include "daemon/watch/choosing_watch.h"
 #include "daemon/config/config_names.h"
 
@@ -104,7 +104,7 @@ TEST_P(DirectoryWatchTest, FileRewrittenReplacedOrRemoved_IsReported) {
   ASSERT_TRUE(dir.run_until_written(dir / "a.raw"));
   dir.run_for(std::chrono::milliseconds(60));
   dir.events.clear();
-  write_file(dir.outside("new"), "33");  // as long as before
+  write_file(dir.outside("new"), "33");  // the same length as before
   fs::rename(dir.outside("new"), dir / "a.raw");
   ASSERT_TRUE(dir.run_until_told(polls() ? Kind::found : Kind::moved_in, dir / "a.raw"));
   fs::remove(dir / "a.raw");
@@ -129,14 +129,14 @@ TEST_P(DirectoryWatchTest, FilesInNewNestedDirectories_AreReported) {
   dir.run_for(std::chrono::milliseconds(100));
   EXPECT_EQ(dir.watch->figures().directories, 201U);
   dir.events.clear();
-  write_file(dir / "run49/a/b/c/late.raw", "1");  // all of them are watched from now on
+  write_file(dir / "run49/a/b/c/late.raw", "1");  // all directories are watched from now on
   EXPECT_TRUE(dir.run_until_written(dir / "run49/a/b/c/late.raw"));
 }
 
 TEST_P(DirectoryWatchTest, DirectoriesRenamedWithinIntoAndOutOfTheTree_AreReported) {
   fs::create_directories(dir / "a/b/c");
   write_file(dir / "a/b/c/d.raw", "1");
-  fs::create_directories(dir / "ab");  // begins alike
+  fs::create_directories(dir / "ab");  // a name with the same beginning
   write_file(dir / "ab/e.raw", "1");
   fs::create_directories(dir.outside("far/x"));
   write_file(dir.outside("far/x/y.raw"), "1");
@@ -206,7 +206,7 @@ TEST_P(DirectoryWatchTest, ExchangedOrReplacedDirectories_AreReportedAtTheirNewP
   EXPECT_TRUE(dir.run_until_written(dir / "empty/later.raw"));
 }
 
-/// What a listener that keeps a list of files has, and what there is.
+/// Returns the files that a listener knows after these events.
 std::set<std::string> listed(const std::vector<FileEvent>& events) {
   std::set<std::string> files;
   for (const FileEvent& event : events) {

@@ -18,7 +18,7 @@ using Time = FileCompletion::Time;
 
 class CompletionTest : public testing::Test {
  protected:
-  /// What happens at a second of an imagined day, and the answer to the sample that follows.
+  /// Sends an event at a second of an imagined day, and returns the answer to the sample that follows.
   CompletionAnswer at(double seconds, std::optional<Kind> event = std::nullopt) {
     now = start + std::chrono::duration_cast<Time::duration>(std::chrono::duration<double>(seconds));
     if (event) file().happened(*event, now);
@@ -33,7 +33,7 @@ class CompletionTest : public testing::Test {
     ++sample.identity.mtime_ns;
   }
 
-  /// The second at which `answer` asks to be asked again.
+  /// Returns the second at which `answer` asks for the next look.
   double again(const CompletionAnswer& answer) const {
     EXPECT_EQ(answer.state, State::waiting) << answer.reason;
     return std::chrono::duration<double>(answer.until - start).count();
@@ -60,7 +60,7 @@ TEST_F(CompletionTest, AutoFoundIsCompleteWhenUnchangedForTheSettleTime) {
   grow(200);
   EXPECT_DOUBLE_EQ(again(at(1.9)), 3.9);
   EXPECT_DOUBLE_EQ(again(at(2)), 3.9);
-  sample.identity.inode = 8;  // replaced by another one
+  sample.identity.inode = 8;  // replaced by another file
   EXPECT_DOUBLE_EQ(again(at(3)), 5);
   EXPECT_EQ(at(5).state, State::complete);
 }
@@ -70,14 +70,14 @@ TEST_F(CompletionTest, AutoAnOpenFileIsWaitedForHoweverLong) {
   expect_event_is_awaited(at(1, Kind::written), kOpen);
   expect_event_is_awaited(at(100000), kOpen);
   EXPECT_DOUBLE_EQ(again(at(100001, Kind::closed)), 100001.2);
-  expect_event_is_awaited(at(100001.1, Kind::written), kOpen);  // a second writer, or the same again
+  expect_event_is_awaited(at(100001.1, Kind::written), kOpen);  // a second writer, or the same one again
   EXPECT_DOUBLE_EQ(again(at(100001.15, Kind::closed)), 100001.35);
   EXPECT_EQ(at(100001.35).state, State::complete);
 }
 
 TEST_F(CompletionTest, AutoAClosedFileThatStillChangesIsWaitedFor) {
   EXPECT_DOUBLE_EQ(again(at(0, Kind::closed)), 0.2);
-  grow(101);  // through a mapping, or by another machine
+  grow(101);  // through a mapping, or from another machine
   EXPECT_DOUBLE_EQ(again(at(0.2)), 0.4);
   EXPECT_EQ(at(0.4).state, State::complete);
 }
@@ -90,7 +90,7 @@ TEST_F(CompletionTest, AutoOfExpectedSizeAndClosedIsCompleteAtOnce) {
 TEST_F(CompletionTest, AutoAFileMadeAtItsFullSizeIsNotCompleteBeforeItsClose) {
   rules.expected_bytes = 100;
   EXPECT_DOUBLE_EQ(again(at(0, Kind::created)), 2);
-  expect_event_is_awaited(at(0, Kind::written), kOpen);  // space was reserved
+  expect_event_is_awaited(at(0, Kind::written), kOpen);  // the writer reserved the space
   EXPECT_EQ(at(50, Kind::closed).state, State::complete);
 }
 
@@ -107,10 +107,10 @@ TEST_F(CompletionTest, AutoLinkedIsCompleteWhenUnchanged) {
 TEST_F(CompletionTest, FoundAgainAfterLostEvents_IsNotTakenForOpen) {
   at(0, Kind::written);
   at(5, Kind::overflow);
-  EXPECT_EQ(at(10, Kind::found).state, State::complete);  // it has not changed since 0
+  EXPECT_EQ(at(10, Kind::found).state, State::complete);  // unchanged since second 0
 }
 
-// As one that maps the file writes it: a look finds other times, and no event tells of it.
+// A writer through a mapping causes this: a look finds other times, and no event reports the change.
 TEST_F(CompletionTest, FoundAgainWhileItIsOpen_IsStillOpen) {
   at(0, Kind::written);
   grow(200);
@@ -150,7 +150,7 @@ TEST_F(CompletionTest, Close) {
   rules.policy = Completion::close;
   expect_event_is_awaited(at(0, Kind::written), kOpen);
   EXPECT_EQ(at(1, Kind::closed).state, State::complete);
-  EXPECT_DOUBLE_EQ(again(at(2, Kind::found)), 3);  // unchanged since 1
+  EXPECT_DOUBLE_EQ(again(at(2, Kind::found)), 3);  // unchanged since second 1
   EXPECT_EQ(at(3).state, State::complete);
 }
 
@@ -166,7 +166,7 @@ TEST_F(CompletionTest, Rename_FileThatWasCreated_WaitsForItsRename) {
   rules.policy = Completion::rename;
   sample.identity.bytes = 0;
   expect_event_is_awaited(at(0, Kind::created), kNoRename);
-  grow(100);  // by ftruncate, which is no event
+  grow(100);  // by ftruncate, which causes no event
   expect_event_is_awaited(at(3), kNoRename);
   expect_event_is_awaited(at(4, Kind::written), kNoRename);
   EXPECT_EQ(at(5, Kind::moved_in).state, State::complete);
@@ -197,14 +197,14 @@ TEST_F(CompletionTest, Close_FileThatWasFoundWithAWriter_IsNotCompleteBeforeItHa
   bool open = true;
   rules.has_writer = [&] { return open; };
   at(0, Kind::found);
-  const CompletionAnswer answer = at(10);  // unchanged for longer than it takes
+  const CompletionAnswer answer = at(10);  // unchanged for longer than required
   EXPECT_EQ(answer.state, State::waiting);
   EXPECT_EQ(answer.reason, kOpen);
   open = false;
   EXPECT_EQ(at(12).state, State::complete);
 }
 
-// A program that creates a directory, and a file in it at once, does so before anybody watches the directory.
+// A program may create a directory and a file in it before the directory is watched.
 TEST_F(CompletionTest, Rename_RulesOfAFileKnowItsWriter) {
   const TemporaryDirectory directory;
   const std::string path = directory / "a_4x4x4_uint8.raw";
@@ -239,7 +239,7 @@ TEST_F(CompletionTest, Marker) {
   sample.marked = true;
   EXPECT_EQ(at(9, Kind::marked).state, State::complete);
   grow(200);
-  EXPECT_DOUBLE_EQ(again(at(10, Kind::written)), 10.2);  // the marker is of what was there before
+  EXPECT_DOUBLE_EQ(again(at(10, Kind::written)), 10.2);  // the marker belongs to the former content
   EXPECT_EQ(at(10.2).state, State::complete);
 }
 
@@ -250,7 +250,7 @@ TEST_F(CompletionTest, Size) {
   EXPECT_EQ(at(0).reason, "it has 100 of 300 bytes");
   grow(300);
   EXPECT_DOUBLE_EQ(again(at(50, Kind::written)), 50.2);
-  EXPECT_EQ(at(50.2).state, State::complete);  // it may stay open
+  EXPECT_EQ(at(50.2).state, State::complete);  // the file may stay open
   grow(299);
   EXPECT_DOUBLE_EQ(again(at(60, Kind::closed)), 62);
   EXPECT_EQ(at(62).state, State::broken);
@@ -361,7 +361,7 @@ TEST(ZarrCompletion, SamplesAreOfTheFileThatSaysWhatItIs) {
   std::ofstream(store + "/.zgroup") << "{}";
   EXPECT_TRUE(sample_file(store + "/.zgroup", "").exists);
   EXPECT_TRUE(completion_rules(watch, store + "/.zgroup").store);
-  std::ofstream(store + "/zarr.json") << "{}";  // metadata of both versions: one input
+  std::ofstream(store + "/zarr.json") << "{}";  // the metadata of both versions are one input
   EXPECT_FALSE(sample_file(store + "/.zgroup", "").exists);
   EXPECT_TRUE(sample_file(store + "/zarr.json", "").exists);
   WatchConfig by_marker;

@@ -1,4 +1,4 @@
-// Links, names and directories that come and go, as both ways of watching must tell of them.
+// Tests links, names, and directories that come and go, as both watch methods must report them.
 #include "daemon/config/config_names.h"
 #include "daemon/watch/choosing_watch.h"
 
@@ -56,7 +56,7 @@ TEST_P(DirectoryWatchPathsTest, LinksOutOfTheTreeAreRefusedOnceAndLoopsIgnored) 
   ASSERT_TRUE(dir.run_until([&] { return !dir.notices.empty(); }));
   EXPECT_EQ(dir.last(dir / "late.raw"), std::nullopt);
   fs::create_symlink("a.raw", dir / "new.raw");
-  fs::rename(dir / "new.raw", dir / "latest.raw");  // as a link is replaced
+  fs::rename(dir / "new.raw", dir / "latest.raw");  // the way to replace a link
   EXPECT_TRUE(dir.run_until_told(Kind::found, dir / "latest.raw"));
 }
 
@@ -190,7 +190,7 @@ TEST_P(DirectoryWatchPathsTest, FileNamesOfAnyBytesAreReported) {
 }
 
 TEST_P(DirectoryWatchPathsTest, PathsTooLong_AreReportedAndOtherFilesFound) {
-  // Deeper than any path can name, made step by step.
+  // A path deeper than any path name allows, made step by step.
   const std::string name(200, 'd');
   int at = ::open(dir.root().c_str(), O_RDONLY | O_DIRECTORY);
   for (int i = 0; i < 25; ++i) {
@@ -211,7 +211,7 @@ TEST_P(DirectoryWatchPathsTest, PathsTooLong_AreReportedAndOtherFilesFound) {
   EXPECT_EQ(dir.notices.size(), 1U);
 }
 
-/// Root may read everything: permissions count for somebody else.
+/// Root may read everything, so the permissions are tested as another user.
 class SomebodyElse {
  public:
   explicit SomebodyElse(const std::string& owned) {
@@ -253,7 +253,7 @@ TEST_P(DirectoryWatchPathsTest, UnreadableDirectory_IsReportedOnceAndReadOncePer
   EXPECT_TRUE(dir.run_until_written(dir / "locked/c.raw"));
 }
 
-// rsync and tar set a link's own times right after they made it.
+// rsync and tar set a link's own times right after its creation.
 TEST_P(DirectoryWatchPathsTest, LinkOutOfTheTree_ItsTimesSet_StaysRefused) {
   write_file(dir.outside("a.raw"), "1");
   dir.start();

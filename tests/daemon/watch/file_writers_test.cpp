@@ -37,7 +37,7 @@ TEST(FileWritersTest, WriterThatComesMeanwhile_WaitsAndIsToldOf) {
   EXPECT_EQ(read_file(path), "valuesmore");
 }
 
-// The other way to find them, where no lease is to be had.
+// Tests the search of the processes, used if no lease is available.
 TEST(FileWritersTest, AnotherUsersFile_IsLookedUpAmongTheProcesses) {
   const TemporaryDirectory directory;
   const std::string path = directory / "a.raw";

@@ -1,4 +1,4 @@
-// What goes wrong with inotify: lost events and limits.
+// Tests faults of inotify: lost events and limits.
 #include "daemon/watch/inotify_watch.h"
 
 #include <gtest/gtest.h>
@@ -24,11 +24,11 @@ namespace {
 namespace fs = std::filesystem;
 using Kind = FileEventKind;
 
-/// What to do instead of what the system does.
+/// Results that replace those of the system.
 struct Faults {
   int watches_left = 1 << 30;
   int add_error = ENOSPC;
-  std::size_t events_until_overflow = std::size_t{1} << 30U;  ///< of one reading; further ones are lost
+  std::size_t events_until_overflow = std::size_t{1} << 30U;  ///< per reading; further events are lost
   bool read_fails = false;
   bool cannot_be_waited_for = false;
 };
@@ -64,8 +64,8 @@ class FaultyInotify final : public Inotify {
   std::unique_ptr<Inotify> real_;
 };
 
-/// The system's inotify with a queue of `events`. The limit is the whole machine's, and changed for a moment only: a
-/// queue keeps the one it was made with.
+/// Opens the system's inotify with a queue of `events`. The limit is machine-wide and changed only for a moment,
+/// because a queue keeps the limit of its creation.
 std::unique_ptr<Inotify> open_small_queue(int events) {
   const std::string path = "/proc/sys/fs/inotify/max_queued_events";
   int before = 0;
@@ -112,8 +112,8 @@ TEST_F(InotifyWatchTest, Overflow_IsReportedAndLostChangesAreFound) {
   EXPECT_TRUE(dir.told(Kind::found, dir / "rewritten.raw"));
   EXPECT_TRUE(dir.told(Kind::found, dir / "new/deep/a.raw"));
   EXPECT_TRUE(dir.told(Kind::removed, dir / "gone.raw"));
-  EXPECT_EQ(dir.kinds(dir / "first.raw"), (std::vector{Kind::created, Kind::found}));  // its close was lost
-  EXPECT_EQ(dir.kinds(dir / "old.raw"), std::vector<Kind>{});                          // it is what it was
+  EXPECT_EQ(dir.kinds(dir / "first.raw"), (std::vector{Kind::created, Kind::found}));  // its close event was lost
+  EXPECT_EQ(dir.kinds(dir / "old.raw"), std::vector<Kind>{});                          // unchanged
   dir.events.clear();
   write_file(dir / "renamed/later.raw", "1");
   EXPECT_TRUE(dir.run_until_told(Kind::closed, dir / "renamed/later.raw"));
@@ -123,7 +123,7 @@ TEST_F(InotifyWatchTest, Overflow_IsReportedAndLostChangesAreFound) {
 TEST_F(InotifyWatchTest, FileWrittenDuringTheScan_IsReportedByItsEventsAlone) {
   start();
   write_file(dir / "early.raw", "1");
-  ASSERT_TRUE(dir.run_until([&] { return dir.watch->figures().directories == 1; }));  // watched, not listed to its end
+  ASSERT_TRUE(dir.run_until([&] { return dir.watch->figures().directories == 1; }));  // watched, not fully listed
   std::ofstream writer(dir / "slow.raw");
   writer << "1" << std::flush;
   ASSERT_TRUE(dir.run_until_told(Kind::written, dir / "slow.raw"));
@@ -152,7 +152,7 @@ TEST_F(InotifyWatchTest, TwoThousandFilesThroughASmallQueue) {
   }));
   EXPECT_GE(dir.watch->figures().overflows, 1U);
   EXPECT_EQ(dir.watch->figures().files, 2000U);
-  // None of them is left waiting for a close that was lost.
+  // No file still waits for a close event that was lost.
   ASSERT_TRUE(dir.run_until([&] {
     for (int i = 0; i < 2000; ++i) {
       const auto last = dir.last(dir / cat("d", i % 7, "/", i, ".raw"));
@@ -174,7 +174,7 @@ TEST_F(InotifyWatchTest, LimitOfWatchesReached_PollsTheTreeAndSaysSo) {
                              "inotify watches no further directory (the limit is fs.inotify.max_user_watches)")});
   write_file(dir / "b/y.raw", "1");
   EXPECT_TRUE(dir.run_until_told(Kind::found, dir / "b/y.raw"));
-  dir.watch->choose_again();  // the limit is as low as before
+  dir.watch->choose_again();  // the limit is still as low
   dir.notices.clear();
   ASSERT_TRUE(dir.run_until([&] { return dir.watch->method() == WatchMethod::poll && !dir.notices.empty(); }));
   faults->watches_left = 1000;

@@ -38,7 +38,7 @@ TEST_F(PathFilterTest, NoIncludePattern_TakesNamesOfKnownFormats) {
   }
 }
 
-// Its job says what is missing; without a job nothing would.
+// The file's job reports what is missing; without a job, nothing would.
 TEST_F(PathFilterTest, DimsOrTypeInTheWatch_TakesAnyRawName) {
   for (const std::vector<std::string>& options :
        {std::vector<std::string>{"--dims=4,4,4"}, {"--type=uint8"}, {"--dims=4,4,4", "--type=uint8"}}) {
@@ -145,7 +145,7 @@ TEST_F(PathFilterTest, ZarrHierarchiesGoByTheNamesOfTheirDirectories) {
 TEST_F(PathFilterTest, ExcludedPathsAreComparedWithLinksResolved) {
   fs::create_directory_symlink(directory / "in", directory / "link");
   watch.directory = directory / "link";
-  watch.excluded_paths = {directory / "in/nvdb"};  // need not exist
+  watch.excluded_paths = {directory / "in/nvdb"};  // a path that does not exist is allowed
   EXPECT_FALSE(accepts("nvdb/a.h5"));
   EXPECT_TRUE(accepts("a.h5"));
 }
@@ -167,7 +167,7 @@ TEST_F(PathFilterTest, MarkersNameTheirSources) {
 TEST_F(PathFilterTest, LinksToTargetsOutsideOrExcludedAreRefused) {
   const std::string in = fs::canonical(directory / "in");
   const std::string out = fs::canonical(directory.path());
-  fs::create_directory(directory / "in2");  // begins alike
+  fs::create_directory(directory / "in2");  // a name with the same beginning
   for (const char* name : {"in/a.h5", "in2/b.h5"}) std::ofstream(directory / name) << "1";
   fs::create_directory(directory / "in/nvdb");
   std::ofstream(directory / "in/nvdb/c.h5") << "1";

@@ -133,7 +133,7 @@ TEST(SourceIdentity, OfADirectoryWithMoreEntriesThanAreListed_NoneIsTaken) {
   store.write("a/zarr.json", R"({"node_type": "group"})");
   store.write("a/rho/zarr.json", kArray);
   store.write("b/zarr.json", R"({"node_type": "group"})");
-  store.write_files("b", kMostListedEntries - 3 - 2 - 2);  // beside those of the hierarchy, of `a` and the other two
+  store.write_files("b", kMostListedEntries - 3 - 2 - 2);  // besides those of the hierarchy, `a` and the other two
   store.write("b/rho/zarr.json", kArray);
   EXPECT_TRUE(store.notices("b/rho/zarr.json", cat(kArray, ' '))) << "as many as are listed";
   const std::uint64_t all = store.identity().bytes;

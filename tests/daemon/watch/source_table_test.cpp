@@ -18,7 +18,7 @@ class SourceTableTest : public ::testing::Test {
     config.label = config.directory = "/in";
     return config;
   }
-  /// A look by which events are there to tell what changes.
+  /// Looks while events report changes.
   void look(const FileIdentity& identity) {
     table_.begin_look(true);
     table_.saw("a.raw", identity);
@@ -29,7 +29,7 @@ class SourceTableTest : public ::testing::Test {
   SourceTable table_{watch(), {[this](const FileEvent& event) { events_.push_back(event.kind); }, {}}};
 };
 
-// As by a write under another hard link, of which inotify says nothing.
+// For example a write through another hard link, which inotify does not report.
 TEST_F(SourceTableTest, ChangeThatNoEventTold_IsFoundByTheSecondLookAfterTheLastEvent) {
   table_.begin_look(true);
   table_.end_look();
@@ -48,7 +48,7 @@ TEST_F(SourceTableTest, ChangeThatNoEventTold_IsFoundByTheSecondLookAfterTheLast
   EXPECT_TRUE(events_.empty()) << "the event told of it";
 }
 
-// Jobs of files that seemed to be gone may be forgotten meanwhile.
+// Jobs of files that seemed to be gone may have been forgotten.
 TEST(SourceTableRoot, FilesOfADirectoryThatIsBack_AreFoundOnceMore) {
   const TemporaryDirectory parent;
   WatchConfig watch;

@@ -37,7 +37,7 @@ class StoreQuietTest : public testing::Test {
   void write(const std::string& name, const std::string& content) const {
     std::ofstream(store_ + '/' + name, std::ios::binary) << content;
   }
-  /// Answers at `when`, however many parts the look takes.
+  /// Returns the answer at `when`, however many parts the look takes.
   StoreQuiet::Answer look(double when) {
     StoreQuiet::Answer answer = quiet_.look(at(when));
     while (!answer.quiet && answer.until == at(when)) answer = quiet_.look(at(when));
@@ -134,7 +134,7 @@ TEST_F(StoreQuietTest, LinksThatLeadBack_AreFollowedOnce) {
   EXPECT_TRUE(look(2).quiet);
 }
 
-// Of a server that fails, or of a process that may open no more files.
+// This happens on a failing server, or if the process may open no more files.
 TEST_F(StoreQuietTest, ADirectoryInItThatCannotBeListed_IsNeverQuiet) {
   if (kSanitized) GTEST_SKIP() << "the sanitizer itself opens pipes";
   rlimit before{};
@@ -142,7 +142,8 @@ TEST_F(StoreQuietTest, ADirectoryInItThatCannotBeListed_IsNeverQuiet) {
   const int next = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
   ASSERT_GE(next, 0);
   ::close(next);
-  const rlimit one_more{static_cast<rlim_t>(next) + 1, before.rlim_max};  // the hierarchy, and nothing in it
+  const rlimit one_more{static_cast<rlim_t>(next) + 1,
+                        before.rlim_max};  // enough for the hierarchy itself, but for no directory in it
   ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &one_more), 0);
   std::vector<StoreQuiet::Answer> answers;
   for (int i = 0; i < 3; ++i) answers.push_back(look(2 * i));

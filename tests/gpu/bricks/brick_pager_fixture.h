@@ -1,4 +1,4 @@
-// A brick cache on the host over a packed grid of many kinds of blocks, for tests.
+// A brick cache on the host, over a packed grid of many kinds of blocks, for tests.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ struct Cache {
         texels{&memory, size},
         pager({}, source, source.regions(), plan, texels) {}
 
-  // A texel of the block's brick, `v` from its corner.
+  // Returns the texel of the block's brick that is `v` from its corner.
   float texel(const BrickEntry& entry, const Int3& v) const {
     if (entry.brick == 0) return entry.low;
     const Int3 corner = entry.corner();
@@ -58,7 +58,7 @@ class BrickPagerTest : public testing::Test {
     return {.pages = pages, .slots = slots, .across = 5, .down = 7, .blocks = 200, .most_requests = 8192};
   }
 
-  // Of the voxel that is `v` from the first region's corner, or the nearest one of the domain.
+  // Returns the value of the voxel that is `v` from the first region's corner, or of the domain's nearest voxel.
   float voxel(const Int3& v) const {
     const auto local = [](std::int32_t at, std::int32_t shift, std::int32_t extent) {
       return std::clamp(at - shift, 0, extent - 1);
@@ -78,7 +78,7 @@ class BrickPagerTest : public testing::Test {
     }
   }
 
-  // Largest difference of the block's texels from the voxels, in spans of its brick.
+  // Returns the largest difference between the block's texels and the voxels, in spans of its brick.
   template <class Texel>
   double difference(const Cache<Texel>& cache, const BrickEntry& entry, const Int3& block) const {
     double most = 0;
@@ -101,7 +101,7 @@ class BrickPagerTest : public testing::Test {
   BlockLattice lattice_;
 };
 
-// Looks all of `blocks` up, as a picture does; returns how many were there, all with the right voxels.
+// Looks up all of `blocks`, as a picture does. Returns how many were there; all of these have the right voxels.
 template <class C, class Test>
 std::size_t look_up(C& cache, const Test& test, const std::vector<Int3>& blocks) {
   std::size_t found = 0;

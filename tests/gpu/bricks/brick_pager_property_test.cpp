@@ -1,4 +1,4 @@
-// Whatever is looked up, and however little a cache holds: what is there is right, no slot is lost or has two owners.
+// For any look-ups and any small cache: the bricks that are there are right, and no slot is lost or has two owners.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -52,7 +52,7 @@ TEST_F(BrickPagerProperty, RandomLookUpsFindWhatIsRightAndLoseNoSlot) {
     plan.most_requests = between(10, 2000);
     Cache<float> cache(*grid_, plan);
     for (int turn = 0; turn < 25; ++turn) {
-      // A few stretches of neighbours, as rays meet them.
+      // A few stretches of neighbouring blocks, as rays meet them.
       std::vector<Int3> blocks;
       for (std::uint32_t n = between(1, 6); n > 0; --n) {
         const std::size_t first = random() % all.size();

@@ -1,5 +1,5 @@
-// The turns of a brick cache, on the host: what is asked for comes in, what was not used goes, and bricks hold the
-// voxels that readers of files get.
+// The turns of a brick cache, on the host: requested bricks come in, unused bricks go, and bricks have the voxels
+// that file readers get.
 #include "gpu/cuda/bricks/brick_pager.h"
 
 #include <gtest/gtest.h>
@@ -62,7 +62,7 @@ TEST_F(BrickPagerTest, BlocksOfOneValueTakeNoSlot) {
       [&](const Int3& block) { ASSERT_LE(difference(cache, cache.pager.table().find(block), block), 0.51 / 65535); });
 }
 
-// As the texture unit counts: voxels' centres half a texel up, in steps of 1/256.
+// As the texture unit counts: a voxel's centre is half a texel up, and positions are in steps of 1/256.
 TEST_F(BrickPagerTest, ATableOfAllBricksNamesThePlaceOfEveryPosition) {
   Cache<float> cache(*grid_, plan(3, 2000));
   cache.pager.bring_all_pages();
@@ -90,7 +90,7 @@ TEST_F(BrickPagerTest, ATableOfAllBricksNamesThePlaceOfEveryPosition) {
                   .brick,
               entry.brick);
     const Int3 corner = entry.corner();
-    // Of a voxel that the position is at or above.
+    // The voxel that the position is at or above.
     const Float3 f{found.x - 0.5F, found.y - 0.5F, found.z - 0.5F};
     const Int3 v{static_cast<std::int32_t>(f.x), static_cast<std::int32_t>(f.y), static_cast<std::int32_t>(f.z)};
     const Int3 in_brick{v.x - corner.x, v.y - corner.y, v.z - corner.z};
@@ -208,7 +208,7 @@ TEST_F(BrickPagerTest, WhatIsAskedForComesInAndWhatWasUsedLongestAgoGoes) {
   EXPECT_LT(look_up(cache, right, a), 60U);
 }
 
-// Drafts go on with that until the brick is there again.
+// Drafts use the middle of the range until the brick is there again.
 TEST_F(BrickPagerTest, WhereABrickHadToGoIsTheMiddleOfItsRange) {
   const auto expect_middles = [&](auto& cache, float tolerance) {
     std::vector<Int3> all;
@@ -256,7 +256,7 @@ TEST_F(BrickPagerTest, MoreThanTheCacheHoldsIsServedInPart) {
   EXPECT_EQ(turn.bricks, 100U);
   EXPECT_GT(turn.asked_bricks, 1000U);
 
-  // All that is there was used, so nothing goes; once fewer blocks are looked up, their bricks come.
+  // Everything in the cache was used, so nothing is evicted. When fewer blocks are looked up, their bricks come.
   look_up(cache, ignore, all);
   EXPECT_EQ(cache.pager.serve().bricks, 0U);
   const std::vector<Int3> few(all.end() - 50, all.end());
@@ -281,13 +281,13 @@ TEST_F(BrickPagerTest, FewerPagesThanRegionsTakeTurns) {
       EXPECT_EQ(look_up(cache, right, {region.begin(), region.begin() + 8}), 8U);
     }
   }
-  // Both asked for, and one page: one of them waits.
+  // Both regions are requested and there is one page, so one region waits.
   std::vector<Int3> both{by_region[0].front(), by_region[1].front()};
   look_up(cache, right, both);
   EXPECT_TRUE(cache.pager.serve().crowded());
 }
 
-// Bricks of a dropped page are free, and old no longer.
+// Bricks of a dropped page are free and no longer counted as old.
 TEST_F(BrickPagerTest, ATurnThatDropsAPageAndFillsAllSlotsCountsEachOnce) {
   Cache<float> cache(*grid_, plan(2, 100));
   const auto right = [&](const BrickEntry& entry, const Int3& block) { ASSERT_EQ(difference(cache, entry, block), 0); };

@@ -1,4 +1,4 @@
-// The host as what a brick cache works on: memory is memory, steps run one after the other.
+// The host as the machine of a brick cache: arrays are in host memory, and steps run one after the other.
 #pragma once
 
 #include <algorithm>
@@ -14,12 +14,12 @@
 
 namespace weir::test {
 
-/// As DeviceArray.
+/// Replaces DeviceArray.
 template <class T>
 class HostArray {
  public:
   explicit HostArray(std::size_t size) : values_(size) {
-    // A device clears nothing.
+    // A device does not clear its memory either.
     if (size > 0) std::memset(static_cast<void*>(values_.data()), 0xA5, size * sizeof(T));
   }
   T* data() const { return const_cast<T*>(values_.data()); }
@@ -111,7 +111,7 @@ class HostPackedSource : public BlockSource {
  private:
   const PackedData& packed_;
   BlockLattice lattice_;
-  std::vector<std::uint64_t> copy_;  // at a multiple of 8, as a device has it
+  std::vector<std::uint64_t> copy_;  // at a multiple of 8, as on a device
   PackedView view_;
 };
 

@@ -10,7 +10,7 @@
 namespace weir::level_builder_test {
 namespace {
 
-// What a device makes of a packed grid, in batches of one region and of all, is what the CPU makes of it.
+// The device's levels of a packed grid, made in batches of one region and of all, equal the CPU's.
 void expect_levels_of_the_cpu(const test::PackedFile& made) {
   const NvdbGrid grid = NvdbGrid::open(made.file, "a.nvdb");
   const LeafTable table(grid);

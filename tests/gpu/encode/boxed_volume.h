@@ -1,4 +1,4 @@
-// The blocks of a small volume, as the device's steps are given them.
+// The blocks of a small volume, in the form that the device's steps take.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace weir::encode_steps_test {
 
 using Values = std::array<float, 512>;  // x << 6 | y << 3 | z
 
-// Of the volume's blocks, whose first one begins so many voxels before the first value.
+// The blocks of a volume. The first block begins `before` voxels before the first value.
 struct Boxed {
   BlockBox box;
   explicit Boxed(const test::BlockVolume& volume, const Index3& before) {

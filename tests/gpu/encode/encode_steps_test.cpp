@@ -1,5 +1,5 @@
-// The device's encoder of packed blocks on the host: its figures, costs, streams and decoded values have the bits that
-// TransformBlock and decode_block() give.
+// The device's encoder of packed blocks, run on the host: its figures, costs, streams and decoded values are bit for
+// bit those of TransformBlock and decode_block().
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -122,7 +122,7 @@ TEST_F(EncodeSteps, LatticesAreSeen) {
   EXPECT_GT(others, 50U);
 }
 
-// What the CPU makes of a block in that many bytes.
+// The CPU's result for a block in a given number of bytes.
 struct Expected {
   std::vector<std::byte> stream;
   Values decoded;
@@ -173,7 +173,7 @@ TEST_F(EncodeSteps, StreamsAndWhatTheyDecodeToAreThoseOfTheCpu) {
         const TransformBlock::Cost cost = transform_.cost(step);
         if (bits == kNoMeanBits || cost.bits > 20000) continue;
         const std::uint32_t usual = stream_bytes(cost.bits, bits);
-        // Exactly what was promised, more, and less: at last the CPU drops coefficients.
+        // Exactly the promised bytes, more, and less; with less, the CPU drops coefficients.
         for (const std::uint32_t bytes : {usual, usual + 1, usual + 37, usual - 1}) {
           if (bytes < 3) continue;
           StreamAsk ask{means, b, 0, static_cast<std::uint16_t>(bytes), static_cast<std::int16_t>(step)};

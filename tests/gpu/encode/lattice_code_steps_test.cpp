@@ -1,5 +1,5 @@
-// The device's encoder of rounded values and of floats in order, on the host: its streams and decoded values have the
-// bits that RoundedBlock, encode_exact() and decode_block() give.
+// The device's encoder of rounded values and of ordered floats, run on the host: its streams and decoded values are
+// bit for bit those of RoundedBlock, encode_exact() and decode_block().
 #include "gpu/cuda/encode/lattice_code_steps.h"
 
 #include <gtest/gtest.h>

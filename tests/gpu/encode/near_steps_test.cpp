@@ -1,4 +1,5 @@
-// What the device finds of near rungs, on the host: predictors, costs and errors have the bits that RoundedBlock gives.
+// The device's survey of near rungs, run on the host: predictors, costs and errors are bit for bit those of
+// RoundedBlock.
 #include "gpu/cuda/encode/near_steps.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +32,7 @@ class NearSteps : public testing::Test {
  protected:
   NearSteps() { make_encoder_tables(built_in_tables(), tables_, codes_); }
 
-  // What the survey and then the near rungs' steps find of a volume's blocks.
+  // What the survey and then the near rungs' steps find for a volume's blocks.
   struct Found {
     std::vector<BlockFigures> figures;
     std::vector<NearCost> costs;

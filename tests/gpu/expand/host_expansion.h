@@ -1,4 +1,4 @@
-// A packed grid for other readers, made by a device's steps on the host.
+// Expands a packed grid for other readers by the device's steps, on the host.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ inline Expanded expand(const PackedFile& made, GridType type) {
   HostPackedSource source(*grid.packed(), grid.index_bbox());
   std::vector<float> values(512 * blocks.size());
   source.decode(blocks.data(), static_cast<std::uint32_t>(blocks.size()), values.data());
-  // At a multiple of 32, as on a device.
+  // The leaves lie at a multiple of 32, as on a device.
   std::vector<std::uint64_t> memory(tree.bytes() / 8);
   const std::span<std::byte> bytes = std::as_writable_bytes(std::span(memory));
   Expanded expanded{{}, std::vector<LeafStatistics>(blocks.size())};

@@ -1,4 +1,4 @@
-// What a device makes of a packed grid for other readers, made on the host.
+// Runs the device's expansion of packed grids for other readers on the host.
 #include "gpu/cuda/expand/leaf_steps.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@
 namespace weir::leaf_steps_test {
 namespace {
 
-// Of the domain and some voxels around it.
+// Visits the voxels of the domain and some voxels around it.
 void for_each_voxel(const Box& domain, const std::function<void(const Index3&)>& visit) {
   for_each_index({domain.lo - Index3{9, 9, 9}, domain.hi + Index3{9, 9, 9}}, visit);
 }

@@ -26,7 +26,7 @@ TEST(FlipColor, OpponentSpaceRoundTrips) {
   }
 }
 
-// CIELAB of the primaries of sRGB, D65, from the tables of colorimetry; a and b times L / 100.
+// CIELAB of the primaries of sRGB under D65, from tables of colorimetry; a and b are multiplied by L / 100.
 TEST(FlipColor, HuntLabOfPrimaries) {
   expect_near(hunt_lab({1, 0, 0}), {53.24F, 80.09F * 0.5324F, 67.20F * 0.5324F}, 0.02F);
   expect_near(hunt_lab({0, 1, 0}), {87.73F, -86.18F * 0.8773F, 83.18F * 0.8773F}, 0.02F);

@@ -1,7 +1,7 @@
-// The expected numbers are those of the authors' C++ implementation (NVlabs/flip at 1eb247c: FLIP.h, pooled as its tool
-// does) on the same pairs. It computes in single precision as well: where two colours are nearly equal, rounding errors
-// of 1e-7 become 1e-4 by the powers of 0.7 and 0.5, in theirs (2.3e-4 at most against itself in double precision) as
-// in ours (3.6e-4), so that single pixels are compared no closer.
+// The expected numbers come from the authors' C++ implementation on the same pairs (NVlabs/flip at 1eb247c: FLIP.h,
+// pooled as its tool does). It computes in single precision as well. Where two colours are nearly equal, the powers
+// of 0.7 and 0.5 turn rounding errors of 1e-7 into 1e-4, in the authors' code (at most 2.3e-4 against itself in
+// double precision) as in ours (3.6e-4). Single pixels are therefore compared no more closely.
 #include "gpu/image/flip.h"
 
 #include <gtest/gtest.h>
@@ -40,7 +40,7 @@ struct Expected {
   double third_weighted_quartile;
   double min;
   double max;
-  std::array<double, 3> pixels;  ///< the first, the one at size / 2 + width / 3, the last
+  std::array<double, 3> pixels;  ///< the first pixel, the one at size / 2 + width / 3, the last
 };
 
 TEST(Flip, MatchesTheReferenceImplementation) {
@@ -176,7 +176,7 @@ TEST(Flip, TheSameForAnyNumberOfThreads) {
   EXPECT_EQ(errors_of(pair), all);
 }
 
-// A picture turned on its side gives the errors turned on their side: no axis is another's stand-in.
+// Pictures turned on their side give errors turned on their side: no axis is used for another.
 TEST(Flip, TransposedPicturesGiveTransposedErrors) {
   const test::FlipPair pair = test::flip_pairs().front();
   test::FlipPair turned{"turned", pair.height, pair.width, pair.pixels_per_degree, pair.reference, pair.test};

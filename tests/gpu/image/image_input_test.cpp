@@ -77,7 +77,7 @@ TEST_F(ImageInput, Errors) {
   EXPECT_EQ(message(empty), empty + ": the file is empty; give a .exr or .hdr file");
 }
 
-// Cut short or changed: an error or a picture, never a fault.
+// A truncated or changed file gives an error or a picture, never a crash.
 TEST_F(ImageInput, BrokenExr) {
   const LeaksOfLibraries of_tinyexr;
   const std::vector<std::byte> bytes = encode_exr(test::surroundings(40, [](int x, int y) {

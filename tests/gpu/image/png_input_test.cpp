@@ -22,7 +22,7 @@ class PngInput : public ::testing::Test {
     std::ofstream(directory_ / name, std::ios::binary) << bytes;
     return directory_ / name;
   }
-  /// A PNG of `format` with these samples.
+  /// Returns a PNG of `format` with the samples.
   template <typename Sample>
   std::string png(std::uint32_t format, std::uint32_t width, std::uint32_t height,
                   const std::vector<Sample>& samples) const {
@@ -86,11 +86,11 @@ TEST_F(PngInput, Refusals) {
   EXPECT_EQ(message(none), none + ": cannot open: No such file or directory");
 }
 
-// Cut short or changed: an error of one line or a picture, never a fault.
+// A truncated or changed file gives an error of one line or a picture, never a crash.
 TEST_F(PngInput, Broken) {
   const std::vector<std::byte> bytes = encode_png(Image(40, 30), {});
   const std::string whole(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  for (std::size_t length = 8; length < whole.size() - 12; ++length) {  // less of the empty last chunk nobody needs
+  for (std::size_t length = 8; length < whole.size() - 12; ++length) {  // readers need not all of the empty last chunk
     const std::string path = write("cut.png", whole.substr(0, length));
     const std::string reason = message(path);
     EXPECT_TRUE(reason.starts_with(path + ": broken PNG file (")) << length << ' ' << reason;
@@ -103,7 +103,7 @@ TEST_F(PngInput, Broken) {
   }
 }
 
-// 30000 x 30000 gray pixels said by a header whose own checksum holds, and no data.
+// A header with a valid checksum claims 30000 x 30000 gray pixels, and there is no data.
 TEST_F(PngInput, AHeaderAloneTakesNoMemory) {
   std::string bytes("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x75\x30\0\0\x75\x30\x08\0\0\0\0", 29);
   const auto crc = static_cast<std::uint32_t>(crc32(0, reinterpret_cast<const Bytef*>(bytes.data() + 12), 17));

@@ -28,7 +28,7 @@ std::string message(const std::string& bytes) {
 
 std::string chars(const std::vector<int>& values) { return {values.begin(), values.end()}; }
 
-// A row of 10 pixels: red a run of 128, green a literal, blue and exponent runs and literals mixed.
+// A row of 10 pixels: red is a run of 128, green a literal, blue and the exponent mix runs and literals.
 const std::string kRow = chars({2, 2, 0, 10})                         //
                          + chars({128 + 10, 128})                     //
                          + chars({10, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9})  //
@@ -52,7 +52,7 @@ TEST(RadianceHdr, FlatRowsAndOldRuns) {
   const Image image = decode("#?RGBE\n\n-Y 1 +X 5\n" + chars({64, 32, 16, 128, 1, 1, 1, 3, 0, 0, 8, 136}));
   for (std::int32_t x = 0; x < 4; ++x) EXPECT_EQ(image.at(x, 0), (Float3{0.25F, 0.125F, 0.0625F}));
   EXPECT_EQ(image.at(4, 0), (Float3{0, 0, 8}));
-  // 2 + 1 * 256 repeats in two digits.
+  // 2 + 1 * 256 repetitions, given in two digits.
   const Image run = decode(kHead + "-Y 1 +X 259\n" + chars({128, 0, 0, 129, 1, 1, 1, 2, 1, 1, 1, 1}));
   for (std::int32_t x = 0; x < 259; ++x) EXPECT_EQ(run.at(x, 0), (Float3{1, 0, 0}));
   // (1, 1, 1) as a colour at the start of a row, and a flat row after a packed one.
@@ -70,7 +70,7 @@ TEST(RadianceHdr, HeaderWithWindowsLineEnds_IsRead) {
   EXPECT_EQ(image.at(0, 0), (Float3{1, 0.5F, 13.0F / 128}));
 }
 
-// The values were multiplied by it; that is not undone.
+// The file's values were multiplied by EXPOSURE, and this is not undone.
 TEST(RadianceHdr, Exposure_ChangesNoValue) {
   const Image image =
       decode("#?RADIANCE\nEXPOSURE=0.5\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n" + chars({128, 64, 0, 129}));
@@ -111,7 +111,7 @@ TEST(RadianceHdr, Errors) {
             "a.hdr: offset 30: a run longer than the row; the file is broken");
 }
 
-// Cut anywhere, it is an error and an end.
+// A file cut anywhere gives an error, and reading ends.
 TEST(RadianceHdr, CutShort) {
   for (const std::string& rows : {kRow + kRow, std::string(80, '\7')}) {
     const std::string whole = kHead + "-Y 2 +X 10\n" + rows;

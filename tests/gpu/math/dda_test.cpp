@@ -33,7 +33,7 @@ std::vector<std::int64_t> cells_of_positive_length(const std::vector<CellSpan>& 
   return cells;
 }
 
-// Spans join without a gap from t0 to t1.
+// Checks that the spans join without a gap from t0 to t1.
 void expect_covers(const std::vector<CellSpan>& spans, float t0, float t1) {
   ASSERT_FALSE(spans.empty());
   EXPECT_EQ(spans.front().t0, t0);
@@ -56,7 +56,7 @@ TEST(CellWalk, NegativeZeroIsZero) {
   EXPECT_EQ(cells_of_positive_length(spans), (std::vector<std::int64_t>{20, 16, 12}));
 }
 
-// The prototype's 0 * inf: an origin exactly on a border with a direction along it.
+// A prototype computed 0 * inf here: the origin lies exactly on a border and the direction runs along it.
 TEST(CellWalk, ARayAlongABorder_VisitsEachCellOnce) {
   const auto spans = walk(kLattice, {{0, 16, 16}, {1, 0, 0}}, 0, 64);
   expect_covers(spans, 0, 64);
@@ -84,7 +84,7 @@ TEST(CellWalk, ThroughCorners) {
 TEST(CellWalk, ThroughEdgesOfCells) {
   const auto spans = walk(kLattice, {{0, 32, 8}, {1, -1, 0}}, 0, 32);
   expect_covers(spans, 0, 32);
-  // y = 32 belongs to the cells above it for no length at all.
+  // The ray is in the cells above y = 32 for zero length.
   EXPECT_EQ(cells_of_positive_length(spans), (std::vector<std::int64_t>{4, 1}));
 }
 
@@ -123,7 +123,7 @@ TEST(CellWalk, OneVoxelThickNeedle) {
   EXPECT_EQ(steps, 6250);
 }
 
-// Any ray: bounded, gapless, and the middle of every span lies in the span's cell.
+// For any ray: the walk is bounded and has no gap, and the middle of every span lies in the span's cell.
 TEST(CellWalk, RandomRays) {
   for (std::uint64_t k = 0; k < 20000; ++k) {
     Random random(1, k, 0);

@@ -13,7 +13,7 @@ TEST(Random, SameSeedSameStream) {
   for (int i = 0; i < 100; ++i) EXPECT_EQ(a.bits(), b.bits());
 }
 
-// A picture is a promise about its seed: these change only with a note to users.
+// A seed promises a picture: these values may change only with a note to users.
 TEST(Random, GoldenValues) {
   Random random(1, 2, 3);
   EXPECT_EQ(random.bits(), 2610585923U);

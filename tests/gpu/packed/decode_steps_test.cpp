@@ -1,5 +1,5 @@
-// The device's decoder of packed blocks on the host: threads that wait for each other as those of a device do give the
-// bits that readers of files get.
+// The device's decoder of packed blocks, run on the host: threads that wait for each other as on a device decode the
+// same bits as file readers do.
 #include "gpu/cuda/packed/decode_steps.h"
 
 #include <gtest/gtest.h>
@@ -83,10 +83,10 @@ class DecodeSteps : public testing::Test {
     }
   }
 
-  // Of the bytes in data_, which may have been damaged.
+  // Decodes the bytes in data_, which may have been damaged.
   Decoded decode(const std::uint32_t* available = nullptr, std::uint32_t first = 0) {
     const PackedHeader& header = grid_.packed()->header();
-    std::vector<decode_detail::Quad> copy((data_.size() + 15) / 16);  // where the device has it: at a multiple of 16
+    std::vector<decode_detail::Quad> copy((data_.size() + 15) / 16);  // at a multiple of 16, as on the device
     std::memcpy(copy.data(), data_.data(), data_.size());
     Decoded decoded;
     decoded.values.resize(blocks_.size());
@@ -119,7 +119,7 @@ class DecodeSteps : public testing::Test {
     return decoded;
   }
 
-  // One step after the other, as kernels run.
+  // Runs one step after the other, as kernels run.
   static void run(const DecodeCall& call, unsigned char* tables) {
     const std::size_t bytes = std::max(magnitude_bytes<std::uint32_t>(kThreads),
                                        static_cast<unsigned>(kThreads / kWarp * kStageWords * sizeof(float)));
@@ -148,7 +148,7 @@ class DecodeSteps : public testing::Test {
     }
   }
 
-  // What readers of files get, and the kind of the block's stream.
+  // Sets the values that file readers get. Returns the kind of the block's stream.
   std::string expect(BlockId id, std::array<float, 512>& values) const {
     const PackedData& packed = *grid_.packed();
     const PackedRegion region = packed.region(packed.regions().position(static_cast<std::int64_t>(id >> 12U)));
@@ -218,7 +218,7 @@ TEST_F(DecodeSteps, TakeNoMoreBlocksThanThereAre) {
   EXPECT_EQ(decode(&available, 151).values[0].of[0], 0);
 }
 
-// Whatever the bytes are, a block is NaN and counted, or some values; a sanitizer sees each read outside.
+// For any bytes, a block is either NaN and counted, or has some values. A sanitizer reports reads outside the data.
 TEST_F(DecodeSteps, DamagedBytesAreCounted) {
   std::mt19937 random(5);
   const std::vector<std::byte> whole = data_;

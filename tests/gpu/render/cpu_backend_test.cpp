@@ -1,4 +1,4 @@
-// Pictures of packed files whose decoded blocks do not fit: by the CPU back end, from a cache.
+// Pictures of packed files with decoded blocks that do not fit into memory: drawn by the CPU back end, from a cache.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -47,7 +47,7 @@ struct CachedPicture {
   CacheCounts counts;
 };
 
-// Through a cache of `sets` sets of four blocks.
+// Draws through a cache of `sets` sets of four blocks.
 CachedPicture cached_picture(const NvdbGrid& grid, RenderMode mode, Filter filter, int threads, std::uint64_t sets) {
   const MacrocellGrid cells(grid, kMacrocell);
   const RenderSetup setup(volume_info(grid, cells), cells, scene_of(mode), options_of(filter));

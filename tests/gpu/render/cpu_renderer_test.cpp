@@ -47,7 +47,7 @@ void expect_finite(const Image& image) {
   for (const Float3& p : image.pixels) ASSERT_TRUE(is_finite(p.x) && is_finite(p.y) && is_finite(p.z));
 }
 
-// Pixels that are not the background's.
+// Returns the number of pixels that differ from the background.
 int shown(const Image& image) {
   int count = 0;
   for (const Float3& p : image.pixels) count += p == image.at(0, 0) ? 0 : 1;
@@ -90,7 +90,7 @@ TEST(RenderCpu, StochasticAndTrilinearAgree) {
   const TestGrid grid({{0, 0, 0}, {25, 25, 25}}, ball);
   Scene scene;
   scene.volume.albedo = 0.9;
-  // An expectation passes through linear functions only: opacity linear in the value, colour constant.
+  // Only linear functions keep an expectation, so the opacity is linear in the value and the colour constant.
   scene.volume.opacity = {{0, 0}, {1, 1}};
   scene.volume.colormap = "white";
   const auto mean = [&](Filter filter, std::uint64_t seed) {
@@ -99,7 +99,7 @@ TEST(RenderCpu, StochasticAndTrilinearAgree) {
     for (const Float3& p : image.pixels) sum += static_cast<double>(p.x);
     return sum / static_cast<double>(image.pixels.size());
   };
-  // The spread between seeds of one filter is the yardstick.
+  // The spread between seeds of one filter is the measure.
   double spread = 0;
   double trilinear = 0;
   double stochastic = 0;
@@ -113,7 +113,7 @@ TEST(RenderCpu, StochasticAndTrilinearAgree) {
   EXPECT_NEAR(trilinear, stochastic, 5 * std::sqrt(spread * 2 / 6) + 1e-5);
 }
 
-// Surfaces and maxima are functions of the position: a stochastic filter is trilinear there.
+// Surfaces and maxima are functions of the position, so a stochastic filter is trilinear for them.
 TEST(RenderCpu, StochasticSurfacesAndMaxima_AreTheTrilinearOnes) {
   const TestGrid grid({{0, 0, 0}, {25, 25, 25}}, ball);
   for (const RenderMode mode : kModes) {
@@ -160,7 +160,7 @@ TEST(RenderCpu, NotANumberRendersAsNothing) {
   }
 }
 
-// A wall with a channel along its 2048 shortest edges: all cells hold some of the wall.
+// A wall with a channel along its 2048 shortest edges: every cell contains some of the wall.
 TEST(RenderCpu, ClearChannelThroughAWall_ShowsTheBackground) {
   TestGridOptions options;
   options.voxel_size = {1, 1, 64};

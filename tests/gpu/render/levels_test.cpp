@@ -1,4 +1,4 @@
-// Pictures with levels of detail, by the CPU back end.
+// Pictures with levels of detail, drawn by the CPU back end.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -60,7 +60,7 @@ class LevelsOfDetail : public testing::Test {
   std::string path_ = directory_ / "a.nvdb";
 };
 
-// Root of the mean square of all channels' differences.
+// Returns the root mean square of the differences of all channels.
 float difference(const Image& a, const Image& b) {
   float sum = 0;
   for (std::size_t i = 0; i < a.pixels.size(); ++i) {
@@ -80,7 +80,7 @@ TEST_F(LevelsOfDetail, PixelsWiderThanVoxels_SeeMeansThatLookAlike) {
     EXPECT_EQ(means.finest_level, 1) << render_mode_name(mode);
     EXPECT_NE(means.image.pixels, voxels.image.pixels) << render_mode_name(mode);
     EXPECT_LT(difference(means.image, voxels.image), 0.03F) << render_mode_name(mode);
-    // Three levels coarser it is another picture, of the same ball.
+    // Three levels coarser, the picture differs but shows the same ball.
     const float coarse =
         difference(picture(*backend, *volume, scene_of(mode), LevelOfDetail{3, 0}, 64).image, voxels.image);
     EXPECT_GT(coarse, difference(means.image, voxels.image)) << render_mode_name(mode);
@@ -97,12 +97,12 @@ TEST_F(LevelsOfDetail, PixelsNarrowerThanVoxels_SeeVoxels) {
     const Picture near = picture(*backend, *volume, scene, LevelOfDetail{});
     EXPECT_EQ(near.finest_level, 0);
     EXPECT_EQ(near.image.pixels, picture(*backend, *volume, scene, std::nullopt).image.pixels);
-    // A bias counts from there.
+    // A bias adds to the level of the pixel's width.
     EXPECT_GE(picture(*backend, *volume, scene, LevelOfDetail{6, 0}).finest_level, 1);
   }
 }
 
-// A step as long as the cubes of a coarse level would pass through it between two samples.
+// Steps as long as a coarse level's cubes would pass through a thin volume between two samples.
 TEST_F(LevelsOfDetail, ThinVolumes_AreAsOpaqueAsTheirVoxels) {
   const auto backend = make_cpu_backend(2, {.levels = true});
   for (const std::int64_t thickness : {1, 2, 5}) {
@@ -141,7 +141,7 @@ TEST_F(LevelsOfDetail, HardEdges_LookTheSameWithAnyMacrocells) {
   };
   for (const LevelOfDetail& levels : {LevelOfDetail{0, 3}, LevelOfDetail{1, 0}, LevelOfDetail{3, 0}}) {
     for (const RenderMode mode : kModes) {
-      // Of cubes a third of the ball wide, steps along a ray show.
+      // If cubes are a third of the ball wide, the steps along a ray are visible.
       if (levels.bias > 1 && (mode == RenderMode::iso || mode == RenderMode::mip)) continue;
       Scene scene = scene_of(mode);
       scene.lighting.background = Double3{0, 0, 0};
@@ -156,7 +156,7 @@ TEST_F(LevelsOfDetail, HardEdges_LookTheSameWithAnyMacrocells) {
 }
 
 TEST_F(LevelsOfDetail, Surface_IsFoundWhereCellsOfVoxelsDoNotHoldIt) {
-  // A slab whose means cross the iso value in cells of zeros alone.
+  // The means of a slab cross the iso value in cells that contain only zeros.
   const test::TestGrid made({{0, 0, 0}, {96, 96, 96}},
                             [](const Index3& i) { return i.x >= 17 && i.x < 79 ? 1.0F : 0.0F; });
   const auto backend = make_cpu_backend(2, {.levels = true});
@@ -183,10 +183,10 @@ TEST_F(LevelsOfDetail, ScatteredLight_MaySeeCoarserLevelsThanTheCamera) {
   const Picture light = picture(*backend, *volume, scene, LevelOfDetail{0, 3}, 64);
   EXPECT_GE(light.finest_level, 1);
   EXPECT_NE(light.image.pixels, voxels.image.pixels);
-  // The paths differ from where they meet a coarser level, so it is mostly noise in which the pictures differ.
+  // The paths differ from where they meet a coarser level, so the pictures differ mostly in noise.
   const float noise = difference(picture(*backend, *volume, scene, std::nullopt, 64, 1).image, voxels.image);
   EXPECT_LT(difference(light.image, voxels.image), 1.25F * noise);
-  // Nothing else scatters.
+  // Only light on a path scatters.
   scene.mode = RenderMode::dvr;
   scene.camera.zoom = 12;
   EXPECT_EQ(picture(*backend, *volume, scene, LevelOfDetail{0, 3}).finest_level, 0);

@@ -18,7 +18,7 @@
 namespace weir::playback_test {
 namespace {
 
-// Counts the volumes there are at a time.
+// Counts the volumes that exist at a time.
 class CountedVolume : public LoadedVolume {
  public:
   CountedVolume(std::atomic<int>& alive, std::atomic<int>& most, float value) : alive_(alive) {
@@ -36,7 +36,7 @@ class CountedVolume : public LoadedVolume {
   LoadSummary summary_{"counted", 0, 0, ""};
 };
 
-// A picture is one pixel of the volume's background; sleeps stand for work.
+// Its picture is one pixel with the value of the volume's background. It sleeps instead of working.
 class FakeBackend : public Backend {
  public:
   std::string_view name() const override { return "fake"; }
@@ -68,14 +68,14 @@ class FakeBackend : public Backend {
   ErrorKind failure = ErrorKind::interrupted;
   std::atomic<int> alive{0};
   std::atomic<int> most{0};
-  int room = 2;  // volumes
+  int room = 2;  // number of volumes
   int loads = 0;
   int reused = 0;
 };
 
 class Playback : public ::testing::Test {
  protected:
-  /// A file of a box of 0.5.
+  /// Writes a file of a box with the value 0.5.
   void make_step(const Box& box, const test::TestGridOptions& options) {
     const test::TestGrid grid(
         box, [](const Index3&) { return 0.5F; }, options);
@@ -84,7 +84,7 @@ class Playback : public ::testing::Test {
     std::ofstream(files_.back(), std::ios::binary)
         .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   }
-  /// A file of each background in order.
+  /// Writes one file per background, in order.
   void make(int steps) {
     for (int step = 0; step < steps; ++step) {
       test::TestGridOptions options;
@@ -128,7 +128,7 @@ TEST_F(Playback, FramesInOrderFromTwoVolumes) {
   EXPECT_EQ(backend_.alive, 0);
 }
 
-// Fog of one value looks alike through 16 units of the world, whatever else there is of it.
+// Fog of one value looks the same through 16 world units, whatever the rest of the volume is.
 TEST_F(Playback, StepsOfDifferentBoxes_HaveOneExtinction) {
   make_step({{0, 0, 0}, {16, 16, 16}}, {});
   make_step({{0, 0, 0}, {16, 16, 64}}, {});
@@ -153,7 +153,7 @@ TEST_F(Playback, StepsOfDifferentBoxes_HaveOneExtinction) {
   play(*cpu, files_, scene, options, {},
        [&](std::size_t, const Picture& picture) { centres.push_back(picture.image.pixels[0].x); });
   ASSERT_EQ(centres.size(), 3U);
-  // A density of 2 by an opacity of a half is 1 along 16 units; the fog is thinner within a voxel of its border.
+  // A density of 2 times an opacity of a half is 1 along 16 units. The fog is thinner within a voxel of its border.
   EXPECT_GT(centres[0], 1 - std::exp(-14.5F / 16));
   EXPECT_LT(centres[0], 1 - std::exp(-1.0F));
   EXPECT_EQ(centres[1], centres[0]);
@@ -168,7 +168,7 @@ TEST_F(Playback, PlaysNoFileAndOneFile) {
   EXPECT_GT(report.sustained, 0);
 }
 
-// Three stages of equal length side by side: together far shorter than one after the other.
+// Three stages of equal length run side by side, and together take far less time than one after the other.
 TEST_F(Playback, StagesOverlapAndAreTimed) {
   make(6);
   backend_.load_time = write_time_ = std::chrono::milliseconds(40);

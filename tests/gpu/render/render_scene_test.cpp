@@ -35,7 +35,7 @@ TEST(RenderScene, DensityAlongAnotherFrame_IsTheSameExtinctionInTheWorld) {
   RenderOptions along;
   along.density_frame = frame_of(grid.grid());
   EXPECT_EQ(RenderScene(grid.grid(), scene, along).task().medium.density, 2.0F) << "its own";
-  // 8 a unit of the world over an edge of 20.5, 2 over one of 82; a shortest edge is a quarter of a unit.
+  // 8 per world unit over an edge of 20.5, 2 over an edge of 82; a shortest voxel edge is a quarter of a unit.
   along.density_frame = GridFrame{{{0, 0, 0}, {1, 41, 1}}, {2, 2, 2}, {0, 0, 0}};
   EXPECT_EQ(RenderScene(grid.grid(), scene, along).task().medium.density, 0.5F);
   along.density_frame = GridFrame{{{0, 0, 0}, {1, 41, 1}}, {1e-300, 1e-300, 1e-300}, {0, 0, 0}};
@@ -102,7 +102,7 @@ TEST(RenderScene, FramesTheVolumeOrItsContent) {
   EXPECT_LT(length(content), 0.3F * length(volume));
 }
 
-// Samples are counted in floats: a needle of 10^7 voxels must not stall a march.
+// Samples are counted in floats, so a needle of 10^7 voxels must not stall the march.
 TEST(RenderScene, StepGrowsWithExtremeLengths) {
   TestGridOptions options;
   options.tiles = {{{0, 0, 0}, 8, 1, true}, {{10000000 / 8 * 8, 0, 0}, 8, 1, true}};
@@ -120,7 +120,7 @@ TEST(RenderScene, ShowsTheRegionOnly) {
   const RenderScene prepared(grid.grid(), scene, {});
   EXPECT_EQ(prepared.task().medium.shown.low, (Float3{0, 4, 2})) << "from the domain's corner, inside it";
   EXPECT_EQ(prepared.task().medium.shown.high, (Float3{16, 12, 9}));
-  // Along x through the region: the ramp's largest value there, between the last voxel's centre and the next.
+  // Along x through the region: the ramp's largest value is between the last voxel's centre and the next.
   const Medium<VolumeSampler>& medium = prepared.task().medium;
   Ray ray{{-5, 8, 5}, {1, 0, 0}};
   const float length = enter(ray, medium.shown);

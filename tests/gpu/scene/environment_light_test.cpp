@@ -1,5 +1,5 @@
-// The environment in the tracers: both ways to meet its light add up to all of
-// it, once, and together are less noisy than either alone.
+// The environment in the tracers: the two ways of sampling its light together count all of it exactly once, and are
+// less noisy than either alone.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ using test::Estimate;
 using test::estimate;
 using test::TestMedium;
 
-constexpr double kSigmas = 4.5;  // of the mean
+constexpr double kSigmas = 4.5;  // allowed deviation of the mean
 
 const auto kBlob = [](const Float3& p) {
   const Float3 d = p - Float3{16, 16, 16};
@@ -30,7 +30,7 @@ Lighting lit_by(const Environment& environment) {
   return lighting;
 }
 
-// A sky with a sun of `size` x `size` texels of 0.008 sr, `radiance` red.
+// A sky with a sun of `size` x `size` texels of 0.008 sr each, with red radiance `radiance`.
 Environment sun(float radiance, int size) {
   return {test::surroundings(
               32,
@@ -42,7 +42,7 @@ Environment sun(float radiance, int size) {
           "sun"};
 }
 
-// Paths that end in the environment, not weighed, no light drawn: what scattering alone would find.
+// Follows paths that end in the environment, unweighted and without drawing light: what scattering alone finds.
 template <class Volume>
 double by_scattering(const Medium<Volume>& medium, const Lighting& lighting, const Float3& eye, Float3 direction,
                      int max_bounces, Random& random) {
@@ -98,7 +98,7 @@ TEST(EnvironmentLight, EvenSurroundingsAreAmbientLight) {
   }
 }
 
-// The soft sun is for the mean, which scattering alone finds to some percent; the bright one for the variance.
+// The soft sun tests the mean, which scattering alone finds to some percent. The bright sun tests the variance.
 TEST(EnvironmentLight, AgreesWithScatteringAloneAndIsLessNoisy) {
   const Environment soft = sun(30, 4);
   const Environment bright = sun(5000, 1);
@@ -126,7 +126,8 @@ TEST(EnvironmentLight, AgreesWithScatteringAloneAndIsLessNoisy) {
   }
 }
 
-// Scattering so far forward that directions drawn by the light are the bad ones: no worse than twice alone.
+// Scattering is so far forward that directions drawn by the light are poor. The noise is at most twice that of
+// scattering alone.
 TEST(EnvironmentLight, SharpScatteringUnderSoftLight) {
   const Environment environment(test::surroundings(16,
                                                    [](int x, int y) {
@@ -168,7 +169,7 @@ TEST(EnvironmentLight, AddsToDirectionalLights) {
   EXPECT_NEAR(a.mean, b.mean, kSigmas * std::hypot(a.sigma, b.sigma));
 }
 
-// The light picture may hold rows without light and texels that are never drawn.
+// The picture may have rows without light and texels that are never drawn.
 TEST(EnvironmentLight, HardPicturesGiveFiniteRadiance) {
   const Environment environment(test::surroundings(2,
                                                    [](int x, int y) {
@@ -199,7 +200,7 @@ TEST(EnvironmentLight, TheCameraSeesItOnlyWhenAsked) {
   EXPECT_EQ(seen(), (Float3{0, 0.5F, 1}));
 }
 
-// A wall that faces the camera, lit by the mean of the light over its hemisphere.
+// A wall that faces the camera is lit by the mean of the light over its hemisphere.
 TEST(EnvironmentLight, SurfacesReflectTheMeanOfTheirHemisphere) {
   const Environment environment(test::surroundings(64,
                                                    [](int x, int) {

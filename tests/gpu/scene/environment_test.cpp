@@ -18,7 +18,7 @@ using test::surroundings;
 
 constexpr double kSphere = 4 * std::numbers::pi;
 
-// A gray sky with a sun, black ground, rows of black in between: every hard case of the tables.
+// A gray sky with a sun, black ground and black rows between them: every hard case of the tables.
 Image hard_sky(std::int32_t height) {
   return surroundings(height, [&](std::int32_t x, std::int32_t y) -> Float3 {
     if (y > height / 2 || y == 3 || x == 2 * height - 1) return {};
@@ -62,7 +62,7 @@ TEST(Environment, TexelsCoverTheSphere) {
   }
 }
 
-// Row 0 is around up, the centre column at azimuth 0, azimuth falls to the right.
+// Row 0 is around up, the centre column is at azimuth 0, and azimuth falls to the right.
 TEST(Environment, DirectionsToTexels) {
   const Image image = surroundings(4, [](std::int32_t x, std::int32_t y) {
     return Float3{static_cast<float>(x), static_cast<float>(y), 1};
@@ -75,7 +75,7 @@ TEST(Environment, DirectionsToTexels) {
   EXPECT_EQ(plain.view().at(at_angles(80 * d, -170 * d)), (Float3{7, 1, 1}));
   const Environment turned(image, {.rotation = 90}, "");
   EXPECT_EQ(turned.view().at(at_angles(80 * d, 80 * d)), (Float3{4, 1, 1}));
-  // Up is y: azimuth 0 is +z, as cameras have it, and up x ahead points along x.
+  // Up is y: azimuth 0 is +z, as for cameras, and up x ahead points along x.
   const Environment tilted(image, {.up = {0, 2, 0}, .scale = 3}, "");
   EXPECT_EQ(tilted.view().at({-0.1F, 0.2F, 0.9F}), (Float3{12, 3, 3}));
   EXPECT_EQ(tilted.view().at({0.1F, 0.2F, 0.9F}), (Float3{9, 3, 3}));
@@ -92,7 +92,7 @@ TEST(Environment, DensityIntegratesToOne) {
     const EnvironmentView view = environment.view();
     double sum = 0;
     double light = 0;
-    const int fine = 8;  // directions along the edge of a texel
+    const int fine = 8;  // number of directions along the edge of a texel
     for (std::int32_t j = 0; j < fine * view.height; ++j) {
       const double step = std::numbers::pi / (fine * view.height);
       const double polar = (j + 0.5) * step;
@@ -108,7 +108,7 @@ TEST(Environment, DensityIntegratesToOne) {
   }
 }
 
-// Directions come as often as the density says: chi-square over texels, and within them.
+// Directions are drawn as often as the density says: a chi-square test over texels and within them.
 TEST(Environment, DrawnDirectionsFollowTheDensity) {
   const Environment environment(hard_sky(12), {.up = {1, 2, -0.5}, .rotation = 33}, "");
   const EnvironmentView view = environment.view();
@@ -116,12 +116,12 @@ TEST(Environment, DrawnDirectionsFollowTheDensity) {
   std::vector<double> counts(texels);
   constexpr int kDraws = 2000000;
   Random random(1, 2, 3);
-  double mean = 0;  // of 1 / density: the solid angle of what can be drawn
+  double mean = 0;  // mean of 1 / density: the solid angle of what can be drawn
   for (int i = 0; i < kDraws; ++i) {
     const EnvironmentSample s = view.sample(random);
     ASSERT_NEAR(length(s.direction), 1, 1e-5);
     ASSERT_GT(s.density, 0);
-    // At a border between texels the direction, rounded, may belong to the neighbour.
+    // At a border between texels the rounded direction may belong to the neighbour.
     if (view.at(s.direction) == s.radiance) {
       ASSERT_FLOAT_EQ(view.density(s.direction), s.density);
     }
@@ -161,7 +161,7 @@ TEST(Environment, DrawnDirectionsFollowTheDensity) {
   EXPECT_NEAR(mean, covered, 0.05 * covered);
 }
 
-// Uniform surroundings: the cosine of the polar angle and the azimuth of what is drawn are uniform, to the poles.
+// Uniform surroundings: azimuth and cosine of the polar angle of the drawn directions are uniform, up to the poles.
 TEST(Environment, EvenSurroundingsAreDrawnEvenly) {
   for (const std::int32_t height : {1, 2, 5, 512}) {
     const Environment environment = test::even(height, 2);
@@ -172,7 +172,7 @@ TEST(Environment, EvenSurroundingsAreDrawnEvenly) {
     constexpr int kDraws = 640000;
     for (int i = 0; i < kDraws; ++i) {
       const EnvironmentSample s = view.sample(random);
-      ASSERT_NEAR(s.density, 1 / kSphere, 1e-4 / kSphere);  // a row has a multiple of 2^-31
+      ASSERT_NEAR(s.density, 1 / kSphere, 1e-4 / kSphere);  // a row's probability is a multiple of 2^-31
       ASSERT_EQ(s.radiance, (Float3{2, 2, 2}));
       ++cosines[static_cast<std::size_t>(clamped((s.direction.z + 1) * 32, 0.0F, 63.5F))];
       ++azimuths[static_cast<std::size_t>(
@@ -261,7 +261,7 @@ TEST(Environment, Errors) {
             "negative");
 }
 
-// Values up to the largest float, and denormals, make tables that draw what is bright.
+// Values up to the largest float, and denormals, make tables that draw the bright texels.
 TEST(Environment, ExtremeRadiance) {
   for (const float radiance : {3e38F, 1e-45F}) {
     const Environment environment(

@@ -25,7 +25,7 @@ void expect_near(const Float3& a, const Float3& b, float tolerance = 1e-5F) {
   EXPECT_NEAR(a.z, b.z, tolerance);
 }
 
-// Where a physical point appears in the picture, (0, 0) upper left, (1, 1) lower right.
+// Returns where a physical point appears in the picture: (0, 0) is the upper left corner, (1, 1) the lower right.
 std::array<float, 2> project(const Camera& camera, const Float3& stretch, const Float3& index) {
   const Float3 d = (index - camera.position) * stretch;
   const float depth = dot(d, camera.forward);
@@ -81,7 +81,7 @@ TEST(MakeCamera, UpOfAnyLengthIsADirection) {
   }
 }
 
-// All corners are in the picture and one touches the margin, for any shape and direction.
+// For any shape and direction, all corners are in the picture and one touches the margin.
 TEST(MakeCamera, FramesTheBox) {
   const GridFrame plate{{{-5, 0, 0}, {300, 40, 3}}, {1, 2, 7}, {0, 0, 0}};
   const GridFrame needle{{{0, 0, 0}, {1, 1, 5000}}, {1, 1, 1}, {0, 0, 0}};
@@ -130,7 +130,7 @@ TEST(MakeCamera, WorldPositions_AreOfVoxelCentres) {
   scene.position = Double3{1 + 0.5 * 60, 2 + 0.5 * 70, 3};  // the centre of voxel (60, 70, 0)
   scene.look_at = Double3{1 + 0.5 * 60, 2 + 0.5 * 70, 50};
   const Camera camera = orbit(scene, kCube);
-  expect_near(camera.position, {50.5F, 50.5F, -29.5F}, 1e-3F);  // from the domain's lowest corner
+  expect_near(camera.position, {50.5F, 50.5F, -29.5F}, 1e-3F);  // counted from the domain's lowest corner
   expect_near(camera.forward, {0, 0, 1});
   EXPECT_NEAR(dot(camera.right, camera.forward), 0, 1e-6F);
 }

@@ -42,7 +42,7 @@ TEST(TransferFunction, RangeOfOneValue) {
   EXPECT_GE(one.max_opacity(5, 5), 0.5F);
 }
 
-// 0.1 blended with itself comes out an ulp above or below.
+// 0.1 blended with itself may come out an ulp above or below.
 TEST(TransferFunction, RangeOfOneValue_HoldsWhatABlendRoundsItTo) {
   for (const float value : {0.1F, -0.1F, 3e38F}) {
     const TransferFunction one({{0, 0, 0, 0}, {1, 1, 1, 1}}, value, value);
@@ -82,7 +82,7 @@ TEST(TransferFunction, UnknownBoundsTakeTheLargest) {
   EXPECT_EQ(kRamp.max_opacity(2, 1), 1.0F);
 }
 
-// The bound holds for every value of the interval, of any table, and is not loose.
+// The bound holds for every value of the interval of any table, and is tight.
 TEST(TransferFunction, MaximumIsABoundForRandomTables) {
   for (std::uint64_t k = 0; k < 300; ++k) {
     Random random(2, k, 0);

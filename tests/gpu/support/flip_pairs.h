@@ -1,4 +1,4 @@
-// Pairs of pictures that FLIP is tried on, as 8-bit sRGB.
+// Pairs of pictures for tests of FLIP, as 8-bit sRGB.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ struct FlipPair {
   std::vector<Srgb> test;
 };
 
-/// 0 to 255, the same on every machine.
+/// Returns a number from 0 to 255 that is the same on every machine.
 inline int flip_noise(std::int32_t x, std::int32_t y, std::uint32_t channel) {
   std::uint32_t h =
       static_cast<std::uint32_t>(x) * 73856093U ^ static_cast<std::uint32_t>(y) * 19349663U ^ (channel + 1) * 83492791U;
@@ -28,7 +28,7 @@ inline int flip_noise(std::int32_t x, std::int32_t y, std::uint32_t channel) {
   return static_cast<int>((h ^ (h >> 16U)) & 255U);
 }
 
-/// `picture`(x, y) gives the two colours of a pixel.
+/// `picture(x, y)` returns the two colours of a pixel.
 template <typename Picture>
 FlipPair flip_pair(std::string name, std::int32_t width, std::int32_t height, double ppd, const Picture& picture) {
   FlipPair pair{std::move(name), width, height, ppd, {}, {}};

@@ -1,11 +1,11 @@
-// Pictures of surroundings by formula.
+// Pictures of surroundings, given by a formula.
 #pragma once
 
 #include "gpu/scene/environment.h"
 
 namespace weir::test {
 
-/// `radiance(x, y)` of texel (x, y) of a picture `height` high.
+/// Returns a picture of `height` rows; `radiance(x, y)` gives texel (x, y).
 template <class F>
 Image surroundings(std::int32_t height, const F& radiance) {
   Image image(2 * height, height);

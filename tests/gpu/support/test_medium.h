@@ -1,5 +1,5 @@
-// Media whose light transport is known in closed form: a volume given by a
-// function of the position, cells of one size, a transfer function of few points.
+// Media with light transport that is known in closed form: a volume given by a function of the position, cells of one
+// size, and a transfer function of few points.
 #pragma once
 
 #include <utility>
@@ -10,7 +10,7 @@
 
 namespace weir::test {
 
-/// A volume for the tracers whose value is f(position).
+/// A volume for the tracers. Its value at p is f(p).
 template <class F>
 struct FunctionVolume {
   Float3 size;
@@ -21,8 +21,8 @@ struct FunctionVolume {
   float smooth(const Float3& p) const { return f(p); }
 };
 
-/// Owns what a Medium points into. Opacity and gray level are `value` itself for values in [0, 1]; every
-/// cell has the same majorant and bounds [0, majorant].
+/// Owns the data that a Medium points to. For values in [0, 1], opacity and gray level are the value itself. Every
+/// cell has the same majorant, and the bounds [0, majorant].
 template <class F>
 class TestMedium {
  public:
@@ -57,13 +57,13 @@ class TestMedium {
   Medium<FunctionVolume<F>> medium_;
 };
 
-/// Mean of a Monte-Carlo estimator and the standard error of that mean.
+/// The mean of a Monte-Carlo estimator and the mean's standard error.
 struct Estimate {
   double mean = 0;
   double sigma = 0;
 };
 
-/// `draw(Random&)` called `count` times with independent streams.
+/// Calls `draw(Random&)` `count` times with independent streams.
 template <class Draw>
 Estimate estimate(std::uint32_t count, const Draw& draw) {
   double sum = 0;

@@ -13,7 +13,7 @@ namespace {
 
 using test::TestMedium;
 
-// Distance from the centre of a 64^3 volume, so that the surface of value r is a sphere.
+// Returns the distance from the centre of a 64^3 volume, so that the surface of value r is a sphere.
 const auto kDistance = [](const Float3& p) { return length(p - Float3{32, 32, 32}) / 64; };
 
 TEST(FindIso, SphereOnRandomRays) {
@@ -53,7 +53,7 @@ TEST(FindIso, NoSurfaceIsFoundAcrossNaN) {
   EXPECT_EQ(find_iso(*medium, medium->ray({0, 8, 8}, {1, 0, 0}), 64, 0.5F, 0.5F), -1.0F);
 }
 
-// A surface is where values below iso meet iso or more, so that a plateau of exactly iso lies above it.
+// A surface is where values below iso meet iso or more, so a plateau of exactly iso lies above it.
 TEST(FindIso, OfAPlateausValue_TheSurfaceIsThePlateausLowerSide) {
   const auto steps = [](const Float3& p) { return p.x < 20 ? 0.0F : p.x < 40 ? 0.5F : 1.0F; };
   TestMedium medium({64, 16, 16}, 16, 1, 1.0F, steps);
@@ -63,7 +63,7 @@ TEST(FindIso, OfAPlateausValue_TheSurfaceIsThePlateausLowerSide) {
   EXPECT_EQ(crossing(0.0F), -1.0F);
 }
 
-// As blends of eight equal voxels round.
+// Rounds as blends of eight equal voxels do.
 TEST(FindIso, RoundingInAPlateauOfIsosValue_IsNoSurface) {
   const auto rounded = [](const Float3& p) {
     if (p.x < 20) return 0.3F;

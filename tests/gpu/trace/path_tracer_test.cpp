@@ -14,7 +14,7 @@ using test::Estimate;
 using test::estimate;
 using test::TestMedium;
 
-constexpr double kSigmas = 4.5;  // of the mean
+constexpr double kSigmas = 4.5;  // allowed deviation of the mean
 
 const auto kHalf = [](const Float3&) { return 0.5F; };
 const auto kBlob = [](const Float3& p) {
@@ -50,7 +50,7 @@ TEST(TracePath, PureAbsorptionIsBeerLambert) {
   EXPECT_NEAR(radiance.mean, 2 * std::exp(-0.025 * 64), kSigmas * radiance.sigma);
 }
 
-// With albedo 0 and emission 1 both integrate emission and absorption over a background.
+// With albedo 0 and emission 1, both renderers integrate emission and absorption over a background.
 TEST(TracePath, AgreesWithRayMarchingWithoutScattering) {
   TestMedium medium({32, 32, 32}, 16, 0.2F, 1.0F, kBlob);
   medium->albedo = 0;
@@ -84,14 +84,14 @@ TEST(TracePath, SingleScatteringOfADirectionalLight) {
   EXPECT_NEAR(radiance.mean, 0.8 * 5 * phase_90 * 16 * 2e-4, kSigmas * radiance.sigma + 1e-6);
 }
 
-// Russian roulette changes the noise, not the mean: albedo 1 and gray in surroundings of 1 is dimmer
-// than the surroundings by exactly what the bounces lose.
+// Russian roulette changes the noise, not the mean. A medium of albedo 0.9 in surroundings of 1 is dimmer than
+// the surroundings by exactly what the bounces lose.
 TEST(TracePath, RouletteIsUnbiased) {
   TestMedium dense({32, 32, 32}, 16, 2, 1.0F, [](const Float3&) { return 1.0F; });
   dense->albedo = 0.9F;
   const Lighting ambient;
   const Float3 eye{-5, 16, 16};
-  // The radiance by counting bounces: sum over n of P(n collisions) albedo^n, without roulette.
+  // Expected radiance without roulette: the sum over n of P(n collisions) albedo^n.
   const Estimate counted = estimate(40000, [&](Random& random) {
     double weight = 1;
     Float3 direction{1, 0, 0};
@@ -120,7 +120,7 @@ TEST(TracePath, NoBouncesIsBackgroundAndBlack) {
   EXPECT_EQ(trace_path(*medium, ambient, {-1, 8, 8}, {-1, 0, 0}, 0, random), (Float3{1, 1, 1}));
 }
 
-// A path of no scattering has one collision, which emits; every scattering leads to one more.
+// A path without scattering has one collision, which emits. Each scattering leads to one more collision.
 TEST(TracePath, EveryCollisionEmits_AlsoBehindTheLastScattering) {
   TestMedium medium({32, 32, 32}, 16, 1e6F, 1.0F, [](const Float3&) { return 1.0F; });
   medium->emission = 2;

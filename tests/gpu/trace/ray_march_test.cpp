@@ -80,7 +80,7 @@ TEST(March, SurfaceFacingTheCameraReflectsTheAmbientLight) {
   EXPECT_NEAR(march(*medium, lighting, {0, 8, 8}, {1, 0, 0}, 0.5F, 0.5F, random).x, 0.75F, 1e-6F);
 }
 
-// What is not worth a gradient is bounded for the whole ray: without light, a thin fog is as black as a dense one.
+// kUnshaded bounds the unlit opacity of the whole ray: without light, a thin fog is as black as a dense one.
 TEST(March, FogWithoutLight_IsBlackHoweverThinItIs) {
   Lighting lighting = dark();
   lighting.zenith = lighting.horizon = lighting.ground = {0, 0, 0};
@@ -97,7 +97,7 @@ TEST(March, FogWithoutLight_IsBlackHoweverThinItIs) {
   }
 }
 
-// Light of the surroundings, which all of a constant fog reflects half of: the colour is off by kUnshaded at most.
+// All of a constant fog reflects half of the surroundings' light. The colour is off by kUnshaded at most.
 TEST(March, ThinFogReflectsTheAmbientLight) {
   Lighting lighting = dark();
   lighting.zenith = lighting.horizon = lighting.ground = {0.5F, 0.5F, 0.5F};
@@ -107,7 +107,8 @@ TEST(March, ThinFogReflectsTheAmbientLight) {
               kUnshaded + 1e-4F);
 }
 
-// White of radiance 1 before a background of 1000: T = exp(-7.7) of it is seen, though the ray ends there.
+// A white medium of radiance 1 before a background of 1000: T = exp(-7.7) of the background is visible, although the
+// ray ends there.
 TEST(March, RayThatEndsEarly_StillSeesTheBackground) {
   Lighting lighting = dark();
   lighting.background = {1000, 1000, 1000};
@@ -121,7 +122,7 @@ TEST(March, RayThatEndsEarly_StillSeesTheBackground) {
   }
 }
 
-// What is behind a medium of any depth counts at most kOpaque of itself too much.
+// Behind a medium of any depth, at most the share kOpaque of the background is counted too much.
 TEST(March, BackgroundBehindAWall_IsLeftOutButForAShare) {
   Lighting lighting = dark();
   lighting.background = {1000, 1000, 1000};

@@ -14,7 +14,7 @@ using test::estimate;
 using test::TestMedium;
 
 constexpr std::uint32_t kDraws = 200000;
-constexpr double kSigmas = 4.5;  // of the mean; one false alarm in 1.5e5
+constexpr double kSigmas = 4.5;  // allowed deviation of the mean; one false alarm in 1.5e5
 
 const auto kHalf = [](const Float3&) { return 0.5F; };
 
@@ -56,7 +56,7 @@ TEST(DeltaTrack, TransmittanceOfARampWithTightMajorants) {
   EXPECT_LT(ratio.sigma, delta.sigma);
 }
 
-// A voxel twice as long in x is crossed in twice the length.
+// A voxel that is twice as long in x is crossed in twice the length.
 TEST(DeltaTrack, StretchedVoxelsLengthenThePath) {
   TestMedium medium({32, 32, 32}, 16, 0.05F, 1.0F, kHalf);
   medium->stretch = {2, 1, 1};
@@ -108,7 +108,7 @@ TEST(DeltaTrack, HugeExtinctionStopsAtOnce) {
   }
 }
 
-// The rest of a cell that holds a wall is as clear as without it.
+// The rest of a cell that contains a wall is as clear as without the wall.
 TEST(DeltaTrack, HugeMajorantOverVacuum_LetsEverythingPass) {
   for (const float density : {1e4F, 1e30F}) {
     TestMedium medium({64, 64, 64}, 16, density, 1.0F, [](const Float3&) { return 0.0F; });
@@ -119,7 +119,7 @@ TEST(DeltaTrack, HugeMajorantOverVacuum_LetsEverythingPass) {
   }
 }
 
-// The longest flight of any honest volume, along the diagonal of 8192^3 voxels.
+// The longest flight of any realistic volume, along the diagonal of 8192^3 voxels.
 TEST(DeltaTrack, HugeMajorantOverALongWay_LetsEverythingPass) {
   for (const float length : {2048.0F, 14189.0F}) {
     TestMedium medium({14192, 16, 16}, 16, 1e30F, 1.0F, [](const Float3&) { return 0.0F; });
@@ -140,7 +140,7 @@ TEST(DeltaTrack, TentativeCollisionsWithoutEnd_EndTheFlight) {
   EXPECT_EQ(ratio_track(*medium, ray, 32768, RayKind::camera, random), 0.0F);
 }
 
-// Floats do not tell t from t plus a free path.
+// Floats cannot distinguish t from t plus a free path.
 TEST(DeltaTrack, TentativeCollisionsThatDoNotMove_EndTheFlight) {
   constexpr std::int32_t kCell = 1 << 24;
   TestMedium medium({2 * kCell, kCell, kCell}, kCell, 1e30F, 1.0F, [](const Float3&) { return 0.0F; });

@@ -81,8 +81,8 @@ TEST(BlockCache, Store_OfABlockThatIsThere_ChangesNothing) {
   for (std::uint32_t key = 0; key < 4; ++key) EXPECT_TRUE(holds(cache, key));
 }
 
-// A block has its key in all voxels: a mixture of two blocks would show. All voxels are read, so that many a read is
-// overtaken by a store.
+// All voxels of a block have its key as their value, so a mixture of two blocks would be noticed. All voxels are
+// read, so that stores overtake many reads.
 TEST(BlockCache, ManyThreads_StoringInOneSet_ReadWholeBlocks) {
   BlockCache cache(kSetBytes);
   std::array<std::uint32_t, BlockCache::kVoxels> offsets;

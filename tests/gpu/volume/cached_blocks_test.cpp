@@ -66,7 +66,7 @@ TEST(CachedBlocks, Bytes_AreTableTilesAndCache) {
   const NvdbGrid grid = NvdbGrid::open(made.file, "a.nvdb");
   const CachedBlocks blocks(grid, kSmallCache);
   const auto kinds = PackedSample::blocks_by_kind();
-  const std::uint64_t tiles = 1 + 4;  // the background, and one of each region
+  const std::uint64_t tiles = 1 + 4;  // the background, and one per region
   EXPECT_EQ(blocks.bytes(), 4 * (kinds[0] + kinds[1] + kinds[2]) + 4 * tiles + kSmallCache);
 }
 

@@ -56,7 +56,7 @@ TEST(DecodedLeaves, GridWithoutStreams_HasNoLeaves) {
 
 TEST(DecodedLeaves, Macrocells_GatheredOfBlocks_HoldTheirValues) {
   test::PackedFile made = PackedSample::build();
-  // Without macrocells of its own: their record has another name.
+  // Renames the macrocells' record, so that the file has no macrocells of its own.
   store(std::span(made.file), made.record - nvdb::kBlindMetaBytes + nvdb::blind::kName, 'x');
   const NvdbGrid grid = NvdbGrid::open(made.file, "a.nvdb");
   ASSERT_FALSE(has_macrocells(grid));

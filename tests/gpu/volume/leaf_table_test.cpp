@@ -19,7 +19,7 @@ float wave(const Index3& i) {
          0.01F * static_cast<float>(i.z);
 }
 
-// The table says of every voxel of the domain what the grid's reader says.
+// Checks that the table gives the same as the grid's reader for every voxel of the domain.
 void expect_equal(const NvdbGrid& grid, std::int64_t stride = 1) {
   const LeafTable table(grid);
   const LeafTableView view = table.view();
@@ -82,7 +82,7 @@ TEST(LeafTable, OneVoxel) {
   EXPECT_EQ(table.view().voxel({0, 0, 0}), 42.0F);
 }
 
-// Beyond one upper node, one voxel thick.
+// A needle that is longer than an upper node and one voxel thick.
 TEST(LeafTable, NeedleLongerThanAnUpperNode) {
   const TestGrid grid({{3, 5, -10}, {4, 6, 4200}}, wave);
   expect_equal(grid.grid());

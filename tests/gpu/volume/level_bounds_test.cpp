@@ -42,7 +42,7 @@ struct Scene {
   LevelledVolume<DenseSampler, DenseSampler> seen(const LevelChoice& choice) const {
     return {{volume.view(), Filter::trilinear}, pyramid.view(), choice};
   }
-  // Of a position in voxels from the domain's lowest corner.
+  // Returns the cell of a position in voxels from the domain's lowest corner.
   std::size_t cell_of(const Float3& p) const {
     const CellLattice lattice = cells.lattice();
     const auto along = [&](float at, std::int32_t shift) {
@@ -99,16 +99,16 @@ TEST(LevelBounds, EveryFiniteLookUp_LiesWithinThoseOfItsCell) {
   }
 }
 
-// One bright voxel: its mean on a level is seen from the cells that the level's texels around it touch, no farther.
+// One bright voxel: its mean on a level is seen only from the cells that the level's texels around it touch.
 TEST(LevelBounds, ReachNoFartherThanTheTexelsOfTheLevelsUsed) {
   const Index3 bright{40, 150, 50};  // from the domain's corner: 45, 30, 41
   const Scene scene([&](const Index3& i) { return i == bright ? 1.0F : 0.0F; }, 1, 16);
   for (const int level : {1, 2, 3}) {
-    // So far away that the level is the same all over.
+    // The eye is so far away that the level is the same everywhere.
     const LevelChoice choice = looking_from({-1e6F, 30, 20}, static_cast<float>(level) - std::log2(1e6F) - 1e-3F, 0);
     const std::vector<MinMax> bounds = scene.pyramid.bounds(scene.cells, choice, 1);
     const auto edge = static_cast<float>(1 << level);
-    // Two texels around the one that holds the voxel, and another's width for the coarser level of the mixture.
+    // Two texels around the texel of the voxel, and twice the width for the coarser level of the mixture.
     const float reach = 3 * 2 * edge;
     int bright_cells = 0;
     const CellLattice lattice = scene.cells.lattice();
@@ -133,7 +133,7 @@ TEST(LevelBounds, ReachNoFartherThanTheTexelsOfTheLevelsUsed) {
   }
 }
 
-// A voxel outside a cell's apron lies in a texel that the cell's look-ups reach: only where levels are seen.
+// A voxel outside a cell's apron lies in a texel that the cell's look-ups reach, but only if they read levels.
 TEST(LevelBounds, NearTheEye_AreThoseOfTheVoxels_AndInADraftOfTheFirstLevel) {
   const Index3 bright{32 + 2, 150, 50};  // the third voxel past a border of cells
   const Scene scene([&](const Index3& i) { return i == bright ? 1.0F : 0.0F; }, 2, 16);
@@ -144,7 +144,7 @@ TEST(LevelBounds, NearTheEye_AreThoseOfTheVoxels_AndInADraftOfTheFirstLevel) {
     EXPECT_EQ(seen[c].max, scene.cells.bounds()[c].max);
   }
   const std::vector<MinMax> drafts = scene.pyramid.bounds(scene.cells, choice, 1, true);
-  // From the domain's lowest corner: a position in the cell below the border.
+  // A position in the cell below the border, from the domain's lowest corner.
   const std::size_t below = scene.cell_of({36.5F, 30.5F, 41.5F});
   EXPECT_EQ(seen[below].max, 0);
   EXPECT_EQ(drafts[below].max, 1.0F / 64);

@@ -104,7 +104,7 @@ TEST(MacrocellGrid, ContentIsOneBoxARow) {
   EXPECT_EQ(cells.content([](std::size_t) { return false; }), (std::vector<Box>{{{3, 0, 0}, {64, 32, 16}}}));
 }
 
-// What Woodcock tracking lives on: no lookup by any filter anywhere in a cell exceeds its majorant.
+// Woodcock tracking relies on this: no look-up by any filter anywhere in a cell exceeds the cell's majorant.
 TEST(MacrocellGrid, MajorantsBoundEveryLookup) {
   for (std::uint64_t k = 0; k < 12; ++k) {
     Random random(4, k, 0);

@@ -41,7 +41,8 @@ DenseView view_of(const std::vector<float>& values, const Box& domain) {
           {static_cast<std::int32_t>(e.x), static_cast<std::int32_t>(e.y), static_cast<std::int32_t>(e.z)}};
 }
 
-// Of each texel, the finite voxels of the domain in its cube of 2^level, which begin at the first region's corner.
+// Checks each texel against the finite voxels of the domain in its cube of edge 2^level. Cubes begin at the first
+// region's corner.
 void expect_means(const MeanPyramid& pyramid, const Box& domain, const std::function<float(const Index3&)>& value) {
   const LevelsView<DenseSampler> view = pyramid.view();
   const Index3 corner = floor_div(domain.lo, kRegionDim) * kRegionDim;
@@ -113,7 +114,7 @@ TEST(MeanPyramid, OfAGridsLeavesAndOfPackedBlocks_IsThatOfTheirVoxels) {
   }
 }
 
-// Trilinear between texels, and linear between levels: a linear function is met at all of them.
+// Values are trilinear between texels and linear between levels, so a linear function is reproduced on all levels.
 TEST(LevelsView, ALinearFunction_IsTheSameOnEveryLevel) {
   const Box domain{{-8, 16, 0}, {56, 80, 64}};
   const auto value = [](const Index3& i) {
@@ -128,7 +129,7 @@ TEST(LevelsView, ALinearFunction_IsTheSameOnEveryLevel) {
       EXPECT_NEAR(pyramid.view().at(p, level), expected, 1e-4F) << level;
     }
   }
-  // Above the coarsest level there is nothing more.
+  // Above the coarsest level nothing changes.
   EXPECT_EQ(pyramid.view().at({5, 5, 5}, 40), pyramid.view().at({60, 3, 9}, 40));
 }
 
@@ -152,7 +153,7 @@ TEST(LevelLattice, FinestLevel_FitsTheMemory) {
   EXPECT_EQ(finest_level_within(lattice, 3, from_1), 3);
   EXPECT_EQ(finest_level_within(lattice, 9, from_1), kMostFinest);
   EXPECT_EQ(finest_level_within(lattice, 1, 100), 0);
-  // At most so many texels along an axis, and 2^31 of them.
+  // Also limited to a number of texels along an axis, and to 2^31 texels.
   EXPECT_EQ(finest_level_within(lattice, 1, from_1, 100), 2);
   EXPECT_EQ(finest_level_within({{0, 0, 0}, {4096, 4096, 4096}}, 1, std::uint64_t{1} << 40U), 2);
 }

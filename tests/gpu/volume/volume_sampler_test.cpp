@@ -16,12 +16,12 @@ namespace {
 using test::estimate;
 using test::TestGrid;
 
-// A hash as a value: no structure that a wrong index could hide behind.
+// A hash as the value: it has no structure that could hide a wrong index.
 float noise(const Index3& i) {
   return Random(1, static_cast<std::uint64_t>(i.x * 1000003 + i.y * 1009 + i.z), 5).uniform();
 }
 
-// Trilinear by its definition, in double, voxel by voxel through the grid's reader.
+// The trilinear value by its definition, in double, read voxel by voxel through the grid's reader.
 double reference(const NvdbGrid& grid, const Float3& p) {
   const Box box = grid.index_bbox();
   const std::array<double, 3> at{static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};

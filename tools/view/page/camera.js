@@ -1,14 +1,14 @@
-// The camera: it orbits a point of world space. Angles are degrees, as a scene has them; vectors are [x, y, z].
+// The camera: it orbits a point of world space. Angles are in degrees, as in a scene; vectors are [x, y, z].
 
-export const kFov = 30;  // vertical, as a scene's
-export const kSteepest = 89.9;  // degrees of elevation: above it, a picture has no upper side
-const kCloser = 0.8;    // of the distance at which a sphere around the volume fills the picture
+export const kFov = 30;  // vertical, as in a scene
+export const kSteepest = 89.9;  // largest elevation in degrees: straight above, the picture would have no up direction
+const kCloser = 0.8;    // factor of the distance at which a sphere around the volume fills the picture
 const kRadians = Math.PI / 180;
 
 const add = (a, b, s = 1) => a.map((v, i) => v + s * b[i]);
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 
-/** The middle of a box of voxels in world space, and half its diagonal there. */
+/** Returns the middle of a file's box of voxels in world space, and half its diagonal. */
 export function bounds(facts) {
   const [lo, hi] = facts.box;
   const middle = facts.origin.map((o, i) => o + facts.voxel_size[i] * ((lo[i] + hi[i]) / 2 - 0.5));
@@ -16,7 +16,7 @@ export function bounds(facts) {
   return {middle, radius: radius || 1};
 }
 
-/** Unit vectors of the camera's frame: towards it, to the right and up in the picture. */
+/** Returns unit vectors: from the target towards the camera, and right and up in the picture. */
 function axes(look) {
   const [az, el] = [look.az * kRadians, look.el * kRadians];
   const towards = [Math.cos(el) * Math.cos(az), Math.cos(el) * Math.sin(az), Math.sin(el)];
@@ -24,7 +24,7 @@ function axes(look) {
   return {towards, right, up: cross(towards, right)};
 }
 
-/** An elevation at which the camera may stand. */
+/** Limits an elevation to the allowed range. */
 export const level = (el) => Math.min(kSteepest, Math.max(-kSteepest, el));
 
 function distance(facts, aspect) {
@@ -33,7 +33,7 @@ function distance(facts, aspect) {
 
 export const target = (look, facts) => look.at ?? bounds(facts).middle;
 
-/** Where the camera stands, for a picture of that width / height. */
+/** Returns the camera's position for a picture with this ratio of width to height. */
 export function position(look, facts, aspect) {
   return add(target(look, facts), axes(look).towards, distance(facts, aspect));
 }
@@ -46,7 +46,7 @@ export function zoomed(look, times) {
   return {...look, zoom: Math.min(60, Math.max(0.1, look.zoom * times))};
 }
 
-/** Moves what is seen by (x, y), shares of the picture's height, to the right and down. */
+/** Moves the picture's content right and down by (x, y), shares of the picture's height. */
 export function panned(look, facts, aspect, x, y) {
   const height = 2 * distance(facts, aspect) * Math.tan(kFov / 2 * kRadians) / look.zoom;
   const {right, up} = axes(look);

@@ -1,14 +1,14 @@
-// What a file's certificate says: bytes, rate, error, and its blocks by kind.
+// Shows a file's certificate: bytes, rate, error, and the number of blocks of each kind.
 
 import {element} from "./dom.js";
 import * as format from "./format.js";
 
-// Told apart by people with every kind of colour vision (Okabe and Ito).
+// Colours that people with any kind of colour vision can distinguish (Okabe and Ito).
 const kColours = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#999999"];
 
 const unit_of = (facts) => facts.certificate?.units ? ` ${facts.certificate.units}` : "";
 
-/** "0 to 12740 K": the values of a file. */
+/** Returns the range of values of a file: "0 to 12740 K". */
 export const values_text = (facts) => `${facts.values.map(format.exact).join(" to ")}${unit_of(facts)}`;
 
 export function rows(facts) {
@@ -56,7 +56,7 @@ export function show_kinds(root, kinds) {
   root.replaceChildren(strip, names);
 }
 
-/** "0.42 K, at most 0.01 off, at 1, 2, 3 (world 0.1, 0.2, 0.3)", of an answer of the server. */
+/** Returns the text of a server's answer: "0.42 K \u00b1 0.01 at 1, 2, 3 (world 0.1, 0.2, 0.3)". */
 export function value_text(answer, facts) {
   if (!answer.found) return "";
   const unit = unit_of(facts);

@@ -1,9 +1,9 @@
-// The box of voxels that is shown, two sliders for each axis.
+// The box of voxels that is shown, with two sliders for each axis.
 
 import {element, set_text} from "./dom.js";
 
 export class ClipBox {
-  /** `changed(box)` as it changes, null for all; `done()` when a change is over. */
+  /** Calls `changed(box)` during a change (null: the whole volume) and `done()` at its end. */
   constructor(root, {changed, done}) {
     this.changed = changed;
     this.rows = ["x", "y", "z"].map((axis) => {
@@ -17,13 +17,13 @@ export class ClipBox {
         return made;
       });
       const text = element("output");
-      text.setAttribute("aria-hidden", "true");  // the sliders say the same
+      text.setAttribute("aria-hidden", "true");  // the sliders announce the same values
       root.append(element("div", "axis", element("span", "", axis), ...sliders, text));
       return {sliders, text};
     });
   }
 
-  /** `limits`: [[x0, x1], ...] of the volume; `box` the same of what is shown, null for all. */
+  /** `limits` is [[x0, x1], ...] of the volume; `box` is the same of the shown part, null for all. */
   show(limits, box) {
     this.limits = limits;
     this.rows.forEach(({sliders: [from, to], text}, i) => {
@@ -44,5 +44,5 @@ export class ClipBox {
   }
 }
 
-/** "0:64,0:64,16:48", as --roi has it. */
+/** Returns the box in the syntax of --roi: "0:64,0:64,16:48". */
 export const roi_text = (box) => box.map((ends) => ends.join(":")).join(",");

@@ -1,26 +1,26 @@
-// The WebSocket to the server: the newest view goes out, pictures and texts come in; after a break it comes back.
+// The WebSocket to the server: sends the newest view, and receives pictures and texts. Reconnects after a break.
 
 const kAgain_ms = 1500;
-const kView_ms = 12;  // between two views, at least: a screen of 360 Hz has more frames than the server takes messages
+const kView_ms = 12;  // least time between two views: a 360 Hz screen has more frames than the server takes messages
 const encoder = new TextEncoder();
 
 const hex = (text) => [...encoder.encode(text)].map((byte) => byte.toString(16).padStart(2, "0")).join("");
 
 export class Connection {
-  /** `on`: opened(), closed(), message(object), picture(header, Blob), which returns a promise. */
+  /** `on` has opened(), closed(), message(object), and picture(header, Blob), which returns a promise. */
   constructor(on) {
     this.on = on;
     this.socket = null;
-    this.view = null;      // that waits for the next frame of the screen
+    this.view = null;      // the view to send with the next frame of the screen
     this.waiting = false;
-    this.sent = 0;         // when the last view went out
+    this.sent = 0;         // when the last view was sent
   }
 
-  /** `series`: the only one that this page is of; a server of another one refuses. */
+  /** Connects. `series` is this page's series; a server that shows another one refuses the connection. */
   open(token, series) {
     const protocols = ["weir.view"];
     if (token) protocols.push(`weir.token.${hex(token)}`);
-    const place = new URL(`ws?series=${encodeURIComponent(series)}`, location.href);  // beside the page, wherever that is
+    const place = new URL(`ws?series=${encodeURIComponent(series)}`, location.href);  // beside the page's own address
     place.protocol = location.protocol === "https:" ? "wss" : "ws";
     place.hash = "";
     const socket = new WebSocket(place, protocols);
@@ -37,13 +37,13 @@ export class Connection {
     });
   }
 
-  /** Tries again after a while, by `ask`, which calls open() where the server answers. */
+  /** Calls `ask` after a while; `ask` calls open() if the server answers. */
   retry(ask) {
     this.forget_retry();
     this.timer = setTimeout(ask, kAgain_ms);
   }
 
-  /** It is tried now. */
+  /** Cancels a retry, because a new attempt begins now. */
   forget_retry() {
     clearTimeout(this.timer);
   }
@@ -52,7 +52,7 @@ export class Connection {
     if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
   }
 
-  /** Sends the view with a frame of the screen that comes soon, only the newest of those that come before it. */
+  /** Sends the view with one of the next frames of the screen. Of several views before it, only the newest is sent. */
   show(view) {
     this.view = view;
     if (this.waiting) return;

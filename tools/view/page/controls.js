@@ -1,4 +1,4 @@
-// Sliders of single figures: surface, extinction, light.
+// Sliders of single numbers: iso value, extinction, light.
 
 import {by_id, set_text} from "./dom.js";
 import * as format from "./format.js";
@@ -7,7 +7,7 @@ import {kStartDensity, kStartLight, start_iso} from "./look.js";
 const kIsoSteps = 1000;
 
 export class Controls {
-  /** `changed({key: value})` as one changes, `done()` when a change is over. */
+  /** Calls `changed({key: value})` during a change and `done()` at its end. */
   constructor({changed, done}) {
     this.changed = changed;
     const slider = (id, read) => {

@@ -1,10 +1,10 @@
-// "Convert for this scene": the command, what it would come to, and its run where the server allows it.
+// "Convert for this scene": shows the command and the forecast of its result, and runs it if the server allows this.
 
 import {by_id, set_text} from "./dom.js";
 import * as format from "./format.js";
 import {show_command} from "./panels.js";
 
-const kRest_ms = 600;  // of the look, before it is asked for again
+const kRest_ms = 600;  // time without a change of the look before a new request
 
 const decibels = (value) => `${value.toFixed(1)} dB`;
 const expected = ({value, low, high}, text) => {
@@ -13,8 +13,8 @@ const expected = ({value, low, high}, text) => {
 const is_known = (figure) => figure && figure.value !== null;
 
 /**
- * "8.0 MiB, PSNR of what is shown 45.2 dB, of all voxels 33.0 dB, largest error 0.365, in about 1.2 s.", of a forecast of
- * the server.
+ * Returns the text of a forecast: "8.0 MiB, PSNR of what is shown 45.2 dB, of all voxels 33.0 dB, largest error 0.365,
+ * in about 1.2 s."
  */
 function forecast_text({exact, share, none, bytes, lossless, psnr_db, visible, max_abs, total_s}) {
   const about = exact ? "" : "about ";
@@ -35,21 +35,21 @@ function forecast_text({exact, share, none, bytes, lossless, psnr_db, visible, m
 
 export class Conversion {
   /**
-   * `scene()` as text, or null; `step()`: that it is of; `kept()`: what of the look and of the file decides what is kept, as
-   * text; `send(message)` to the server.
+   * `scene()` returns the scene as text, or null. `step()` returns its step. `kept()` returns as text all properties of
+   * the look and the file that decide which detail a conversion keeps. `send(message)` sends to the server.
    */
   constructor({scene, step, kept, send}) {
     Object.assign(this, {scene, step, kept, send});
-    this.id = 0;           // of the newest message
-    this.forecast_id = 0;  // of the newest that has a forecast
-    this.running = null;   // id of the one that has the conversion run
+    this.id = 0;           // number of the newest message
+    this.forecast_id = 0;  // number of the newest message with a forecast
+    this.running = null;   // number of the message whose conversion runs; null: none runs
     by_id("show-command").addEventListener("click", () => this.ask(false));
     by_id("run-convert").addEventListener("click", () => this.ask(true));
     by_id("convert-panel").addEventListener("toggle", (event) => event.target.open && this.ask(false));
     for (const id of ["budget", "rate", "psnr", "encoding"]) by_id(id).addEventListener("change", () => this.ask(false));
   }
 
-  /** Of a server, which knows nothing of what another one was asked. */
+  /** Starts with a new server, which knows nothing of earlier requests. */
   set_up(allowed) {
     by_id("run-convert").hidden = !allowed;
     this.allowed = allowed;
@@ -62,19 +62,19 @@ export class Conversion {
     by_id("run-convert").disabled = id !== null;
   }
 
-  /** The look or the file is another: so may be what is kept. */
+  /** Must be called when the look or the file has changed: asks again if this changes the kept detail. */
   changed() {
     if (!by_id("convert-panel").open || this.kept() === this.asked) return;
     clearTimeout(this.timer);
     this.timer = setTimeout(() => this.ask(false), kRest_ms);
   }
 
-  /** What is asked of a run leaves the forecast alone. */
+  /** Asks for the command and a forecast or, if `run`, for a run, which leaves the shown forecast alone. */
   ask(run) {
     const budget = by_id("budget").value;
     for (const each of ["rate", "psnr"]) by_id(`${each}-field`).hidden = each !== budget;
     const scene = this.scene();
-    if (!scene) return;  // asked again with the file's facts
+    if (!scene) return;  // the page asks again when the file's facts arrive
     const {valueAsNumber: amount, min, max} = by_id(budget);
     if (!(amount >= Number(min) && amount <= Number(max))) {
       this.refuse(`The ${budget === "rate" ? "rate" : "PSNR"} is a number from ${min} to ${max}.`);
@@ -91,7 +91,7 @@ export class Conversion {
     this.send({type: "convert", id: this.id, step: this.step(), scene, [budget]: amount, encoding: by_id("encoding").value, run});
   }
 
-  /** Nothing of an earlier question stays. */
+  /** Shows why nothing is asked, and discards the answers to earlier questions. */
   refuse(why) {
     clearTimeout(this.timer);
     ++this.id;
@@ -100,7 +100,7 @@ export class Conversion {
     this.note("failed", why);
   }
 
-  /** Without a command where there is none, for want of the source: then nothing is tried out, either. */
+  /** Shows the command. Without the source there is no command (null), and no forecast either. */
   show(command, bytes) {
     show_command(by_id("convert-command"), command ?? "");
     const size = bytes === null ? "As few bytes as keep what the scene shows at that PSNR."
@@ -114,7 +114,7 @@ export class Conversion {
     set_text(by_id("convert-note"), text);
   }
 
-  /** The command is of the newest question, the note of the run while there is one. */
+  /** Shows the command of the newest question. The note belongs to the run while there is one. */
   receive({id, command, bytes, state, message}) {
     if (id === this.id) this.show(command, bytes);
     if (id === this.running) {
@@ -128,7 +128,7 @@ export class Conversion {
     }[state]);
   }
 
-  /** An answer to an earlier question is of no use. */
+  /** Shows the forecast. An answer to an earlier question is ignored. */
   receive_forecast(message) {
     if (message.id !== this.forecast_id) return;
     set_text(by_id("convert-forecast"), message.state === "done" ? `Expected: ${forecast_text(message)}`

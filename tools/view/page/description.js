@@ -1,4 +1,4 @@
-// What the picture shows, in words, for who does not see it.
+// Describes the picture in words, for people who cannot see it.
 
 import {values_text} from "./certificate.js";
 import * as format from "./format.js";

@@ -1,4 +1,4 @@
-// Undo: the looks that were, camera and step aside, which nobody wants back.
+// Undo: keeps former looks without camera and step, which nobody wants to restore.
 
 const kMost = 100;
 const kKept = ["mode", "colormap", "opacity", "range", "density", "iso", "shading", "box", "light", "exposure"];
@@ -16,7 +16,7 @@ export class History {
     this.now = kept(look);
   }
 
-  /** A change is over; it is one step of undo. */
+  /** Records a completed change as one step of undo. */
   mark(look) {
     const now = kept(look);
     if (now === this.now) return;

@@ -1,10 +1,10 @@
-// What a reader of the page keeps: the picture, the scene, and the address, which says the whole look.
+// What a reader can save: the picture, the scene, and the address, which contains the whole look.
 
 import {by_id, element, set_text} from "./dom.js";
 
 const kHash_ms = 300;
 
-/** Offers `blob` as a download of that name. */
+/** Offers `blob` as a download with this name. */
 function save(name, blob) {
   const link = element("a");
   link.href = URL.createObjectURL(blob);
@@ -16,7 +16,7 @@ function save(name, blob) {
 }
 
 export class Keep {
-  /** `file()`: name of what is shown; `scene()`: of the picture, as text; `hash()`: the look, for the address. */
+  /** `file()` returns the shown file's name, `scene()` the picture's scene, `hash()` the look for the address. */
   constructor({file, scene, hash}) {
     this.hash = hash;
     by_id("save-picture").addEventListener("click", () => {
@@ -26,7 +26,7 @@ export class Keep {
     by_id("copy-link").addEventListener("click", () => this.copy());
   }
 
-  /** The look is another: so is the address, where no other one comes at once. */
+  /** Updates the address after a change of the look, unless another change follows at once. */
   soon() {
     clearTimeout(this.timer);
     this.timer = setTimeout(() => this.now(), kHash_ms);

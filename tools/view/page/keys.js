@@ -1,11 +1,11 @@
-// Keys of the whole page, but for those that the control with the focus takes.
+// Keys of the whole page, except those that the focused control uses itself.
 
 import {kModes} from "./look.js";
 
 const kFields = "input[type=text], input[type=password], input[type=number], select, textarea";
-const kPressed = "button, summary, input:not([type=range])";  // by Space
+const kPressed = "button, summary, input:not([type=range])";  // elements that Space presses
 
-/** `does`: mode(name), reset(), play(), step(by), undo("undo" or "redo"). */
+/** `does` has mode(name), reset(), play(), step(by), undo("undo" or "redo"). */
 export function listen_to_keys(does) {
   addEventListener("keydown", (event) => {
     if (event.target.matches?.(kFields)) return;

@@ -1,4 +1,4 @@
-// What the server has said of the files: facts and histogram of each step, and of the file it is compared with.
+// What the server has sent about the files: facts and histogram of each step, and of the file it is compared with.
 
 export class KnownFiles {
   constructor() {
@@ -9,7 +9,7 @@ export class KnownFiles {
     return this.entries.get(`${step} ${side}`);
   }
 
-  /** Of a step that nothing was said of yet, those of the one that was told first. */
+  /** Returns the facts of `step`; if they have not arrived, those of the step whose facts came first. */
   facts(step, side = 0) {
     return this.entry(step, side)?.facts ?? this.first(side)?.facts;
   }
@@ -32,7 +32,7 @@ export class KnownFiles {
     this.entries.set(key, {...this.entries.get(key), [message.type]: message});
   }
 
-  /** All steps have these values in common from now on; whether any of them is another. */
+  /** Sets the values that all steps share from now on. Returns whether a step had others. */
   set_values({range, background, opacity}) {
     let other = false;
     for (const {facts} of this.entries.values()) {

@@ -1,22 +1,23 @@
-// What is seen: one plain object, which is the URL, the scene of each picture, and the scene that is saved.
+// The look: one plain object with everything that decides the picture. It is written to the URL, to the scene of each
+// picture, and to the saved scene.
 
 import * as camera from "./camera.js";
 
 export const kModes = ["dvr", "path", "iso", "mip"];
 
-/** null: what weir render takes where a scene says nothing. */
+/** The look at the start. null: the default of weir render. */
 export const kStart = Object.freeze({
   mode: "dvr", az: 35, el: 20, zoom: 1, at: null, colormap: null, opacity: null, range: null, density: null, iso: null,
   shading: null, box: null, light: null, exposure: null, step: 0, split: null, log: true,
-  file: null,  // name of a step that an address asks for; the page finds its number
+  file: null,  // name of a step that the address asks for; the page finds its number
 });
 
-// The light where none is chosen, for sliders to start from: direction in degrees, strength, and that of the sky.
+// The light if none is chosen; the sliders start from it. Direction in degrees, strength, and strength of the sky.
 export const kStartLight = Object.freeze({az: 320, el: 49, power: 2.1, sky: 0.6});
 export const kStartDensity = {dvr: 200, path: 250, iso: 1, mip: 1};
 
 const short = (value) => Number(value.toPrecision(6));
-// Of values and places in the world, which may differ little from each other, every digit counts.
+// Values and places in the world may differ little from each other, so they keep all digits.
 const kExact = ["at", "range", "iso"];
 
 const kKeys = {
@@ -24,7 +25,7 @@ const kKeys = {
   shading: "sh", box: "b", light: "l", exposure: "e", file: "f", split: "s", log: "log",
 };
 
-/** The look as the text behind a URL's #; `file` is the name of its step, which is said of all but the first. */
+/** Returns the look as the text behind a URL's #. `file` names its step; it is left out for the first step. */
 export function to_hash(look, file) {
   const parts = new URLSearchParams();
   for (const [key, name] of Object.entries(kKeys)) {
@@ -78,7 +79,7 @@ const kReaders = {
   },
 };
 
-/** The inverse; what cannot be read is as at the start. */
+/** The inverse of to_hash(). Parts that cannot be read keep their start values. */
 export function from_hash(text) {
   const look = {...kStart};
   const parts = new URLSearchParams(text.replace(/^#/, ""));
@@ -90,7 +91,7 @@ export function from_hash(text) {
   return look;
 }
 
-/** The iso value where none is chosen: 35 % of the way from the background to the value farthest from it. */
+/** Returns the default iso value: 35 % of the way from the background to the value farthest from it. */
 export function start_iso(facts) {
   const [low, high] = facts.range;
   const from = Math.min(high, Math.max(low, facts.background));
@@ -98,10 +99,11 @@ export function start_iso(facts) {
   return from + 0.35 * (farthest - from);
 }
 
-// Share of the largest distance from the background up to which nothing is seen where no opacity is chosen.
+// If no opacity is chosen, values this close to the background are invisible, as a share of the largest distance from
+// it.
 const kTransparentShare = 0.06;
 
-/** The opacity where none is chosen, at a position from 0 to 1 in a range: default_opacity of gpu/scene/. */
+/** Returns the default opacity at a position from 0 to 1 in a range, like default_opacity of gpu/scene/. */
 export function start_opacity(position, [low, high], background) {
   if (low === high) {
     const end = (background < low && position === 0) || (background > high && position === 1);
@@ -113,11 +115,11 @@ export function start_opacity(position, [low, high], background) {
   return Math.max(0, (distance - kTransparentShare) / (1 - kTransparentShare)) ** 1.5;
 }
 
-// A number as TOML has it: 1e20 printed in digits would be an integer that it refuses.
+// Returns a number in TOML syntax: 1e20 printed in plain digits would be an integer too large for TOML.
 const toml = (value) => Number.isSafeInteger(value) ? String(value) : value.toExponential();
 const array = (values) => `[${values.map((value) => Array.isArray(value) ? array(value) : toml(value)).join(", ")}]`;
 
-/** The box of voxels that is shown, inside the volume; null: all of it. */
+/** Returns the shown box of voxels, limited to the volume; null: the whole volume. */
 export function shown_box(look, facts) {
   if (!look.box) return null;
   const box = look.box.map(([from, to], i) => {
@@ -128,7 +130,7 @@ export function shown_box(look, facts) {
   return box.every(([from, to], i) => from === facts.box[0][i] && to === facts.box[1][i]) ? null : box;
 }
 
-/** The scene, as `weir render --scene` takes it, of a picture of that width / height. */
+/** Returns the scene for `weir render --scene`, for a picture with this ratio of width to height. */
 export function to_scene(look, facts, aspect) {
   const lines = [`mode = "${look.mode}"`, "", "[camera]"];
   lines.push(`position = ${array(camera.position(look, facts, aspect))}`, `look_at = ${array(camera.target(look, facts))}`,

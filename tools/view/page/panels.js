@@ -1,11 +1,11 @@
-// What the panels beside the picture show of a look, and what is said of the picture and the connection.
+// Fills the panels beside the picture from a look, and shows the state of the picture and the connection.
 
 import {by_id, element, set_text} from "./dom.js";
 import * as format from "./format.js";
 import * as certificate from "./certificate.js";
 import {start_iso, start_opacity} from "./look.js";
 
-/** The opacity of a look that has no points: the server's, or over the look's own range that of this range. */
+/** Returns the opacity of a look without points: the server's, or the default for the look's own range. */
 export function curve_of(look, facts) {
   const last = facts.opacity.length - 1;
   const range = look.range?.map(Math.fround);  // values are float32
@@ -31,13 +31,13 @@ export function show_transfer(editor, look, facts, histogram, colormaps) {
   by_id("log").checked = look.log;
 }
 
-/** Of the window, and of the page, which is `more`: what was named on the command line, too. */
+/** Sets the titles of the window and of the page; the page's title, `more`, also has the command line's name. */
 export function show_title(file, more) {
   document.title = `${file} \u2013 weir view`;
   set_text(by_id("title"), more);
 }
 
-/** Of the file of that name, whose own facts may come later; `other`: of what it is compared with, where there is one. */
+/** Shows the file `name`, whose own facts may come later. `other` is the compared file's facts, if there is one. */
 export function show_file(name, facts, other) {
   set_text(by_id("file-name"), name);
   for (const id of ["certificate", "kinds"]) by_id(id).classList.toggle("awaited", facts.file !== name);
@@ -59,7 +59,7 @@ export function show_mode(look) {
   by_id("colormap").value = look.colormap ?? "";
 }
 
-/** Of a picture, and whether another one is `awaited`. */
+/** Shows the quality of a picture. `awaited`: another picture is expected. */
 export function show_quality(header, awaited) {
   const bar = by_id("progress");
   const size = `${header.width} \u00d7 ${header.height}`;
@@ -74,9 +74,9 @@ export function show_quality(header, awaited) {
   set_text(by_id("quality"), `${size}, ${header.samples} of ${header.of} samples a pixel${done}`);
 }
 
-/** Each word stays whole where there is room for it: a line must not end within "--scene". */
+/** Shows a command. Lines break only between words if there is room: a line must not end within "--scene". */
 export function show_command(target, text) {
-  if (target.textContent === text) return;  // a selection in it survives
+  if (target.textContent === text) return;  // an unchanged text keeps the reader's selection
   const words = text === "" ? [] : text.split(" ");
   target.replaceChildren(...words.flatMap((word, i) => [i > 0 ? " " : "", element("span", "word", word)]));
 }

@@ -1,5 +1,5 @@
-// The page and its server: asks who it is, for the token where it wants one, and whether it shows this page's series;
-// then connects, and does all that again after a break.
+// The page's session with its server: asks for the server's state (and for the token if needed), checks that the
+// server shows this page's series, and connects. Repeats all this after a break.
 
 import {ApiError, get, set_token} from "./api.js";
 import {Connection} from "./connection.js";
@@ -12,8 +12,8 @@ const kUnavailable = 503;
 
 export class Session {
   /**
-   * `file()`: name of the file that this page shows, or null. `ready(state)`: /api/state of a server that shows it, before
-   * the connection. `message` and `picture` are those of Connection.
+   * `file()` returns the name of the file that this page shows, or null. `ready(state)` is called before the connection
+   * with /api/state of a server that shows this series. `message` and `picture` are those of Connection.
    */
   constructor({file, ready, message, picture}) {
     Object.assign(this, {file, ready});

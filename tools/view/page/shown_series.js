@@ -1,4 +1,4 @@
-// The series that this page is of. Behind weir watch the one viewer may be taken over for another one: then this page
+// The series of this page. Behind weir watch, the only viewer may be taken over for another series. Then this page
 // says so, keeps its picture, and offers to bring its own series back.
 
 import {post} from "./api.js";
@@ -9,9 +9,9 @@ const kTaken = 423;
 const asked = new URLSearchParams(location.search);
 const job = asked.get("job");
 
-let key = asked.get("series");  // null: of whatever is shown at first
-let name = null;                // of the file of it that is shown, where one is known
-let forced = false;             // the next click takes it from whoever looks
+let key = asked.get("series");  // null: the series that the server shows first
+let name = null;                // of the shown file of this series; null: not known yet
+let forced = false;             // the next click takes the viewer even from somebody who uses it
 
 function show(text, {back = false, there = false} = {}) {
   by_id("other-series").hidden = !text;
@@ -35,7 +35,7 @@ async function take_back() {
 
 export const series_key = () => key;
 
-/** Whether `state`, of the server, is of this page's series; where it is not, the page says so. `file`: of this page. */
+/** Returns whether the server's `state` is of this page's series; if not, says so. `file` is this page's file. */
 export function is_own_series(state, file) {
   key ??= state.series;
   name = file ?? name;
@@ -53,7 +53,7 @@ export function is_own_series(state, file) {
   return false;
 }
 
-/** No viewer answers, and `state` says why: where none runs and a job is known, it can be started again. */
+/** Says that no viewer answers; `state` tells why. If none runs and a job is known, offers to start it again. */
 export function show_no_viewer(state) {
   if (forced) return;
   if (state === "starting") show("The viewer is being started.");

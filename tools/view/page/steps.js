@@ -1,19 +1,19 @@
-// The steps of a series: a slider, and play, which goes on when the picture of a step is there. A step has a number that
-// never changes; its place on the slider does, where others come before it.
+// The steps of a series: a slider and playback, which goes on when the picture of a step has arrived. A step has a
+// number that never changes. Its place on the slider changes when other steps come before it.
 
 import {by_id, set_text} from "./dom.js";
 
-const kFrame_ms = 100;  // of a step, at least
+const kFrame_ms = 100;  // least time per step
 
 export class Steps {
-  /** `go(step, moving)` shows a step. */
+  /** `go(step, moving)` is called to show a step. */
   constructor(go) {
     Object.assign(this, {slider: by_id("step"), play: by_id("play"), follow: by_id("follow"), go});
     this.names = [];
     this.order = [];
     this.step = 0;
     this.playing = false;
-    this.fresh = 0;  // steps that came since the last one was shown
+    this.fresh = 0;  // number of steps that came since the last step of the series was shown
     const chosen = (moving) => {
       this.follow.checked = false;
       go(this.order[Number(this.slider.value)], moving);
@@ -24,7 +24,7 @@ export class Steps {
     this.follow.addEventListener("change", () => this.follow.checked && this.go_to_last());
   }
 
-  /** The steps there are: `steps` are names by number, `order` the numbers in order. Playing ends where one is left. */
+  /** Sets the steps: `steps` are names by number, `order` the numbers in order. With only one step, playback ends. */
   set({steps, order, grows}) {
     const known = this.names.length;
     const more = known > 0 ? order.filter((step) => step >= known).length : 0;
@@ -41,7 +41,7 @@ export class Steps {
     if (order.length === 1) this.go(order[0], false);
   }
 
-  /** The number of the step of that name; undefined where there is none. */
+  /** Returns the number of the step with this name; undefined if there is none. */
   number(name) {
     return this.order.find((step) => this.names[step] === name);
   }
@@ -81,7 +81,7 @@ export class Steps {
     this.play.setAttribute("aria-label", playing ? "Stop" : "Play the steps");
   }
 
-  /** From one place to the next, and from the last to the first; from a step that is gone to one of these. */
+  /** Returns the step `by` places further, in a circle; from a step that is gone, the first or the last one. */
   neighbour(by) {
     const place = by < 0 ? Math.max(this.place(), 0) : this.place();
     return this.order[(place + by + this.order.length) % this.order.length];
@@ -98,7 +98,7 @@ export class Steps {
     this.go(this.neighbour(1), true);
   }
 
-  /** The picture of a step is there. */
+  /** Must be called when the picture of a step has arrived. */
   drawn(step) {
     if (!this.playing || step !== this.step) return;
     const wait = Math.max(0, kFrame_ms - (performance.now() - this.turned));

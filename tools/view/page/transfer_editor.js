@@ -1,4 +1,5 @@
-// Opacity over the values, drawn over their histogram: points are dragged, added, removed, by mouse, touch and keys.
+// The opacity curve over the values, drawn over their histogram. Points are dragged, added and removed by mouse,
+// touch and keys.
 
 import {element} from "./dom.js";
 import {within} from "./format.js";
@@ -6,10 +7,10 @@ import {within} from "./format.js";
 const kSvg = "http://www.w3.org/2000/svg";
 const kWidth = 320;   // of the drawing, in its own units
 const kHeight = 150;
-const kEdge = 9;      // around the curve: room for a point
+const kEdge = 9;      // margin around the curve: room for a point
 const kMostPoints = 32;
 const kKeyStep = 0.02;
-const kCoarse = 0.02;  // of what a curve loses where points are made of it
+const kCoarse = 0.02;  // largest deviation in opacity when a curve is reduced to points
 
 const svg = (tag, attributes = {}) => {
   const made = document.createElementNS(kSvg, tag);
@@ -18,7 +19,7 @@ const svg = (tag, attributes = {}) => {
 };
 const clamp = (value, low, high) => Math.min(high, Math.max(low, value));
 
-/** Few points that give the curve (Ramer, Douglas and Peucker). */
+/** Returns a few points that approximate the curve (Ramer, Douglas and Peucker). */
 export function simplified(points) {
   if (points.length < 3) return points;
   const [first, last] = [points[0], points[points.length - 1]];
@@ -33,13 +34,13 @@ export function simplified(points) {
 }
 
 export class TransferEditor {
-  /** `changed(points)` as they change, `done()` when a change is over: where undo stops. */
+  /** Calls `changed(points)` during a change and `done()` at its end, which is one step of undo. */
   constructor(root, {changed, done}) {
     this.root = root;
     this.changed = changed;
     this.done = done;
     this.points = [];
-    this.pressed = [];  // what the last two presses were on
+    this.pressed = [];  // targets of the last two presses
     this.drawing = svg("svg", {viewBox: `0 0 ${kWidth} ${kHeight}`, preserveAspectRatio: "none", class: "curve"});
     this.bars = svg("path", {class: "bars"});
     this.area = svg("path", {class: "area"});
@@ -62,7 +63,7 @@ export class TransferEditor {
     field.addEventListener("keydown", (event) => this.key(event));
   }
 
-  /** `counts` of equal bins over [min, max]; drawn over `range`, as logarithms where `log`. */
+  /** Draws `counts` of equal bins over [min, max], on an axis over `range`; as logarithms if `log`. */
   show_histogram(histogram, range, log) {
     if (!histogram || histogram.counts.length === 0) {
       this.bars.setAttribute("d", "");
@@ -92,7 +93,7 @@ export class TransferEditor {
     this.iso.setAttribute("x2", this.x(position));
   }
 
-  /** `points` of [position, opacity]; `curve` is drawn where they are none yet. */
+  /** Shows `points` of [position, opacity]; without points, draws `curve`. */
   show(points, curve, range) {
     this.curve = curve;
     this.range = range;
@@ -186,7 +187,8 @@ export class TransferEditor {
     this.handles.children[Math.min(i, this.points.length - 1)]?.focus();
   }
 
-  /** A double click's own target may be the field, which captures the pointer. A point that it made first stays. */
+  /** Removes a double-clicked point. The event's target may be the field, which captures the pointer, so the targets
+   *  of the presses count. A point that the first press made stays. */
   remove_pressed() {
     const [first, second] = this.pressed;
     if (first === second) this.remove(Number(second?.dataset.point ?? -1));

@@ -1,25 +1,26 @@
-// The value under the pointer, or in the middle of the picture for a keyboard: asked of the server, and shown.
+// The value under the pointer, or in the middle of the picture for keyboard users: asks the server and shows the
+// answer.
 
 import {value_text} from "./certificate.js";
 import {by_id, set_text} from "./dom.js";
 
-const kRest_ms = 80;  // of the pointer, before it is asked for
+const kRest_ms = 80;  // time that the pointer must rest before a request
 
 export class Value {
-  /** `send(message)` to the server. */
+  /** `send(message)` sends to the server. */
   constructor(send) {
     this.send = send;
-    this.asked = {id: 0};  // the newest question: with its step and side
+    this.asked = {id: 0};  // the newest question, with its step and side
   }
 
-  /** What is under the pointer is another value; an answer that is on its way is of the one before. */
+  /** Clears the value, because another one may be under the pointer. An answer on its way is outdated. */
   forget() {
     clearTimeout(this.timer);
     this.asked = {id: this.asked.id + 1};
     set_text(by_id("value"), "");
   }
 
-  /** Of the point (x, y) of the picture of `look`, from 0 to 1; `none` is said where no voxel is seen there. */
+  /** Asks for the value at (x, y), from 0 to 1, in the picture of `look`; shows `none` if no voxel is seen there. */
   ask({x, y}, look, none = "") {
     clearTimeout(this.timer);
     this.timer = setTimeout(() => {
@@ -30,7 +31,7 @@ export class Value {
     }, kRest_ms);
   }
 
-  /** An answer; `facts_of(step, side)` are those of its file. */
+  /** Shows an answer. `facts_of(step, side)` returns the facts of its file. */
   receive(message, facts_of) {
     if (message.id !== this.asked.id) return;
     const facts = facts_of(this.asked.step, this.asked.side);

@@ -1,4 +1,5 @@
-// The page of weir view: puts the parts together. The look is one object (look.js); whatever changes it calls change().
+// The page of weir view: connects the parts. The look is one object (look.js); every change of it goes through
+// change().
 
 import {by_id, offer, set_text} from "./dom.js";
 import * as camera from "./camera.js";
@@ -18,15 +19,15 @@ import {TransferEditor, simplified} from "./transfer_editor.js";
 import {Value} from "./value.js";
 import {Viewport} from "./viewport.js";
 
-const kStill_ms = 150;   // without a change, then the picture is refined
+const kStill_ms = 150;   // time without a change after which the picture is refined
 
 let server = null;       // /api/state
 let look = looks.from_hash(location.hash);
 let history = new History(look);
 let view_id = 0;
-let drawn_first = false;  // since the server was asked for its state, a picture was asked for
+let drawn_first = false;  // a picture was requested since the server's state was received
 let still_timer;
-let wanted_file = null;    // name of a step that the address asks for and that has not come yet
+let wanted_file = null;    // name of a step that the address asks for but that has not arrived yet
 const files = new KnownFiles();
 const facts = () => files.facts(look.step);
 const aspect = () => viewport.width / viewport.height;
@@ -53,7 +54,7 @@ function ask_picture(moving) {
   session.connection.show(view);
 }
 
-/** The look is another: everything shows it, and the picture follows, at once and small, whole when it stands still. */
+/** Sets a new look: updates the page, and asks for a small picture at once and a full one when nothing moves. */
 function change(next, moving = true) {
   look = next;
   value.forget();
@@ -65,7 +66,7 @@ function change(next, moving = true) {
   keep.soon();
 }
 
-/** A change is over. */
+/** Must be called at the end of a change. */
 function done() {
   history.mark(look);
   show_undo();
@@ -80,7 +81,7 @@ function show_undo() {
 
 const scene = () => facts() && looks.to_scene(look, facts(), aspect());
 
-/** Says what the picture shows, now that it is done. */
+/** Describes the finished picture in words. */
 function describe() {
   const shown = facts();
   set_text(by_id("picture-text"), picture_text(look, shown, looks.shown_box(look, shown)));
@@ -109,7 +110,7 @@ function show_look() {
 
 // ---- What comes in
 
-/** The file's own facts may come later. */
+/** Shows the file of the present step; its own facts may come later. */
 function show_shown_file() {
   const name = steps.names[look.step];
   show_title(name, steps.names.includes(server.title) ? name : `${server.title}: ${name}`);
@@ -126,7 +127,7 @@ function receive_steps(message) {
   const other_values = files.set_values(message);
   const name = steps.names[look.step];
   steps.set(message);
-  const other_name = steps.names[look.step] !== name;  // there are steps of another folder
+  const other_name = steps.names[look.step] !== name;  // the step's number now belongs to another file
   const found = wanted_file === null ? undefined : steps.number(wanted_file);
   if (found !== undefined) go_to_step(found, false);
   else if (!message.order.includes(look.step)) show_banner(`${steps.names[look.step]} is no longer there.`);
@@ -146,7 +147,7 @@ function receive(message) {
     show_look();
     conversion.changed();
     if (message.type === "facts") show_shown_file();
-    // A picture that was asked for without these facts may have been of another box or range.
+    // A picture that was requested without these facts may show another box or range.
     if (!drawn_first || scene() !== before) ask_picture(steps.playing);
   } else if (message.type === "steps") {
     receive_steps(message);
@@ -157,7 +158,7 @@ function receive(message) {
     else set_text(by_id("quality"), `${Math.round(message.share * 100)} % of a pass`);
   } else if (message.type === "error") {
     show_banner(message.message);
-    if (message.view === view_id) steps.drawn(look.step);  // a series that plays goes on
+    if (message.view === view_id) steps.drawn(look.step);  // playback goes on
   } else if (message.type === "conversion") {
     conversion.receive(message);
   } else if (message.type === "forecast") {
@@ -169,7 +170,7 @@ const viewport = new Viewport(by_id("frame"), by_id("canvas"), by_id("divider"),
   turn: (az, el) => change(camera.turned(look, az, el)),
   zoom: (times) => change(camera.zoomed(look, times)),
   pan: (x, y) => facts() && change(camera.panned(look, facts(), aspect(), x, y)),
-  split: (share) => {  // both pictures are here
+  split: (share) => {  // no request is needed: both pictures are here
     look = {...look, split: share};
     viewport.set_split(share);
     keep.soon();
@@ -198,7 +199,7 @@ const editor = new TransferEditor(by_id("curve"), {
 const clip_box = new ClipBox(by_id("box"), {changed: (box) => change({...look, box}), done});
 const controls = new Controls({changed: (part) => change({...look, ...part}), done});
 
-/** The opacity by which is converted: what can be seen has to be said, also by a look that has no points. */
+/** Returns the opacity for a conversion, which needs explicit points even if the look has none. */
 const converted_opacity = (shown) => look.opacity ?? simplified(curve_of(look, shown));
 
 const conversion = new Conversion({
@@ -220,7 +221,7 @@ const keep = new Keep({
   scene: () => {
     const [width, height] = picture_size();
     const shown = facts();
-    // Of a series the curve depends on all of its steps, which weir render of one file does not know.
+    // The curve of a series depends on all its steps, which weir render of one file does not know.
     const curve = steps.names.length > 1 ? curve_of(look, shown) : null;
     const opacity = by_id("convert-panel").open ? converted_opacity(shown) : look.opacity ?? curve;
     return looks.to_scene({...look, opacity}, shown, width / height);
@@ -279,7 +280,7 @@ function listen() {
   }).observe(by_id("frame"));
 }
 
-/** The look without what the server does not have. A step that it does not have yet is waited for. */
+/** Returns the look without the parts that the server lacks. A step that does not exist yet is awaited. */
 function known(wanted) {
   const named = steps.number(wanted.file);
   wanted_file = wanted.file !== null && named === undefined ? wanted.file : null;
@@ -287,12 +288,12 @@ function known(wanted) {
     ...wanted,
     file: null,
     colormap: wanted.colormap && server.colormaps[wanted.colormap] ? wanted.colormap : null,
-    step: named ?? Math.min(...server.order),  // the first one that is there
+    step: named ?? Math.min(...server.order),  // the first existing step
     split: server.against.length > 0 ? wanted.split : null,
   };
 }
 
-/** A server is there, perhaps another one than before. */
+/** Starts with the server's state; it may be another server than before. */
 function set_up(state) {
   server = state;
   set_text(by_id("version"), `weir ${server.version}, ${server.backend}.`);
@@ -302,7 +303,7 @@ function set_up(state) {
   set_text(by_id("render-title"), server.preview_of === null ? "The same picture" : "This view of the source itself");
   offer(by_id("colormap"), [["", "of the mode"], ...Object.keys(server.colormaps).map((name) => [name, name])]);
   by_id("service").hidden = !location.pathname.endsWith("/view/");  // behind weir watch
-  // A server that was started anew may number the steps otherwise.
+  // A restarted server may number the steps differently.
   const file = look.file ?? steps.names[look.step] ?? null;
   files.clear();
   drawn_first = false;

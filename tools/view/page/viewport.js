@@ -1,15 +1,15 @@
-// The picture: drawn where it comes in, of two files side by side at a line that can be moved; and the hands on it, by
-// mouse, touch and keys.
+// The picture area: draws the pictures as they arrive, those of two files side by side with a movable divider.
+// Handles mouse, touch and keys.
 
-const kTurn = 0.35;        // degrees for a pixel
-const kKeyTurn = 5;        // degrees for a key
-const kKeyPan = 0.05;      // of the height
+const kTurn = 0.35;        // degrees per pixel
+const kKeyTurn = 5;        // degrees per key press
+const kKeyPan = 0.05;      // share of the height
 const kWheel = 0.0015;
 const kKeyZoom = 1.15;
 
 export class Viewport {
-  /** `on`: turn(az, el), pan(x, y) in heights, zoom(times), split(share), point(at, none): {x, y} in
-   *  [0, 1] or null, and what is said where nothing is seen there. */
+  /** `on` has turn(az, el), pan(x, y) in picture heights, zoom(times), split(share), and point(at, none): `at` is
+   *  {x, y} in [0, 1] or null, and `none` is the text if nothing is seen there. */
   constructor(frame, canvas, divider, on) {
     this.frame = frame;
     this.canvas = canvas;
@@ -24,7 +24,7 @@ export class Viewport {
   get width() { return this.frame.clientWidth; }
   get height() { return this.frame.clientHeight; }
 
-  /** Draws a picture; of two layers the upper half is the file, the lower one what it is compared with. */
+  /** Draws a picture. With two layers, its upper half is the file and its lower half the compared file. */
   async draw(header, blob) {
     this.picture = await createImageBitmap(blob);
     this.header = header;
@@ -61,7 +61,7 @@ export class Viewport {
     frame.addEventListener("pointerdown", (event) => this.press(event));
     frame.addEventListener("pointermove", (event) => this.move(event));
     for (const name of ["pointerup", "pointercancel"]) frame.addEventListener(name, (event) => this.release(event));
-    // A finger that is lifted leaves, too, and the value at its tap stays.
+    // A lifted finger also causes this event, and the value at its tap must stay.
     frame.addEventListener("pointerleave", (event) => event.pointerType !== "touch" && this.on.point(null));
     frame.addEventListener("contextmenu", (event) => event.preventDefault());
     frame.addEventListener("wheel", (event) => {
@@ -114,7 +114,7 @@ export class Viewport {
     this.pointers.set(event.pointerId, now);
   }
 
-  // Two fingers: their distance zooms, their middle pans.
+  // Two fingers: their distance zooms, their midpoint pans.
   pinch(id, now) {
     const [key, other] = [...this.pointers].find(([found]) => found !== id) ?? [];
     if (key === undefined) return;
@@ -125,7 +125,7 @@ export class Viewport {
   }
 
   release(event) {
-    // A tap of a finger says which value is there, as a mouse that stands still does.
+    // A tap of a finger shows the value at its place, like a resting mouse.
     if (this.pointers.size === 1 && (this.moved ?? 0) < 6 && event.type === "pointerup") this.on.point(this.place(event));
     this.pointers.delete(event.pointerId);
     if (this.pointers.size === 0) {

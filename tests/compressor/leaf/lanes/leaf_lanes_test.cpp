@@ -1,4 +1,4 @@
-// Leaves surveyed eight at once have the rows, to the bit, that each has alone.
+// Leaves that are surveyed eight at once get the same rows, bit for bit, as each leaf alone.
 #include "compressor/leaf/lanes/leaf_lanes.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ namespace {
 
 using Draw = std::function<float(std::mt19937&)>;
 
-// What the values of a leaf are drawn from.
+// The distributions that the values of a leaf are drawn from.
 const std::vector<Draw> kDraws{
     [](std::mt19937& random) { return std::uniform_real_distribution<float>(-3, 5)(random); },
     [](std::mt19937& random) { return 1 + std::uniform_real_distribution<float>(0, 1e-3F)(random); },
@@ -40,7 +40,7 @@ const std::vector<Draw> kDraws{
       return random() % 4 == 0 ? 1e-30F : std::normal_distribution<float>(0, 1e-3F)(random);
     }};
 
-// The row that a leaf has alone, computed from all of its voxels.
+// Returns the row of a leaf alone, computed from all of its voxels.
 LeafRow row_of(const std::vector<float>& distinct, const Index3& by, bool widths) {
   std::array<float, kLeafVoxels> values;
   repeat_values(distinct.data(), by, {kLeafDim, kLeafDim, kLeafDim}, values.data());
@@ -79,7 +79,7 @@ TEST(LeafLanes, Rows_AreThoseOfEachLeafAlone) {
         const Index3 by{x, y, z};
         ASSERT_TRUE(LaneShape::suits(by));
         const std::int64_t count = kLeafVoxels / (x * y * z);
-        if (count == 1) continue;  // one value: no lane is asked for it
+        if (count == 1) continue;  // leaves of one value do not go through lanes
         SCOPED_TRACE(testing::Message() << x << ' ' << y << ' ' << z);
         for (int round = 0; round < 40; ++round) {
           std::vector<std::vector<float>> leaves;
