@@ -12,7 +12,7 @@
 namespace weir {
 namespace {
 
-constexpr std::size_t kMostLeftOut = 8;  // in an error
+constexpr std::size_t kMostLeftOut = 8;  // how many datasets an error message lists
 
 std::string positions_text(std::size_t count) { return cat(count, count == 1 ? " position" : " positions"); }
 
@@ -26,7 +26,8 @@ std::string leading_text(const DatasetInfo& dataset) {
   return text;
 }
 
-// Why `options` make no volume of a dataset that has no obstacle, and which would; empty where they make one.
+// Returns why `options` make no volume of a dataset without an obstacle, and which options do. Returns an empty
+// message if they make one.
 Message left_out(const DatasetInfo& dataset, const SourceOptions& options) {
   if (!options.component && dataset.components > 1) {
     return compose("each of its voxels has ", dataset.components, " components; give ", option("component"));
@@ -55,13 +56,13 @@ Message several_text(std::span<const Message> datasets) {
   return text;
 }
 
-/// What a pattern matches: volumes, and of all else "/v: WHY".
+/// The datasets that a pattern matches: the names of volumes, and "/v: WHY" for all others.
 struct Matches {
   std::vector<std::string> volumes;
-  std::vector<Message> others;        ///< of which other options make volumes
-  std::vector<Message> by_name_only;  ///< said only where there is nothing else
-  std::vector<Message> unread;        ///< volumes but for an obstacle
-  std::vector<Message> no_volumes;    ///< of other shapes, with an obstacle; said only where there is nothing else
+  std::vector<Message> others;        ///< other options make volumes of these
+  std::vector<Message> by_name_only;  ///< mentioned only if nothing else matches
+  std::vector<Message> unread;        ///< only their obstacle keeps these from being volumes
+  std::vector<Message> no_volumes;    ///< of other shapes, with an obstacle; mentioned only if nothing else matches
 
   void add(const DatasetInfo& dataset, const SourceOptions& options) {
     if (!dataset.obstacle.empty()) {
@@ -75,7 +76,7 @@ struct Matches {
     }
   }
 
-  /// Why there is no volume.
+  /// Returns the error that says why the pattern stands for no volume.
   Error none(const std::string& path, const std::string& pattern) const {
     const Message begin = compose(path, ": ", option("dataset", pattern), " stands for no volume");
     std::vector<Message> said = others;

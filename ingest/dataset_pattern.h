@@ -1,4 +1,4 @@
-// The datasets that a pattern in --dataset stands for.
+// Finds the datasets of a file that a pattern in --dataset matches.
 #pragma once
 
 #include <span>
@@ -11,15 +11,17 @@
 
 namespace weir {
 
-/// Whether `pattern`, a name with or without its first slash or one with *, ? and [...], is for the dataset `name`.
+/// Returns whether `pattern` matches the dataset `name`. `pattern` is a name, with or without its first slash, or a
+/// pattern with *, ? and [...].
 bool names_dataset(const std::string& pattern, const std::string& name);
 
-/// The names of those of `datasets`, of the file `path`, that *, ? and [...] in `pattern`, which match slashes, too,
-/// match and that are volumes where --index and --component are as in `options`; or the one that is called like the
-/// pattern itself. Those that are read by name only are left out of patterns without a word. `notice` gets a line for
-/// each other one that matches and that other options make a volume of, with these, and each that would be a volume but
-/// for its obstacle. Throws Error(input) where no name matches or all that match have an obstacle, and Error(usage)
-/// where other options make a volume of one, with what is said of each.
+/// Returns the names of the `datasets` of the file `path` that match `pattern` and are volumes with the --index and
+/// --component of `options`. In `pattern`, *, ? and [...] also match slashes. If a dataset's name equals the pattern
+/// itself, returns that name alone. Datasets that are read by name only are left out of patterns without a notice.
+/// `notice` gets a line for each other match that needs other options to be a volume, with these options, and for
+/// each match that only its obstacle keeps from being a volume. Throws Error(input) if no name matches or every match
+/// has an obstacle. Throws Error(usage) if other options make a volume of a match, and lists each match with its
+/// reason.
 std::vector<std::string> matching_datasets(const std::string& path, std::span<const DatasetInfo> datasets,
                                            const std::string& pattern, const SourceOptions& options,
                                            const Notice& notice);

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kVolumeAxes = 3;
 
-// More than can be counted: as many as can.
+// product() and sum() return the largest std::uint64_t if the result overflows.
 std::uint64_t product(std::uint64_t a, std::uint64_t b) {
   std::uint64_t result = 0;
   return __builtin_mul_overflow(a, b, &result) ? ~std::uint64_t{0} : result;
@@ -32,14 +32,14 @@ std::uint64_t count(const DatasetInfo& dataset) {
   return beside ? product(values, static_cast<std::uint64_t>(dataset.components)) : values;
 }
 
-// "float32", "big-endian int16"; no records, texts or references.
+// Returns whether `type` is a number ("float32", "big-endian int16"), and not a record, text or reference.
 bool is_number(const std::string& type) {
   const std::string last = type.substr(type.rfind(' ') + 1);
   const bool plain = last.size() == type.size() || type.starts_with("big-endian ");
   return plain && (last.starts_with("int") || last.starts_with("uint") || last.starts_with("float"));
 }
 
-// `lengths`: of all axes of volumes.
+// `lengths` holds the extents of all axes of all volumes in the file.
 bool is_coordinate(const DatasetInfo& dataset, const std::set<std::int64_t>& lengths) {
   const std::vector<std::int64_t>& extents = dataset.extents;
   const bool along_one = extents.size() == 1 || (extents.size() == 2 && extents[1] == 2);

@@ -1,4 +1,4 @@
-// How many values a file holds, to know whether a conversion has all of them.
+// Counts the values that a file holds, to tell whether a conversion includes all of them.
 #pragma once
 
 #include <cstdint>
@@ -10,16 +10,16 @@
 
 namespace weir {
 
-/// Values of all arrays and grids among `datasets`, of one file: of every component and every position of a leading
-/// axis, and of arrays that are no volumes, tables of particles for instance. Not counted are coordinates: numbers
-/// along one axis, or two numbers for each element of it, where a volume has an axis of so many elements or one fewer.
-/// Nor are those that are read by name only, but for what `chosen`, SourceOptions::dataset, names. An array whose
-/// extents are not known counts as one value; one that has none, too, where not `scalars` says that it is a single
-/// number.
+/// Returns the number of values of all arrays and grids among the `datasets` of one file. Every component and every
+/// position of a leading axis counts, and so do arrays that are no volumes (tables of particles, for instance).
+/// Coordinates do not count: a coordinate array has numbers along one axis, or two numbers per element, and a volume
+/// has an axis of the same length or one element less. Datasets that are read by name only do not count unless
+/// `chosen` (SourceOptions::dataset) names them. An array of unknown extents counts as one value. An array without
+/// extents also counts as one value, unless `scalars` says that it is a single number.
 std::uint64_t values_of(std::span<const DatasetInfo> datasets, const std::string& chosen, bool scalars);
 
-/// The same of the file `path`, which `options` open; 0 where that is not known: of a directory, or what cannot be
-/// listed.
+/// Returns values_of() for the file `path`, opened with `options`. Returns 0 if the number is unknown, because `path`
+/// is a directory or cannot be listed.
 std::uint64_t file_values(const std::string& path, const SourceOptions& options);
 
 }  // namespace weir

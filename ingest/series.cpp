@@ -20,14 +20,16 @@ namespace {
 
 std::string extension_of(const std::filesystem::path& name) { return lower_case(name.extension().string()); }
 
-// "run" for "run.zarr" and "run.ome.zarr", as it is called also in a zip file's name, "run.zarr.zip".
+// Returns "run" for "run.zarr" and "run.ome.zarr". A zip file "run.zarr.zip" has the stem "run.zarr", so it gives
+// "run", too.
 std::string without_zarr(const std::filesystem::path& name) {
   if (extension_of(name) != ".zarr") return name.string();
   const std::filesystem::path stem = name.stem();
   return extension_of(stem) == ".ome" ? stem.stem().string() : stem.string();
 }
 
-// A directory's name has no suffix but Zarr's, and one that was named by its Header is meant as a whole.
+// Returns the {stem} of `path`. Of a directory's name only Zarr's suffixes are removed. A path that names the head
+// file of a directory (a plotfile's Header) stands for the whole directory.
 std::string stem_of(const std::string& path) {
   const std::filesystem::path whole(path);
   if (is_input_directory(path)) return without_zarr(whole.filename());
@@ -73,7 +75,7 @@ Error no_match(const SeriesStep& file, const std::string& name) {
                cat(file.path, ": no dataset's name matches ", name, "; weir inspect lists what there is"));
 }
 
-// The steps of `file` for one line of --dataset.
+// Returns the steps of `file` for one line of --dataset.
 std::vector<SeriesStep> with_dataset(const SeriesStep& file, const std::string& dataset_name,
                                      const SourceOptions& options, const Notice& notice) {
   const bool shell_pattern = !options.stack && dataset_name.find_first_of("*?[") != std::string::npos;
@@ -116,7 +118,7 @@ std::vector<SeriesStep> with_datasets(const SeriesStep& file, const SourceOption
   return steps;
 }
 
-// The steps of `step` for each position that options.index_choices stand for.
+// Returns the steps of `step`, one for each position that options.index_choices stand for.
 std::vector<SeriesStep> with_indices(const SeriesStep& step, const SourceOptions& options) {
   SeriesStep at = step;
   at.index = options.index;
@@ -128,7 +130,7 @@ std::vector<SeriesStep> with_indices(const SeriesStep& step, const SourceOptions
   for (const std::vector<std::int64_t>& position : positions) {
     steps.push_back(at);
     steps.back().index = position;
-    // Axes with one position among all say nothing in a name.
+    // An axis on which all steps have the same position is left out of the name.
     for (std::size_t axis = 0; axis < position.size(); ++axis) {
       if (positions.front()[axis] == positions.back()[axis]) continue;
       steps.back().step = joined_name(steps.back().step, padded_number(position[axis], axes[axis].extent - 1));
@@ -137,7 +139,8 @@ std::vector<SeriesStep> with_indices(const SeriesStep& step, const SourceOptions
   return steps;
 }
 
-// The steps of `step` for each level of its file. Other formats refuse the option when they are opened.
+// Returns the steps of `step`, one for each level of its file. Formats without levels refuse the option when they are
+// opened.
 std::vector<SeriesStep> with_levels(const SeriesStep& step, const SourceOptions& options) {
   if (options.levels == Levels::composite) return {step};
   const SourceFormat& format = format_of(step.path);
@@ -148,7 +151,7 @@ std::vector<SeriesStep> with_levels(const SeriesStep& step, const SourceOptions&
     SeriesStep at = step;
     at.level = count - 1 - from_finest;
     at.from_finest = from_finest;
-    at.series = cat(step.path, '\n', step.series, '\n', from_finest);  // boxes move from file to file
+    at.series = cat(step.path, '\n', step.series, '\n', from_finest);  // the boxes of a level may differ between files
     steps.push_back(std::move(at));
   }
   return steps;

@@ -18,14 +18,14 @@
 namespace weir {
 namespace {
 
-// As a part of a file's name.
+// Returns the dataset's name as a part of a file's name: no leading slashes, and dots for slashes.
 std::string dataset_part(std::string dataset) {
   dataset.erase(0, dataset.find_first_not_of('/'));
   std::replace(dataset.begin(), dataset.end(), '/', '.');
   return dataset;
 }
 
-// For messages: the file, and which volume of it.
+// Returns the file and the volume in it, for messages.
 std::string volume_text(const SeriesStep& step) {
   std::string text = step.path;
   if (!step.dataset.empty()) text += ": " + step.dataset;
@@ -34,7 +34,7 @@ std::string volume_text(const SeriesStep& step) {
   return text;
 }
 
-// "NAME_level_1.nvdb" of "NAME.nvdb"; `name` of a step that is no level.
+// Returns "NAME_level_1.nvdb" for "NAME.nvdb". Returns `name` unchanged if `step` is no level.
 std::string with_level(const std::string& name, const SeriesStep& step) {
   if (!step.from_finest) return name;
   constexpr std::string_view kEnd = ".nvdb";
@@ -42,7 +42,7 @@ std::string with_level(const std::string& name, const SeriesStep& step) {
   return cat(ends ? name.substr(0, name.size() - kEnd.size()) : name, "_level_", *step.from_finest, ends ? kEnd : "");
 }
 
-// As little as tells the steps of one file apart.
+// Returns the shortest default name that tells the steps of one file apart.
 std::string name_in_call(const SeriesStep& step, std::span<const SeriesStep> steps) {
   for (const char* name : {"{stem}.nvdb", "{stem}_{step}.nvdb", "{stem}_{dataset}.nvdb"}) {
     std::set<std::string> names;
@@ -57,18 +57,18 @@ std::string name_in_call(const SeriesStep& step, std::span<const SeriesStep> ste
   return step_name(step.step.empty() ? "{stem}_{dataset}.nvdb" : "{stem}_{dataset}_{step}.nvdb", step);
 }
 
-// The axes that step.index has positions on; empty where they are not known.
+// Returns the extents of the axes that step.index has positions on; empty if they are not known.
 std::vector<std::int64_t> chosen_axes(const DatasetInfo& dataset, const SeriesStep& step) {
   std::vector<std::int64_t> extents;
   if (step.index.size() == dataset.index_axes.size()) {
     for (const LeadingAxis& axis : dataset.index_axes) extents.push_back(axis.extent);
-  } else if (dataset.extents.size() > step.index.size()) {  // components are taken for x
+  } else if (dataset.extents.size() > step.index.size()) {  // the components are the voxels along x
     extents.assign(dataset.extents.begin(), dataset.extents.begin() + static_cast<std::ptrdiff_t>(step.index.size()));
   }
   return extents;
 }
 
-// An axis of one position leaves no choice.
+// Returns the positions as a part of a file's name. Axes with one element are left out, because they leave no choice.
 std::string position_part(const DatasetInfo& dataset, const SeriesStep& step) {
   const std::vector<std::int64_t> extents = chosen_axes(dataset, step);
   std::string part;
@@ -79,7 +79,7 @@ std::string position_part(const DatasetInfo& dataset, const SeriesStep& step) {
   return part;
 }
 
-// "x" of a vector in space, "4" of a tensor.
+// Returns "x" for a vector in space, "4" for a tensor.
 std::string component_part(const DatasetInfo& dataset, const ComponentChoice& choice) {
   std::int64_t count = dataset.components;
   if (count == 1 && !dataset.index_axes.empty())
@@ -91,14 +91,14 @@ std::string component_part(const DatasetInfo& dataset, const ComponentChoice& ch
 bool meant_by(const SeriesStep& step, const DatasetInfo& dataset) {
   if (!step.dataset.empty()) return dataset.name == step.dataset || dataset.name == '/' + step.dataset;
   const std::size_t positions = step.index.size();
-  // With a position more, what would be components are the voxels along x.
+  // With one more position, the components become the voxels along x.
   const bool with_components = dataset.components > 1 && positions + 3 == dataset.extents.size();
   return dataset.obstacle.empty() && !dataset.by_name_only &&
          (positions == 0 || positions == dataset.leading_axes || positions == dataset.index_axes.size() ||
           with_components);
 }
 
-// The one of `datasets` that `step` opens; null where that is not known.
+// Returns the dataset that `step` opens, or null if it is unclear.
 const DatasetInfo* opened(const std::vector<DatasetInfo>& datasets, const SeriesStep& step, bool component) {
   std::vector<const DatasetInfo*> meant;
   for (const DatasetInfo& dataset : datasets) {
@@ -109,12 +109,12 @@ const DatasetInfo* opened(const std::vector<DatasetInfo>& datasets, const Series
   return meant.size() == 1 ? meant.front() : nullptr;
 }
 
-/// Default names by what the files hold, each of which is listed once.
+/// Makes default names from the contents of the files. Lists each file once.
 class FileNames {
  public:
   explicit FileNames(const SourceOptions& options) : options_(options) {}
 
-  /// nullopt where the file cannot be listed, which its opening will say.
+  /// Returns nullopt if the file cannot be listed (opening it reports the error) or if its dataset is unclear.
   std::optional<std::string> name_of(const SeriesStep& step) {
     if (!options_.magnitude.empty()) return of_magnitude(step);
     const bool chosen = !step.dataset.empty() || !step.index.empty() || options_.component || options_.level;
@@ -180,7 +180,8 @@ void require_step(const std::string& output, std::string_view name, const Series
                             " gives one, * and lists do not; use {stem}, or such a pattern"));
 }
 
-// Without its dataset, which a step may not have, a name may be an extension alone, that of a hidden file.
+// Throws Error(usage) if `step` has no dataset and {dataset} leaves the name `path` empty or only an extension, which
+// would make it a hidden file.
 void require_stem(const std::string& output, std::string_view name, const SeriesStep& step, const std::string& path) {
   const std::string made = path.substr(path.rfind('/') + 1);
   const bool is_bare = made.empty() || (made.front() == '.' && made.find('.', 1) == std::string::npos);
@@ -190,9 +191,9 @@ void require_stem(const std::string& output, std::string_view name, const Series
                                         would, "; use {stem} or a plain name"));
 }
 
-// No name tells volumes apart that have the same words.
+// Returns advice for two steps that would share a name. If their words are all equal, no name can tell them apart.
 Message remedy_for_names(const SeriesStep& a, const SeriesStep& b) {
-  std::string words;  // that both have, and by which they differ
+  std::string words;  // words that both steps have and that differ between them
   for (const char* word : kNameWords) {
     const std::string of_a = step_name(word, a);
     const std::string of_b = step_name(word, b);

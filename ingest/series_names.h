@@ -1,4 +1,4 @@
-// What the files are called that volumes are converted to.
+// Makes the names of the output files that volumes are converted to.
 #pragma once
 
 #include <span>
@@ -10,26 +10,27 @@
 
 namespace weir {
 
-/// `name` with {stem}, {dataset} and {step} replaced; slashes of a dataset's path become dots. Throws
+/// Returns `name` with {stem}, {dataset} and {step} replaced. Slashes of a dataset's path become dots. Throws
 /// Error(usage) for any other word in braces.
 std::string step_name(std::string_view name, const SeriesStep& step);
 
-/// What a volume is called where nobody says it.
+/// How an output file is named if the user gives no name.
 enum class DefaultNames {
-  /// {stem}, and of dataset, component, level and position each that was chosen among several of the file: another
-  /// volume of it has another name, whichever call converts it. {stem}.nvdb of a file that holds one volume.
+  /// {stem}, followed by the dataset, component, level and position that were chosen among several in the file. Each
+  /// volume of a file thus has its own name, whichever call converts it. A file with one volume gives {stem}.nvdb.
   of_file,
-  /// {stem}.nvdb; for several volumes of one file {stem}_{step}.nvdb, {stem}_{dataset}.nvdb or
-  /// {stem}_{dataset}_{step}.nvdb, the first that tells those of this call apart.
+  /// {stem}.nvdb. For several volumes of one file: {stem}_{step}.nvdb, {stem}_{dataset}.nvdb or
+  /// {stem}_{dataset}_{step}.nvdb, the first of these that gives the volumes of this call different names.
   of_call
 };
 
-/// Where each step's file goes: beside its input where `output` is empty; into `output` where that ends with a
-/// slash, or is a directory and there are several; else to the name it gives, with the words in braces of its last part
-/// replaced. Where `output` gives no name, `names` does. Of Levels::separate each name ends with _level_N.nvdb, N from
-/// 0, the finest, on. `options` are those that the steps were made with, and files that hold several volumes are listed
-/// for it. Throws Error(usage) where two steps would share one name, a directory has such a word, a step has no
-/// {step} and the name has, or a {dataset} that a step has not would leave a name empty before its extension.
+/// Returns the path of each step's output file. An empty `output` puts it beside its input. If `output` ends with a
+/// slash, or is a directory and there are several steps, the file goes into this directory. Otherwise `output` is the
+/// path, and the words in braces in its last part are replaced. If `output` gives no name, `names` decides it. With
+/// Levels::separate each name ends with _level_N.nvdb; N is 0 for the finest level. `options` are those that the
+/// steps were made with; files that hold several volumes are listed with them. Throws Error(usage) if two steps would
+/// share a name, if a directory's name has a word in braces, if the name has {step} and a step has none, or if a
+/// missing {dataset} would leave a name empty before its extension.
 std::vector<std::string> series_outputs(std::span<const SeriesStep> steps, const std::string& output,
                                         const SourceOptions& options = {}, DefaultNames names = DefaultNames::of_file);
 

@@ -30,7 +30,7 @@ std::vector<DatasetInfo> list_raw(const std::string& path, const SourceOptions& 
   return list_single(open_raw(path, options)->info(), "contiguous");
 }
 
-/// Other zip files of arrays are no volumes for sure.
+/// Other zip files may hold arrays that are no volumes, so they are not watched.
 constexpr std::array<std::string_view, 2> kWatchedZarrEndings{".zarr.zip", ".ozx"};
 
 constexpr std::array kFormats{
@@ -91,7 +91,7 @@ constexpr std::array kFormats{
                  .directory = true,
                  .chunks = true,
                  .watched_endings = kWatchedZarrEndings},
-    // Asked late: its signature may lie anywhere behind a user block.
+    // HDF5 is asked late, because its signature may lie anywhere behind a user block.
     SourceFormat{.name = "hdf5",
                  .recognises = recognises_hdf5,
                  .open = open_by_hdf5_driver,
@@ -100,7 +100,7 @@ constexpr std::array kFormats{
                  .vectors = true,
                  .chunks = true,
                  .watched_endings = kHdf5Endings},
-    // A raw file has no magic: it is what no other format wants.
+    // A raw file has no magic number, so raw takes every file that no other format recognises.
     SourceFormat{.name = "raw",
                  .recognises = [](std::string_view, std::span<const std::byte>) { return true; },
                  .open = open_raw,
@@ -108,7 +108,7 @@ constexpr std::array kFormats{
                  .raw_shape = true},
 };
 
-/// The position that options.index_choices stand for in `path`.
+/// Returns the one position that options.index_choices stand for in `path`. Throws Error(usage) if there are several.
 std::vector<std::int64_t> chosen_position(const std::string& path, const SourceFormat& format,
                                           const SourceOptions& options) {
   const auto positions = index_positions(path, format.list(path, options), options).positions;
@@ -147,7 +147,7 @@ std::unique_ptr<VolumeSource> open_file(const std::string& path, const SourceOpt
   return format.open(path, chosen);
 }
 
-/// Throws where `path` is a directory, and what should be the file in it that says what it is, is no file.
+/// Throws Error(input) if `path` is a directory and its head file (kDirectoryHeads) is not a regular file.
 void refuse_irregular_head(const std::string& path) {
   const auto head = irregular_head(path);
   if (head) throw input_error(head->path, head->what);

@@ -1,5 +1,4 @@
-// All formats there are. A new one is a folder of its own and an entry in
-// source_registry.cpp.
+// The registry of all input formats. A new format is a folder of its own and an entry in source_registry.cpp.
 #pragma once
 
 #include <cstddef>
@@ -18,43 +17,43 @@ namespace weir {
 /// One format. All functions are thread-safe.
 struct SourceFormat {
   std::string_view name;  ///< as in SourceInfo::format
-  /// Whether a file is of this format, by its path and its first kMagicBytes bytes (fewer in a shorter file); a
-  /// directory by those of the file in it that says what it is (kDirectoryHeads).
+  /// Returns whether a file is of this format, by its path and its first kMagicBytes bytes (fewer in a shorter file).
+  /// For a directory, `head` is from the file in it that identifies its format (kDirectoryHeads).
   bool (*recognises)(std::string_view path, std::span<const std::byte> head);
   std::unique_ptr<VolumeSource> (*open)(const std::string& path, const SourceOptions& options);
-  /// What the file holds, in the file's order. Reads no values. Throws what open throws, but for a choice
-  /// among several.
+  /// Lists the datasets of the file, in the file's order. Reads no values. Throws what `open` throws, except for an
+  /// unclear choice among several datasets.
   std::vector<DatasetInfo> (*list)(const std::string& path, const SourceOptions& options);
   bool raw_shape = false;  ///< takes --dims, --type, --endian and --offset
   bool container = false;  ///< takes --dataset and --index
   bool vectors = false;    ///< takes --component
-  bool directory = false;  ///< its inputs may be directories, which a file in them names (kDirectoryHeads)
+  bool directory = false;  ///< its inputs may be directories; a file in each identifies the format (kDirectoryHeads)
   bool chunks = false;     ///< takes --missing-chunks
-  /// How many levels of refinement a file has, up to options.level. A format with it takes --level, --levels and
-  /// --upsample. Throws what open throws.
+  /// Returns how many levels of refinement a file has, up to options.level. A format with this function takes
+  /// --level, --levels and --upsample. Throws what `open` throws.
   std::int64_t (*levels)(const std::string& path, const SourceOptions& options) = nullptr;
-  /// What the names of its files end with, in lower case, where a directory that is watched without patterns takes
-  /// them: of formats that are for volumes alone, and not of weir's own results.
+  /// Name endings, in lower case, that a watched directory without patterns accepts. Only formats that are for
+  /// volumes alone have them. weir's own results have none.
   std::span<const std::string_view> watched_endings = {};
 };
 
 inline constexpr std::size_t kMagicBytes = 16;
 
-/// In the order they are asked; the last one takes every file.
+/// All formats, in the order they are asked. The last one (raw) accepts every file.
 std::span<const SourceFormat> source_formats();
 
-/// The format that opens `path`, a file or a directory that holds a file of kDirectoryHeads. Throws Error(input) where
-/// it cannot be read at all.
+/// Returns the format that opens `path`: a file, or a directory that holds a file of kDirectoryHeads. Throws
+/// Error(input) if `path` cannot be read.
 const SourceFormat& format_of(const std::string& path);
-/// Whether that is the format of NanoVDB files, whatever its name ends with. Throws as format_of.
+/// Returns whether format_of(path) is NanoVDB, whatever the ending of the name. Throws what format_of throws.
 bool is_nanovdb(const std::string& path);
 
-/// Throws Error(usage) where an option is not for `format`, that of `path`.
+/// Throws Error(usage) if `options` has an option that `format`, the format of `path`, does not take.
 void refuse_foreign_options(const std::string& path, const SourceFormat& format, const SourceOptions& options);
 
-/// Opens `path` in its format, places it by options.spacing and options.origin and cuts out options.roi.
-/// Throws what that format's open throws, and Error(usage) where an option is not for this format, or the
-/// stored type cannot hold options.missing.
+/// Opens `path` in its format, places it by options.spacing and options.origin and cuts out options.roi. Throws what
+/// the format's `open` throws, and Error(usage) if an option is not for this format or if the stored type cannot hold
+/// options.missing.
 std::unique_ptr<VolumeSource> open_source(const std::string& path, const SourceOptions& options);
 
 }  // namespace weir

@@ -1,5 +1,5 @@
-// What every subcommand shares. One subcommand is one file with one
-// `add_NAME(CLI::App&)`, listed in main.cpp.
+// Declarations that all subcommands share. Each subcommand is one file with one function `add_NAME(CLI::App&)`, which
+// main.cpp calls.
 #pragma once
 
 #include <atomic>
@@ -10,14 +10,14 @@ class App;
 
 namespace weir {
 
-/// Set by SIGINT, SIGTERM and SIGHUP (main.cpp); long work looks at it between blocks.
+/// Returns the flag that SIGINT, SIGTERM and SIGHUP set (main.cpp); long work checks it between blocks.
 const std::atomic<bool>& interrupt_flag();
 
-/// Adds --log-level and --quiet, applied when they are parsed.
+/// Adds --log-level and --quiet, which take effect when they are parsed.
 void add_log_level(CLI::App& command);
 
-// Each adds its subcommand to `app`; the work is done in the subcommand's callback, which throws
-// Error for everything that goes wrong and weir::ExitStatus (below) to end with a code and no message.
+// Each function adds its subcommand to `app`. The subcommand's callback does the work. The callback throws Error for
+// every failure, and weir::ExitStatus (below) to end with a code and no message.
 void add_convert(CLI::App& app);
 void add_compare(CLI::App& app);
 void add_flip(CLI::App& app);
@@ -39,7 +39,7 @@ void add_resume(CLI::App& app);
 void add_completion(CLI::App& app);
 void add_man(CLI::App& app);
 
-/// Thrown by a subcommand that has already said what it found (verify, compare).
+/// Thrown by a subcommand that has already printed its findings (verify, compare).
 struct ExitStatus {
   int code;
 };

@@ -1,4 +1,4 @@
-// What a command is asked to read and to convert, while signals may end it.
+// The conversion request of a command that signals may interrupt.
 #pragma once
 
 #include "compressor/options/conversion_request.h"
@@ -6,11 +6,11 @@
 
 namespace weir {
 
-/// `line` in the log: a remark as information, any other as a warning.
+/// Logs `line`: a remark as information, any other line as a warning.
 void log_notice(const Message& line);
 
-/// read_conversion_request(), with a source that gives up unpacking where interrupt_flag() is set, and logs what only
-/// reading shows.
+/// Returns read_conversion_request(given). Its source stops unpacking when interrupt_flag() is set, and logs notices
+/// that only reading reveals.
 ConversionRequest command_request(const GivenOptions& given);
 
 }  // namespace weir

@@ -1,4 +1,4 @@
-// --log-level and --quiet, of every command.
+// The options --log-level and --quiet, which every command has.
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 

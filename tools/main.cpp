@@ -1,4 +1,4 @@
-// The `weir` command: options to subcommands, errors to one line and an exit code.
+// The `weir` command: dispatches to the subcommands and turns errors into one line and an exit code.
 #include <CLI/CLI.hpp>
 
 #include <csignal>
@@ -28,7 +28,7 @@ int run(int argc, char** argv) {
   weir::catch_interrupts();
   weir::report_hdf5_crashes();
   std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGCHLD, SIG_DFL);  // were it ignored, as who starts weir may have it, no worker would tell how it ended
+  std::signal(SIGCHLD, SIG_DFL);  // the parent may ignore SIGCHLD; then no worker's exit status could be read
 
   CLI::App app("Streams volumes of any size into NanoVDB files of exactly the size you ask for.", "weir");
   app.set_version_flag("--version", WEIR_VERSION);
@@ -80,7 +80,7 @@ int main(int argc, char** argv) {
   try {
     weir::finish_stdout();
   } catch (const weir::Error& error) {
-    if (code == 0) return fail(error.what(), error.exit_code());  // else its own error was said
+    if (code == 0) return fail(error.what(), error.exit_code());  // otherwise an error was already printed
   }
   return code;
 }

@@ -36,7 +36,7 @@ std::vector<std::string> component_names(PlotfileText& text) {
   return names;
 }
 
-/// As the file says it: of the first axis, or "(2,2,1)". 0: not said.
+/// Returns the ratio that the file states: of the first axis alone, with 0 for the others, or of all axes, "(2,2,1)".
 Index3 stated_ratio(PlotfileText& text) {
   if (text.next_byte() == '(') return text.vector("a refinement ratio");
   return {text.integer_in("a refinement ratio", 1, kMostRatio), 0, 0};
@@ -46,7 +46,7 @@ std::string ratio_text(const Index3& ratio) {
   return ratio.y == 0 ? cat(ratio.x) : cat('(', ratio.x, ',', ratio.y, ',', ratio.z, ')');
 }
 
-/// Of `fine` to `coarse`, two domains.
+/// Returns the ratio of the domain `fine` to the domain `coarse`.
 Index3 domain_ratio(const PlotfileText& text, const Box& coarse, const Box& fine, std::size_t level) {
   const Index3 c = coarse.extent();
   const Index3 f = fine.extent();
@@ -64,7 +64,7 @@ void read_domains(PlotfileText& text, AmrexHeader& header) {
   const std::size_t levels = header.levels.size();
   std::vector<Index3> stated;
   for (std::size_t i = 1; i < levels; ++i) stated.push_back(stated_ratio(text));
-  // Some codes write those of levels that they may have and have not.
+  // Some codes also write the ratios of levels that could exist but do not.
   while (text.next_byte() >= '0' && text.next_byte() <= '9') text.skip_word("a refinement ratio");
   for (AmrexLevelHeader& level : header.levels) level.domain = text.box("a level's domain");
   for (std::size_t i = 1; i < levels; ++i) {
@@ -79,7 +79,7 @@ void read_domains(PlotfileText& text, AmrexHeader& header) {
   while (text.next_byte() == '(') text.box("a level's domain");
 }
 
-/// Of the numbers that must fit each other, which some codes write with six digits.
+/// Relative tolerance for numbers that must fit each other. Some codes write them with six digits.
 constexpr double kDigitsSlack = 2e-5;
 
 char axis_name(std::size_t axis) { return "xyz"[axis]; }
@@ -99,8 +99,8 @@ std::array<double, 3> upper_corner(PlotfileText& text, const std::array<double, 
   return upper;
 }
 
-/// Of level 0 the size of its cells is the domain's by their number. The corners' digits count: where they are large,
-/// little is known of their difference.
+/// Throws if the cell size of level 0 is not the domain's size divided by its number of cells. The tolerance grows
+/// with the corners, because large corners with few digits leave their difference uncertain.
 void require_domain_size(const PlotfileText& text, const AmrexHeader& header, const std::array<double, 3>& upper) {
   const AmrexLevelHeader& level = header.levels.front();
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -144,7 +144,7 @@ void read_cell_sizes(PlotfileText& text, AmrexHeader& header, const std::array<d
   }
 }
 
-/// A path inside the plotfile.
+/// Returns `path` if it stays inside the plotfile; throws Error(input) otherwise.
 std::string inner_path(const PlotfileText& text, const std::string& path) {
   bool inside = !path.empty() && path.front() != '/';
   for (const std::string& part : split(path, '/')) inside = inside && !part.empty() && part != "..";
@@ -159,7 +159,7 @@ void read_level(PlotfileText& text, std::size_t number, AmrexHeader& header) {
   level.boxes = text.integer_in("a level's number of boxes", 1, std::numeric_limits<std::int32_t>::max());
   text.skip_word("a level's time");
   text.skip_word("a level's step");
-  // Where the boxes are in the world, two numbers an axis: Cell_H has them in cells.
+  // The boxes' edges in world coordinates, two numbers for each axis, are skipped: Cell_H has the boxes in cells.
   for (std::int64_t i = 0; i < level.boxes * 6; ++i) text.skip_word("an edge of a box");
   text.next_byte();
   level.cells = inner_path(text, text.rest_of_line());

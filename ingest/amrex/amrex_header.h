@@ -1,4 +1,4 @@
-// `Header` of an AMReX plotfile: which components and levels there are. The layout is that which AMReX writes in
+// `Header` of an AMReX plotfile: its components and levels. AMReX writes this layout in
 // Src/Base/AMReX_PlotFileUtil.cpp (WriteGenericPlotfileHeader) and Src/Amr/AMReX_AmrLevel.cpp (writePlotFilePre).
 #pragma once
 
@@ -13,13 +13,13 @@
 
 namespace weir {
 
-/// One level of refinement, 0 the coarsest.
+/// One level of refinement; level 0 is the coarsest.
 struct AmrexLevelHeader {
-  Box domain;                     ///< in the level's own cells, whose indices may begin below or above 0
-  Index3 ratio{1, 1, 1};          ///< cells of this level along one of the level below; 1 of level 0
-  std::array<double, 3> spacing;  ///< of its cells, > 0
+  Box domain;                     ///< in the level's own cells; indices may begin below or above 0
+  Index3 ratio{1, 1, 1};          ///< cells of this level along one cell of the next coarser level; 1 for level 0
+  std::array<double, 3> spacing;  ///< size of its cells, > 0
   std::int64_t boxes = 0;
-  std::string cells;  ///< path of its cells' files in the plotfile, without "_H": "Level_0/Cell"
+  std::string cells;  ///< path, in the plotfile, of its cells' files, without "_H": "Level_0/Cell"
 };
 
 struct AmrexHeader {
@@ -29,12 +29,13 @@ struct AmrexHeader {
   std::vector<AmrexLevelHeader> levels;
 };
 
-/// Whether a text begins as a plotfile's Header does: with a name and a version, "HyperCLaw-V1.1".
+/// Returns whether a text begins like a plotfile's Header: with a name and a version, "HyperCLaw-V1.1".
 bool begins_as_amrex_header(std::string_view text);
 
-/// The ratios are those of the domains, since the file has that of one axis only; it must agree. Throws Error(input)
-/// with path and line: 1-D and 2-D plotfiles, coordinates that are not Cartesian, domains that do not refine each
-/// other, sizes of cells that fit neither the domain nor each other, and whatever is damaged.
+/// Parses a Header. Ratios are computed from the domains, because the file may give only the ratio along the first
+/// axis; the file's ratio must agree. Throws Error(input) with path and line for 1-D and 2-D plotfiles, coordinates
+/// that are not Cartesian, domains that do not refine each other, cell sizes that fit neither the domain nor each
+/// other, and damaged text.
 AmrexHeader parse_amrex_header(PlotfileText& text);
 
 }  // namespace weir

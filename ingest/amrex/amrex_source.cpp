@@ -23,8 +23,8 @@
 namespace weir {
 namespace {
 
-constexpr std::size_t kMostComponentsShown = 8;  // components, in a message
-constexpr std::uint64_t kMemoryShare = 4;        // of --memory, for boxes
+constexpr std::size_t kMostComponentsShown = 8;  // names of components in a message
+constexpr std::uint64_t kMemoryShare = 4;        // of --memory, for the boxes
 
 class AmrexSource final : public VolumeSource {
  public:
@@ -62,7 +62,8 @@ class AmrexSource final : public VolumeSource {
   Composite composite_;
 };
 
-// Why components cannot be converted, by position: --dataset says nothing but a name.
+// Returns, for each component, why it cannot be converted; empty if it can. --dataset can only name a component, so
+// that a component needs a name of its own.
 std::vector<std::string> component_obstacles(const std::vector<std::string>& names) {
   std::map<std::string_view, std::size_t> counts;
   for (const std::string& name : names) ++counts[name];
@@ -129,7 +130,7 @@ std::size_t chosen_level(const std::string& path, const AmrexHeader& header, con
                             finest == 0 ? "0" : cat("0, the coarsest, to ", finest)));
 }
 
-// Of Levels::separate the one that is this volume.
+// Returns the level that is this volume, with Levels::separate.
 std::size_t own_level(const std::string& path, std::size_t finest, const SourceOptions& options) {
   if (finest == 0) return 0;
   if (options.own_level && *options.own_level >= 0 && std::cmp_less_equal(*options.own_level, finest))
@@ -158,7 +159,7 @@ std::array<double, 3> first_centre(const AmrexHeader& header, std::size_t level)
   return centre;
 }
 
-// "3 levels of 8, 20 and 64 boxes, refined by 2 and 4".
+// Returns text such as "3 levels of 8, 20 and 64 boxes, refined by 2 and 4".
 std::string levels_text(const AmrexHeader& header) {
   std::string boxes;
   std::string ratios;

@@ -1,4 +1,4 @@
-// AMReX plotfiles: directories, of which each holds the components of a simulation on levels of refined boxes.
+// AMReX plotfiles: directories that hold the components of a simulation on levels of refined boxes.
 #pragma once
 
 #include <cstddef>
@@ -14,23 +14,24 @@
 
 namespace weir {
 
-/// By the first bytes of its Header; `path` is the directory's, or that of the Header.
+/// Returns whether `head`, the first bytes of a Header, is a plotfile's. `path` is the plotfile's directory or its
+/// Header.
 bool recognises_amrex(std::string_view path, std::span<const std::byte> head);
 
-/// The component options.dataset, or the only one, as one grid of the cells of options.level, or of the finest level.
-/// Voxel (0, 0, 0) is the domain's first cell there. Of Levels::separate the level options.own_level: the box of its
-/// boxes, without values where finer levels, up to options.level, have cells and where it has none. Throws Error(usage)
-/// where several components or levels can be converted and none is named; where there is no such level; and what
-/// open_plotfile throws.
+/// Opens the component options.dataset, or the only one, as one grid of cells of options.level, or of the finest
+/// level. Voxel (0, 0, 0) is the domain's first cell at this level. With Levels::separate, opens the level
+/// options.own_level alone: the bounds of its boxes, without values where finer levels, up to options.level, have
+/// cells and where it has no box. Throws Error(usage) if several components or levels can be converted and none is
+/// named, or if the level does not exist. Also throws the errors of open_plotfile.
 std::unique_ptr<VolumeSource> open_amrex(const std::string& path, const SourceOptions& options);
-/// Levels from the coarsest to options.level, or the finest. Reads the Header alone.
+/// Returns the number of levels from the coarsest to options.level, or to the finest. Reads only the Header.
 std::int64_t count_amrex_levels(const std::string& path, const SourceOptions& options);
 std::vector<DatasetInfo> list_amrex(const std::string& path, const SourceOptions& options);
 
-/// What a program that writes the plotfile of this Header has still to write, in words; empty where all is there:
-/// the Header, each level's Cell_H and all FABs that it names. The files of FABs are looked at, their values are not.
-/// Empty, too, where nothing that is written later makes it readable: a 2-D plotfile, cylindrical coordinates, ghost
-/// cells.
+/// Returns, in words, what the program that writes the plotfile of this Header still has to write; empty if all is
+/// there: the Header, each level's Cell_H, and all FABs that it names. Checks the files of FABs, but not their
+/// values. Also returns an empty text if later writing cannot make the plotfile readable: a 2-D plotfile, cylindrical
+/// coordinates, ghost cells.
 std::string unwritten_part(const std::string& header_path);
 
 }  // namespace weir

@@ -83,7 +83,7 @@ std::size_t BoxIndex::find(std::size_t node, std::size_t begin, std::size_t end,
 
 std::pair<std::uint32_t, std::uint32_t> BoxIndex::overlapping(Interruption interruption) const {
   std::vector<std::uint32_t> found;
-  for (const std::uint32_t i : order_) {  // neighbours one after the other take the same ways through the tree
+  for (const std::uint32_t i : order_) {  // neighbouring boxes in turn take the same paths through the tree
     throw_if_interrupted(interruption);
     found.clear();
     find(boxes_[i].box(), found);

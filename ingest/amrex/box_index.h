@@ -1,4 +1,4 @@
-// Which of a level's boxes touch a box: a tree of bounds over all of them.
+// Finds the boxes of a level that touch a given box, with a tree of bounds over all boxes.
 #pragma once
 
 #include <cstddef>
@@ -16,23 +16,23 @@ namespace weir {
 class BoxIndex {
  public:
   BoxIndex() = default;
-  /// Of `boxes`, fewer than 2^32 of them, which must stay where they are.
+  /// Builds the index over `boxes`, fewer than 2^32, which must stay at their place in memory.
   explicit BoxIndex(std::span<const CellBox> boxes);
 
-  /// Adds the positions of all boxes that have cells in common with `box`, in no order. Returns how many nodes of the
-  /// tree it looked at, which is what it cost.
+  /// Appends the positions of all boxes that share cells with `box` to `found`, in no order. Returns the number of
+  /// tree nodes that it visited, which is its cost.
   std::size_t find(const Box& box, std::vector<std::uint32_t>& found) const;
 
-  /// Two boxes that have cells in common, by position; the same position twice where there are none. Throws
+  /// Returns the positions of two boxes that share cells; the same position twice if no boxes do. Throws
   /// Error(interrupted).
   std::pair<std::uint32_t, std::uint32_t> overlapping(Interruption interruption = nullptr) const;
 
  private:
   static constexpr std::size_t kLeafBoxes = 8;
 
-  /// Of a subtree. It is halved along the axis along which its boxes lie in most layers: by how far their centres lie
-  /// apart, counted in mean lengths of a box. Of boxes as long as their bounds there is one layer, however long these
-  /// are: halves along them would both have the same bounds.
+  /// The bounds of a subtree and the axis along which it is halved: the axis along which its boxes lie in most
+  /// layers. The number of layers is the spread of the boxes' centres in mean lengths of a box. Boxes as long as the
+  /// bounds make one layer, however long they are: halves along their axis would both have the same bounds.
   struct Node {
     CellBox bounds;
     std::size_t axis = 0;
@@ -44,8 +44,8 @@ class BoxIndex {
                    std::vector<std::uint32_t>& found) const;
 
   std::span<const CellBox> boxes_;
-  std::vector<std::uint32_t> order_;  ///< boxes, those of a subtree side by side
-  std::vector<CellBox> bounds_;       ///< of the subtrees: the first half of node n is 2n + 1, the second 2n + 2
+  std::vector<std::uint32_t> order_;  ///< positions of boxes; those of a subtree are side by side
+  std::vector<CellBox> bounds_;       ///< of the subtrees: the halves of node n are nodes 2n + 1 and 2n + 2
 };
 
 }  // namespace weir

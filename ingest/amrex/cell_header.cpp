@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint64_t kLeastBytesPerBox = 40;  // "((0,0,0) (0,0,0) (0,0,0))" and "FabOnDisk: C 0", with line ends
 
-// How the FABs lie: VisMF::Header::Version.
+// How the FABs are stored: VisMF::Header::Version.
 enum class Version { plain = 1, bare = 2, bare_with_ranges = 3, bare_with_range = 4 };
 
 std::string in_brackets(const Index3& i) { return cat('(', i.x, ',', i.y, ',', i.z, ')'); }
@@ -37,7 +37,7 @@ CellBox packed_box(const Box& box) {
           {narrow(box.hi.x - 1), narrow(box.hi.y - 1), narrow(box.hi.z - 1)}};
 }
 
-// "(N 0", N boxes, ")".
+// Reads "(N 0", N boxes, and ")".
 void read_boxes(PlotfileText& text, std::uint64_t bytes, std::uint64_t memory, CellHeader& header) {
   text.expect('(', "the list of boxes");
   const std::int64_t count = text.integer("the number of boxes");
@@ -84,7 +84,7 @@ void read_places(PlotfileText& text, CellHeader& header) {
   }
 }
 
-// "N,M", and then N times M numbers, each with a comma. `take` gets each with its box and component.
+// Reads "N,M" and then N times M numbers, each followed by a comma. Passes each with its box and component to `take`.
 template <typename Take>
 void read_table(PlotfileText& text, const CellHeader& header, const Take& take) {
   constexpr std::string_view kWhat = "the table of the boxes' minima and maxima";
@@ -109,7 +109,7 @@ void read_range_tables(PlotfileText& text, CellHeader& header, const RangesKept&
   std::vector<ComponentRange> of_boxes;
   if (kept.of_components) ranges.resize(static_cast<std::size_t>(header.components), {kInfinity, -kInfinity});
   if (kept.of_boxes) of_boxes.resize(header.boxes.size());
-  // Of NaN neither is smaller.
+  // A NaN does not change a component's range, because comparisons with it are false.
   read_table(text, header, [&](std::size_t box, std::size_t c, double value) {
     if (kept.of_components) ranges[c].min = std::min(ranges[c].min, value);
     if (kept.of_boxes == c) of_boxes[box].min = value;

@@ -1,5 +1,5 @@
-// `Level_k/Cell_H` of an AMReX plotfile: the boxes of a level, where their values lie, and what range they have. The
-// layout is that of VisMF::Header in AMReX's Src/Base/AMReX_VisMF.cpp.
+// `Level_k/Cell_H` of an AMReX plotfile: the boxes of a level, the places of their values, and the ranges of these
+// values. The layout is that of VisMF::Header in AMReX's Src/Base/AMReX_VisMF.cpp.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace weir {
 
-/// A box of cells in 24 bytes: there may be millions.
+/// A box of cells in 24 bytes, because there may be millions of boxes.
 struct CellBox {
   std::array<std::int32_t, 3> lo;
   std::array<std::int32_t, 3> last;  ///< inclusive
@@ -25,9 +25,10 @@ struct CellBox {
   }
 };
 
-/// Where a FAB lies, the values of one box: all cells of its first component, x fastest, then those of the next.
+/// The place of a FAB, which holds the values of one box: all cells of the first component, x fastest, then the next
+/// component.
 struct FabPlace {
-  std::uint64_t offset = 0;  ///< bytes before it
+  std::uint64_t offset = 0;  ///< bytes before it in the file
   std::uint32_t file = 0;    ///< position in CellHeader::files
 };
 
@@ -36,28 +37,28 @@ struct ComponentRange {
   double max = 0;
 };
 
-/// Which of them a header keeps.
+/// The ranges that a header keeps.
 struct RangesKept {
   bool of_components = false;           ///< CellHeader::ranges
-  std::optional<std::size_t> of_boxes;  ///< CellHeader::box_ranges: those of this component
+  std::optional<std::size_t> of_boxes;  ///< CellHeader::box_ranges: the ranges of this component
 };
 
 struct CellHeader {
   std::int64_t components = 0;
   std::vector<CellBox> boxes;
-  std::vector<FabPlace> places;            ///< of each box
-  std::vector<std::string> files;          ///< names, in the directory of Cell_H
-  std::vector<ComponentRange> ranges;      ///< of each component over all boxes; empty where the file does not say
-  std::vector<ComponentRange> box_ranges;  ///< of one component in each box; empty where the file does not say
-  std::optional<RealLayout> layout;        ///< where it is said here and the FABs have no headers of their own
+  std::vector<FabPlace> places;            ///< one for each box
+  std::vector<std::string> files;          ///< names of files in the directory of Cell_H
+  std::vector<ComponentRange> ranges;      ///< of each component over all boxes; empty if the file does not have them
+  std::vector<ComponentRange> box_ranges;  ///< of one component in each box; empty if the file does not have them
+  std::optional<RealLayout> layout;        ///< set if the header gives it and FABs have no headers of their own
 };
 
-/// What a box costs in memory, the index over it (BoxIndex) and the range of one component included.
+/// Memory for one box, in bytes, including the index over it (BoxIndex) and the range of one component.
 inline constexpr std::uint64_t kBytesPerBox = 88;
 
-/// `bytes`: of the whole text, which bounds how many boxes there can be. Takes at most `memory` bytes, else throws
-/// Error(usage) that names a sufficient --memory. Throws Error(input) for ghost cells, boxes not of cells, files
-/// outside the directory, and whatever is damaged.
+/// Parses a Cell_H. `bytes` is the size of the whole text, which bounds the number of boxes. Throws Error(usage) that
+/// names a sufficient --memory if the boxes need more than `memory` bytes. Throws Error(input) for ghost cells, boxes
+/// that are not of cells, files outside the directory, and damaged text.
 CellHeader parse_cell_header(PlotfileText& text, std::uint64_t bytes, std::uint64_t memory, const RangesKept& kept);
 
 }  // namespace weir

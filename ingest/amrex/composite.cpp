@@ -19,12 +19,12 @@
 namespace weir {
 namespace {
 
-/// Boxes below so many values a thread are not worth another thread.
+/// A box with fewer values per thread is not worth another thread.
 constexpr std::int64_t kValuesPerThread = 64 * 1024;
-/// Linear values are made tile by tile, so that what is held of coarser levels has a bound.
+/// Linear values are computed tile by tile, which bounds the values of coarser levels that are held.
 constexpr std::int64_t kTile = 64;
 
-/// The parts of each FAB, which lie side by side in `parts`.
+/// Returns the parts grouped by FAB. The parts of a FAB lie side by side in `parts`.
 std::vector<std::span<const CoverPart>> by_fab(std::span<const CoverPart> parts) {
   std::vector<std::span<const CoverPart>> groups;
   while (!parts.empty()) {
@@ -54,7 +54,8 @@ Box bounds_of_boxes(const std::vector<Box>& boxes) {
   return bounds;
 }
 
-/// As `mapping`, but values that stand for "no data" read as missing_value(), which nothing is made linear with.
+/// Returns `mapping`, changed so that "no data" reads as missing_value(), which is not finite and so never
+/// interpolated.
 ValueMapping marking(ValueMapping mapping) {
   mapping.keeps_missing = false;
   return mapping;
@@ -69,13 +70,13 @@ float kept_value_of(const ValueMapping& mapping, ScalarType type) {
   return read;
 }
 
-/// What the stored value that stands for "no data" reads as. Plotfiles name none: it is that of --missing alone.
+/// Returns the value that a stored "no data" value reads as. Plotfiles name no such value; only --missing does.
 float value_of_missing(const ValueMapping& mapping, ScalarType type) {
   if (mapping.missing.empty() || !holds(type, mapping.missing.front())) return missing_value();
   return type == ScalarType::float32 ? kept_value_of<float>(mapping, type) : kept_value_of<double>(mapping, type);
 }
 
-/// The cells between planes of the grid of kTile.
+/// Returns the tiles of `box`, cut at the planes of a grid of kTile cells.
 std::vector<Box> tiles_of(const Box& box) {
   const Index3 first = floor_div(box.lo, kTile);
   const Index3 end = floor_div(box.hi - Index3{1, 1, 1}, kTile) + Index3{1, 1, 1};
@@ -151,7 +152,7 @@ ConversionLoss Composite::read_constant(const Box& box, std::span<float> values)
   const auto slabs = static_cast<std::int64_t>(threads_for(box));
   ConversionLoss total;
   std::mutex mutex;
-  if (std::ssize(groups) < slabs && box.extent().z >= slabs) {  // few large boxes: each of them by several threads
+  if (std::ssize(groups) < slabs && box.extent().z >= slabs) {  // few large boxes: several threads share each
     const std::int64_t plane = box.extent().x * box.extent().y;
     for_pieces(slabs, static_cast<std::size_t>(slabs), [&](std::int64_t i) {
       Box slab = box;
@@ -230,7 +231,7 @@ std::uint64_t Composite::working_bytes() const {
   for (const PlotfileLevel& level : plotfile_.levels) boxes += level.boxes.size() * kBytesPerBox;
   for (std::size_t level = wanted_ + 1; level < plotfile_.levels.size(); ++level)
     boxes += plotfile_.levels[level].boxes.size() * kBytesPerFinerBox;
-  constexpr std::uint64_t kParts = std::uint64_t{2} << 20U;  // of a block of the smallest boxes there are
+  constexpr std::uint64_t kParts = std::uint64_t{2} << 20U;  // for the parts of a block with the smallest boxes
   constexpr std::uint64_t kTileBytes = kTile * kTile * kTile * sizeof(float);
   return boxes + kParts + (upsampling_ == Upsampling::linear ? 2 * kIoThreads * kTileBytes : 0);
 }

@@ -31,7 +31,7 @@ std::shared_ptr<InputFile> FabFiles::file_of(std::size_t level, std::uint32_t fa
     open_.splice(open_.begin(), open_, found);
     return found->input;
   }
-  // Whoever reads from a file last closes it, and then its bytes are counted.
+  // The last reader of a file closes it. Its bytes are counted then.
   std::shared_ptr<InputFile> input(std::make_unique<InputFile>(of.path(number), mode_).release(),
                                    [closed = closed_bytes_](InputFile* closing) {
                                      const std::unique_ptr<InputFile> owned(closing);
@@ -69,7 +69,7 @@ std::uint16_t FabFiles::checked_header(std::size_t number, std::uint32_t fab, In
     }
     header_bytes = header.bytes;
   }
-  // The products fit: domain and components were looked at when the plotfile was opened.
+  // The products do not overflow: the domain and the components were checked when the plotfile was opened.
   const std::uint64_t values =
       level.cells(fab) * static_cast<std::uint64_t>(components) * scalar_bytes(plotfile_.layout.type);
   if (offset + header_bytes + values > file.size()) {

@@ -1,4 +1,4 @@
-// The files of a plotfile's FABs, a few of them open at a time: there may be thousands.
+// The files of a plotfile's FABs. There may be thousands, so only a few are open at a time.
 #pragma once
 
 #include <atomic>
@@ -14,18 +14,18 @@
 
 namespace weir {
 
-/// Thread-safe.
+/// Opens and keeps the files. Thread-safe.
 class FabFiles {
  public:
-  /// Of the levels of `plotfile`, which outlives the object.
+  /// Serves the levels of `plotfile`, which must outlive this object.
   FabFiles(const Plotfile& plotfile, DirectIo mode);
 
-  /// The file of a FAB, which stays open as long as it is held.
+  /// Returns the file of a FAB. The file stays open as long as the pointer is held.
   std::shared_ptr<InputFile> file_of(std::size_t level, std::uint32_t fab);
 
-  /// Bytes from the beginning of `file`, which file_of gave, to the FAB's values. Reads the FAB's header, once, and
-  /// compares it with Cell_H. Throws Error(input) with path and offset where they differ or the FAB reaches beyond the
-  /// end.
+  /// Returns the offset of the FAB's values in `file`, which file_of() returned. On the first call, reads the FAB's
+  /// header and compares it with Cell_H. Throws Error(input) with path and offset if they differ or the FAB reaches
+  /// beyond the end of the file.
   std::uint64_t values_offset(std::size_t level, std::uint32_t fab, InputFile& file);
 
   std::uint64_t bytes_read() const;
@@ -43,10 +43,10 @@ class FabFiles {
 
   const Plotfile& plotfile_;
   DirectIo mode_;
-  /// Bytes of each FAB's header, kUnknown before it was read.
+  /// Bytes of each FAB's header; kUnknown until it is read.
   std::vector<std::vector<std::atomic<std::uint16_t>>> header_bytes_;
   mutable std::mutex mutex_;
-  std::list<OpenFile> open_;  ///< the last one used first
+  std::list<OpenFile> open_;  ///< most recently used first
   std::shared_ptr<std::atomic<std::uint64_t>> closed_bytes_ = std::make_shared<std::atomic<std::uint64_t>>(0);
 };
 

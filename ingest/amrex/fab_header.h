@@ -1,5 +1,5 @@
 // The line before a FAB's values: "FAB ((8, (64 11 52 0 1 12 0 1023)),(8, (8 7 6 5 4 3 2 1)))((0,0,0) (31,31,31)
-// (0,0,0)) 3". FABio::write_header and FABio_binary::write_header in AMReX's Src/Base/AMReX_FArrayBox.cpp write it.
+// (0,0,0)) 3". AMReX writes it in FABio::write_header and FABio_binary::write_header, Src/Base/AMReX_FArrayBox.cpp.
 #pragma once
 
 #include <cstddef>
@@ -13,21 +13,23 @@
 
 namespace weir {
 
-/// No such line is longer.
+/// The most bytes of a FAB header's line.
 inline constexpr std::size_t kMostFabHeaderBytes = 1024;
 
 struct FabHeader {
   RealLayout layout;
   Box box;
   std::int64_t components = 0;
-  std::uint64_t bytes = 0;  ///< of the line, its end included
+  std::uint64_t bytes = 0;  ///< of the line, including its line end
 };
 
-/// `head`: the bytes at `offset` of the file `path`, kMostFabHeaderBytes or up to its end. Throws Error(input) with
-/// path and offset where they are no such line, or one of the format before AMReX ("FAB: 8 ...").
+/// Parses `head`, the bytes at `offset` of the file `path`: kMostFabHeaderBytes of them, or up to the file's end.
+/// Throws Error(input) with path and offset if they are not such a line, or are in the format before AMReX ("FAB: 8
+/// ...").
 FabHeader parse_fab_header(std::string_view head, const std::string& path, std::uint64_t offset);
 
-/// The same of the bytes at `offset` of `file`, which lies before its end. Throws as InputFile's reads, too.
+/// Reads and parses the bytes at `offset` of `file`; `offset` must lie before its end. Also throws the errors of
+/// InputFile's reads.
 FabHeader read_fab_header(InputFile& file, std::uint64_t offset);
 
 }  // namespace weir

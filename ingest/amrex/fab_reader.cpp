@@ -12,22 +12,22 @@
 namespace weir {
 namespace {
 
-constexpr std::size_t kRowValues = 1024;  // decoded at a time where a cell's value is repeated along x
-constexpr std::size_t kWidestReal = 8;    // bytes of a value
+constexpr std::size_t kRowValues = 1024;  // values decoded at a time if a cell's value is repeated along x
+constexpr std::size_t kWidestReal = 8;    // bytes of the widest value
 
 /// The cells of one FAB's component as they lie in its file.
 struct StoredCells {
   Index3 extent;             ///< of the FAB
-  std::uint64_t offset = 0;  ///< of the component's first value
+  std::uint64_t offset = 0;  ///< of the component's first value in the file
   std::uint64_t bytes = 8;   ///< of a value
 
   std::uint64_t at(const Index3& cell) const { return static_cast<std::uint64_t>(linear_index(cell, extent)) * bytes; }
-  /// From the first byte of a box of cells to its last.
+  /// Returns the bytes from the first byte of a box of cells to its last.
   std::uint64_t span_of(const Box& box) const { return at(box.hi - Index3{1, 1, 1}) + bytes - at(box.lo); }
 };
 
-/// Cells of `part` from `lo` on, as far as they may be read at once: what lies between is read, too, where it is less
-/// than what is wanted or than a gap that is worth it.
+/// Returns the cells of `part` from `lo` on that are read at once. The bytes between its rows and planes are read
+/// too, if they are at most as many as the wanted ones, or if the gap is small (kMaxGapBytes).
 Box next_piece(const StoredCells& stored, const Box& part, const Index3& lo) {
   const auto fits = [&](const Box& box) { return stored.span_of(box) <= kPieceBytes; };
   const auto joins = [&](std::int64_t wanted, std::int64_t all, std::uint64_t step) {
@@ -50,7 +50,7 @@ Box next_piece(const StoredCells& stored, const Box& part, const Index3& lo) {
   return piece;
 }
 
-/// Calls take(piece) for pieces that fill `part`, one after the other.
+/// Calls take(piece) for the pieces that fill `part`, one after the other.
 template <typename Take>
 void for_each_piece(const StoredCells& stored, const Box& part, const Take& take) {
   Index3 lo = part.lo;
@@ -67,9 +67,9 @@ void for_each_piece(const StoredCells& stored, const Box& part, const Take& take
   }
 }
 
-/// Writes cells to the values of a box of the wanted level.
+/// Writes the values of stored cells to the values of a box of the wanted level.
 struct Painter {
-  Index3 by;  ///< cells of the wanted level along one
+  Index3 by;  ///< cells of the wanted level along a stored cell
   RealLayout layout;
   const ValueMapping& mapping;
   Box box;  ///< of the wanted level
@@ -80,8 +80,8 @@ struct Painter {
                           static_cast<std::size_t>(count));
   }
 
-  /// The values `first`, ... repeated as often as `out` asks, whose first one is cell `x` of the wanted level; `lo` is
-  /// the cell of `first`.
+  /// Decodes a row of stored cells into `out` and repeats each value along x. `first` points at the value of the
+  /// stored cell `lo`; out[0] is the cell `x` of the wanted level.
   ConversionLoss decode_row(const std::byte* first, std::int64_t lo, std::int64_t x, std::span<float> out) const {
     const std::size_t bytes = scalar_bytes(layout.type);
     if (by.x == 1) {
@@ -102,8 +102,8 @@ struct Painter {
     return loss;
   }
 
-  /// All cells of `part` (of the wanted level) in the coarse cell row (y, z), whose cells from `lo` on begin at
-  /// `first`.
+  /// Writes all cells of `part` (of the wanted level) that lie in the row (y, z) of stored cells. `first` points at
+  /// the value of the row's cell `lo`.
   ConversionLoss paint_row(const std::byte* first, std::int64_t lo, std::int64_t y, std::int64_t z,
                            const Box& part) const {
     const std::int64_t y0 = std::max(part.lo.y, y * by.y);

@@ -1,4 +1,4 @@
-// Values of one component out of FABs, a bounded number of bytes at a time.
+// Reads the values of one component from FABs, a bounded number of bytes at a time.
 #pragma once
 
 #include <cstddef>
@@ -15,15 +15,16 @@
 
 namespace weir {
 
-/// Thread-safe. Needs kStagingBytes besides the callers' buffers.
+/// Thread-safe. Needs kStagingBytes of memory besides the callers' buffers.
 class FabReader {
  public:
-  /// `plotfile` outlives the object. `notice` is for RangeCheck.
+  /// `plotfile` must outlive this object. `notice` is for RangeCheck.
   FabReader(const Plotfile& plotfile, std::size_t component, DirectIo mode, Notice notice);
 
-  /// Writes the values of `parts`, which are of one FAB and lie in `box`, of cells of level `wanted`, to their places
-  /// in `values`, that box x fastest, after `mapping`. A cell of a coarser level gives all cells in it its value. Loss
-  /// is counted of what is written. Rows of the FAB that lie near each other are read together.
+  /// Reads the values of `parts` into `values`, which covers `box`, x fastest, after `mapping`. All parts are of one
+  /// FAB and lie in `box`, a box of cells of level `wanted`. A cell of a coarser level gives its value to all cells
+  /// in it. The returned loss counts the values that are written. Rows of the FAB that lie near each other are read
+  /// together.
   ConversionLoss read(std::size_t wanted, std::span<const CoverPart> parts, const Box& box, const ValueMapping& mapping,
                       std::span<float> values);
 

@@ -1,4 +1,4 @@
-// Ends the opening of a large plotfile early.
+// Lets a user interrupt the opening of a large plotfile.
 #pragma once
 
 #include <atomic>
@@ -7,10 +7,10 @@
 
 namespace weir {
 
-/// Set by another thread or a signal handler; may be null.
+/// A flag that another thread or a signal handler sets; may be null.
 using Interruption = const std::atomic<bool>*;
 
-/// Throws Error(interrupted) where it is set.
+/// Throws Error(interrupted) if the flag is set.
 inline void throw_if_interrupted(Interruption interruption) {
   if (interruption != nullptr && *interruption) throw Error(ErrorKind::interrupted, "interrupted");
 }

@@ -29,8 +29,8 @@ class Coverer {
   Coverer(std::span<const PlotfileLevel> levels, std::size_t wanted, std::size_t coarsest, bool keeps_rest)
       : levels_(levels), wanted_(wanted), coarsest_(coarsest), keeps_rest_(keeps_rest) {}
 
-  /// Covers `box`, of cells of the wanted level, by the boxes of `level` and of those below it. Of boxes finer than the
-  /// wanted level count the cells that they have as a whole.
+  /// Covers `box`, a box of cells of the wanted level, with the boxes of `level` and of coarser levels. Of a box that
+  /// is finer than the wanted level, only the wanted cells that it covers wholly count.
   void cover(std::size_t level, const Box& box) {
     std::vector<std::uint32_t> found;
     if (level <= wanted_) {
@@ -55,7 +55,7 @@ class Coverer {
     return refined(levels_[level].boxes[fab].box(), refinement(levels_, level, wanted_));
   }
 
-  /// `fabs`: all of `level` that have cells in `box`.
+  /// `fabs` are all boxes of `level` that have cells in `box`.
   void cover_by(std::size_t level, Box box, const std::vector<std::uint32_t>& fabs) {
     if (fabs.empty()) return below(level, box);
     if (fabs.size() > 1) return split(level, box, fabs);
@@ -76,7 +76,8 @@ class Coverer {
     }
   }
 
-  /// Of several boxes without a common cell, faces of some lie inside: cuts at the one nearest to the middle.
+  /// Cuts `box` at a face of one of the `fabs`, the face nearest to the middle. Such a face exists, because the
+  /// several `fabs` share no cell.
   void split(std::size_t level, const Box& box, const std::vector<std::uint32_t>& fabs) {
     Cut best;
     double least = 2;
@@ -106,7 +107,7 @@ class Coverer {
   std::span<const PlotfileLevel> levels_;
   std::size_t wanted_;
   std::size_t coarsest_;
-  bool keeps_rest_;  // of boxes, what no level has
+  bool keeps_rest_;  // whether boxes of cells that no level has are kept
   LevelCover cover_;
 };
 

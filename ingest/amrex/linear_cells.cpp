@@ -8,16 +8,16 @@
 namespace weir {
 namespace {
 
-/// Along one axis: two cells and the weight of the second.
+/// Interpolation along one axis: two coarse cells and the weight of the second.
 struct Between {
   std::int64_t lower = 0;
   std::int64_t upper = 0;
-  std::int64_t own = 0;  ///< the one that the fine cell lies in
+  std::int64_t own = 0;  ///< the coarse cell that the fine cell lies in
   double weight = 0;
 };
 
 Between between(std::int64_t fine, std::int64_t by, std::int64_t lo, std::int64_t hi) {
-  // The centre of fine cell i lies at (i + 1/2) / by - 1/2 of coarse centres: twice that times `by` is a whole number.
+  // In coarse centres, the centre of fine cell i is at (i + 1/2) / by - 1/2. Times 2 `by`, it is a whole number.
   const std::int64_t twice = 2 * fine + 1 - by;
   Between b;
   b.own = fine / by;
@@ -48,7 +48,7 @@ void upsample_linear(const CellValues& coarse, const Index3& by, const Box& part
     const Between in_z = between(z, by.z, coarse.box.lo.z, coarse.box.hi.z);
     for (std::int64_t y = part.lo.y; y < part.hi.y; ++y) {
       const Between in_y = between(y, by.y, coarse.box.lo.y, coarse.box.hi.y);
-      // Of the four rows of cells, each with its weight.
+      // The weights of the four rows of cells around the fine row.
       const std::array<double, 4> weights{(1 - in_y.weight) * (1 - in_z.weight), in_y.weight * (1 - in_z.weight),
                                           (1 - in_y.weight) * in_z.weight, in_y.weight * in_z.weight};
       const auto column = [&](std::int64_t x) {
@@ -66,7 +66,7 @@ void upsample_linear(const CellValues& coarse, const Index3& by, const Box& part
         const Between in_x = between(x, by.x, coarse.box.lo.x, coarse.box.hi.x);
         if (column_at != in_x.lower) columns[0] = column(in_x.lower);
         if (column_at != in_x.lower) columns[1] = in_x.weight == 0 ? columns[0] : column(in_x.upper);
-        // Edges clamp both cells to one: the pair is known by its first cell only between them.
+        // At the edges both cells are clamped to one. Only a pair of different cells is identified by its first cell.
         column_at = in_x.upper == in_x.lower + 1 && in_x.weight != 0 ? in_x.lower : coarse.box.lo.x - 1;
         const double sum = in_x.weight == 0 ? columns[0] : (1 - in_x.weight) * columns[0] + in_x.weight * columns[1];
         *out++ = std::isfinite(sum) ? static_cast<float>(sum) : static_cast<float>(value(in_x.own, in_y.own, in_z.own));

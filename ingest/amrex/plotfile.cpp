@@ -19,7 +19,7 @@ namespace {
 
 constexpr auto kMostVolume = static_cast<std::int64_t>(UINT64_C(1) << 60U);  // cells: their bytes are a 64-bit number
 
-/// A header's file and its text.
+/// A header's file and the parser of its text.
 struct HeaderFile {
   explicit HeaderFile(const std::string& path, Interruption interruption = nullptr)
       : file(path, DirectIo::off), pieces(file, 0, file.size()), text(path, [this, interruption] {
@@ -40,7 +40,7 @@ void note(Plotfile& plotfile, const FileState& state) {
 
 std::string corner_text(const Index3& i) { return cat('(', i.x, ',', i.y, ',', i.z, ')'); }
 
-/// In the file's own indices, as its headers have it.
+/// Returns the box in the file's own indices, as its headers write it.
 std::string shown(const Box& box) { return cat(corner_text(box.lo), " to ", corner_text(box.hi - Index3{1, 1, 1})); }
 
 void move_to_domain(const std::string& path, const Box& domain, std::vector<CellBox>& boxes) {
@@ -81,7 +81,7 @@ void require_cover(const std::string& path, const PlotfileLevel& level) {
                               " cells of its domain, and must cover all; write the plotfile of the whole domain"));
 }
 
-/// The FAB that lies last in each file.
+/// Returns, for each file, the FAB that lies last in it.
 std::vector<std::size_t> last_fabs(const PlotfileLevel& level) {
   std::vector<std::size_t> last(level.files.size(), SIZE_MAX);
   for (std::size_t i = 0; i < level.places.size(); ++i) {
@@ -99,7 +99,7 @@ std::unique_ptr<InputFile> open_fab_file(const std::string& path, const std::str
   }
 }
 
-/// Where the values of a FAB end that begin at `offset`; UINT64_MAX where that is no 64-bit number.
+/// Returns the end of the values of a FAB that begin at `offset`; UINT64_MAX if it does not fit 64 bits.
 std::uint64_t values_end(const Plotfile& plotfile, const PlotfileLevel& level, std::size_t fab, std::uint64_t offset) {
   const std::uint64_t components = plotfile.header.components.size();
   std::uint64_t end = 0;
@@ -108,7 +108,7 @@ std::uint64_t values_end(const Plotfile& plotfile, const PlotfileLevel& level, s
   return fits ? end : UINT64_MAX;
 }
 
-/// FABs without headers of their own do not say whose they are: what lies in two of them is seen here, or never.
+/// FABs without headers do not name their box, so bytes shared by two FABs can only be detected here.
 void refuse_shared_bytes(const Plotfile& plotfile, const PlotfileLevel& level, const std::string& header) {
   const auto& places = level.places;
   std::vector<std::uint32_t> order(places.size());
@@ -128,7 +128,7 @@ void refuse_shared_bytes(const Plotfile& plotfile, const PlotfileLevel& level, c
   }
 }
 
-/// What of the file a FAB takes, its header included. Fills plotfile.layout where it is the first one.
+/// Returns the end of a FAB in its file, from its header on. Sets plotfile.layout if it is the `first` FAB.
 std::uint64_t fab_end(InputFile& file, const PlotfileLevel& level, std::size_t fab, Plotfile& plotfile, bool first) {
   const std::uint64_t offset = level.places[fab].offset;
   if (level.bare) return values_end(plotfile, level, fab, offset);

@@ -1,5 +1,5 @@
-// An AMReX plotfile as it lies on disk: a directory with Header, Level_k/Cell_H and files of FABs. Opened here, checked
-// as a whole, and no value of it read.
+// An AMReX plotfile on disk: a directory with Header, Level_k/Cell_H and files of FABs. Opening checks all of them,
+// but reads no values.
 #pragma once
 
 #include <cstddef>
@@ -17,11 +17,11 @@
 
 namespace weir {
 
-/// One level, its boxes in cells from the first of its domain on.
+/// One level. The cells of its boxes are counted from the first cell of its domain.
 struct PlotfileLevel {
   Index3 extent;          ///< of the domain, cells
-  Index3 ratio{1, 1, 1};  ///< its cells along one of the level below
-  std::string directory;  ///< of its files
+  Index3 ratio{1, 1, 1};  ///< its cells along one cell of the next coarser level
+  std::string directory;  ///< directory of its files
   std::vector<CellBox> boxes;
   std::vector<FabPlace> places;
   std::vector<std::string> files;
@@ -35,37 +35,38 @@ struct PlotfileLevel {
 };
 
 struct Plotfile {
-  std::string path;  ///< as it was asked for, without a slash at its end
+  std::string path;  ///< as the user gave it, without a slash at its end
   AmrexHeader header;
   RealLayout layout;                  ///< of all FABs
-  std::vector<PlotfileLevel> levels;  ///< as many as were opened
-  FileStates files;                   ///< all of them
-  std::uint64_t bytes = 0;            ///< of all of them
-  std::int64_t mtime_ns = 0;          ///< of the one written last
+  std::vector<PlotfileLevel> levels;  ///< the opened levels, coarsest first
+  FileStates files;                   ///< all files of the plotfile
+  std::uint64_t bytes = 0;            ///< of all files
+  std::int64_t mtime_ns = 0;          ///< of the file written last
 };
 
-/// The directory of a plotfile, of which its Header may be named, too.
+/// Returns the directory of a plotfile. `path` may name the directory or its Header.
 std::string plotfile_directory(const std::string& path);
 
-/// A box of a level, as that level's Cell_H has it: "(0,0,0) to (7,7,3)".
+/// Returns a box of a level in the indices of that level's Cell_H: "(0,0,0) to (7,7,3)".
 std::string box_in_file(const Plotfile& plotfile, std::size_t level, std::uint32_t box);
 
-/// "plt00042/Level_0/Cell_H".
+/// Returns the path of a level's Cell_H: "plt00042/Level_0/Cell_H".
 std::string cell_header_path(const Plotfile& plotfile, std::size_t level);
 
-/// Its header alone. Throws Error(interrupted), too.
+/// Reads only the Header of the plotfile `path`. Also throws Error(interrupted).
 AmrexHeader read_amrex_header(const std::string& path, Interruption interruption);
 
 struct PlotfileParts {
-  std::size_t levels = SIZE_MAX;      ///< the coarsest ones, as many of them
-  std::uint64_t memory = UINT64_MAX;  ///< bytes, for boxes and indices over them
+  std::size_t levels = SIZE_MAX;      ///< opens this many levels, the coarsest ones
+  std::uint64_t memory = UINT64_MAX;  ///< bytes, for the boxes and the indices over them
   RangesKept ranges;
-  Interruption interruption = nullptr;  ///< ends opening with Error(interrupted)
+  Interruption interruption = nullptr;  ///< the flag that ends opening with Error(interrupted)
 };
 
-/// Opens it. Throws Error(input) with path and place for what is damaged, missing or cut: a FAB file is there and long
-/// enough for the last of its FABs; FABs without headers have no byte in common; boxes lie in their domain and have no
-/// cell in common; level 0 covers it. Error(usage) where the boxes take more than `parts.memory`.
+/// Opens a plotfile. Throws Error(input) with path and place for anything damaged, missing or cut. Each FAB file must
+/// be there and be long enough for its last FAB. FABs without headers must share no byte. Boxes must lie in their
+/// domain and share no cell; level 0 must cover its domain. Throws Error(usage) if the boxes take more than
+/// `parts.memory`.
 Plotfile open_plotfile(const std::string& path, const PlotfileParts& parts);
 
 }  // namespace weir

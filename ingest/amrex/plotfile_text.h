@@ -1,5 +1,5 @@
-// The text of a plotfile's headers: words, whole numbers, boxes and lines, one after the other. A level of a million
-// boxes has headers of hundreds of megabytes, so no more than a piece is in memory.
+// Parses the text of a plotfile's headers: a sequence of words, whole numbers, boxes and lines. A level of a million
+// boxes has headers of hundreds of megabytes, so only a piece is held in memory.
 #pragma once
 
 #include <cstddef>
@@ -14,10 +14,10 @@
 
 namespace weir {
 
-/// Of a plotfile: more is damage.
+/// The most components of a plotfile. A larger number is treated as damage.
 inline constexpr std::int64_t kMostAmrexComponents = 100'000;
 
-/// What is written and cannot be read, whatever else a program may still write.
+/// The error for a plotfile that cannot be read, whatever a program may still write to it.
 class UnsupportedPlotfile : public Error {
  public:
   explicit UnsupportedPlotfile(Error error) : Error(std::move(error)) {}
@@ -25,7 +25,7 @@ class UnsupportedPlotfile : public Error {
 
 class PlotfileText {
  public:
-  /// The next bytes, valid until the next call; empty at the end.
+  /// Returns the next bytes, valid until the next call; empty at the end.
   using NextPiece = std::function<std::string_view()>;
 
   /// `path` is for messages. Not thread-safe.
@@ -33,34 +33,35 @@ class PlotfileText {
 
   const std::string& path() const { return path_; }
 
-  // Each of these passes white space before what it reads, but for rest_of_line, and throws Error(input) with path,
-  // line, what is there and `what` should be, where there is something else.
+  // Each function below skips white space first, except rest_of_line. It throws Error(input) if it finds anything
+  // else than it expects; the message has path, line, the text found, and `what`, the name of the expected thing.
 
-  /// Up to the next white space or one of `stops`, which is not taken; not empty, at most kLongestWord bytes.
+  /// Returns the text up to the next white space or one of `stops`, which stays unread. It is not empty and has at
+  /// most kLongestWord bytes.
   std::string_view word(std::string_view what, std::string_view stops = {});
   std::int64_t integer(std::string_view what, std::string_view stops = {});
-  /// From `least` to `most`.
+  /// The number must be from `least` to `most`.
   std::int64_t integer_in(std::string_view what, std::int64_t least, std::int64_t most);
   double real(std::string_view what, std::string_view stops = {});
   void expect(char c, std::string_view what);
-  /// "((0,0,0) (31,31,31) (0,0,0))", its upper corner inclusive as AMReX writes it; half open here. Of cells only: the
-  /// type of the indices must be 0. Boxes of two numbers are refused as of a 2-D plotfile.
+  /// Reads a box, "((0,0,0) (31,31,31) (0,0,0))". AMReX writes its upper corner inclusive; the returned box is half
+  /// open. The type of the indices must be 0 (cells). A box of two numbers is refused as a 2-D plotfile's.
   Box box(std::string_view what);
-  /// Three whole numbers in brackets, "(2,2,1)".
+  /// Reads three whole numbers in brackets, "(2,2,1)".
   Index3 vector(std::string_view what);
-  /// What is left of this line, without white space at its ends; its end is taken.
+  /// Returns the rest of this line, without white space at its ends. Also skips the line end.
   std::string rest_of_line();
-  /// Passes one word, whatever its length.
+  /// Skips one word of any length.
   void skip_word(std::string_view what);
 
-  /// The next byte after white space, which is not taken; -1 at the end.
+  /// Skips white space and returns the next byte, which stays unread; -1 at the end.
   int next_byte();
-  /// "PATH: line 3: WHAT".
+  /// Returns the error "PATH: line 3: WHAT".
   Error error(const std::string& what) const;
   UnsupportedPlotfile unsupported(const std::string& what) const { return UnsupportedPlotfile(error(what)); }
 
   static constexpr std::size_t kLongestWord = 400;
-  /// The end of what is said of plotfiles of other dimensions.
+  /// The end of messages about plotfiles that are not 3-D.
   static constexpr std::string_view kThreeAxesOnly = "; only plotfiles of three dimensions can be read";
 
  private:

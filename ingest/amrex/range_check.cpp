@@ -12,10 +12,11 @@
 namespace weir {
 namespace {
 
-/// Of the larger of the two bounds: some codes write them with six digits, and the values as float32.
+/// Tolerance, relative to the larger of the two bounds: some codes write bounds with six digits, and the values as
+/// float32.
 constexpr double kSlack = 1e-5;
 
-/// As a value of that size is rounded where it is stored.
+/// Returns `value` rounded to the stored type; infinite if it is too large for it.
 template <typename Stored>
 Stored rounded_bound(double value) {
   constexpr auto kMost = static_cast<double>(std::numeric_limits<Stored>::max());
@@ -23,7 +24,7 @@ Stored rounded_bound(double value) {
   return value > kMost ? kInfinity : value < -kMost ? -kInfinity : static_cast<Stored>(value);
 }
 
-/// The first value outside `range`; NaN where there is none. NaN lies in any range.
+/// Returns the first value outside `range`; NaN if there is none. NaN lies in any range.
 template <typename Stored, typename Bits, bool BigEndian>
 double first_outside(std::span<const std::byte> values, const ComponentRange& range) {
   const double slack = kSlack * std::max(std::fabs(range.min), std::fabs(range.max));

@@ -1,5 +1,6 @@
-// Whether the values of FABs lie in the ranges that Cell_H states of them: a plotfile of files of two runs, or of two
-// steps, shows there. Nothing is computed from these ranges, so that other values are worth a warning and no error.
+// Checks whether the values of FABs lie in the ranges that Cell_H states. A mismatch shows a plotfile that mixes
+// files of two runs or two steps. No result depends on these ranges, so a mismatch is a warning and not an
+// error.
 #pragma once
 
 #include <atomic>
@@ -13,22 +14,22 @@
 
 namespace weir {
 
-/// Thread-safe.
+/// Gives at most one notice. Thread-safe.
 class RangeCheck {
  public:
-  /// Of one component of `plotfile`, which was opened with RangesKept::of_boxes and outlives the object. `notice`
-  /// is called by the thread that comes upon the first value outside, and never again; where it is empty, or Cell_H
-  /// states no ranges, nothing is looked at.
+  /// Checks one component of `plotfile`, which was opened with RangesKept::of_boxes and must outlive this object. The
+  /// thread that finds the first value outside calls `notice`, only once. Nothing is checked if `notice` is empty or
+  /// Cell_H states no ranges.
   RangeCheck(const Plotfile& plotfile, std::size_t component, Notice notice);
 
-  /// Stored values of one FAB, as they lie in `file`.
+  /// Checks stored values of one FAB, in the byte layout of its file. The notice names `file`.
   void look_at(std::size_t level, std::uint32_t fab, const std::string& file, std::span<const std::byte> values);
 
  private:
   const Plotfile& plotfile_;
   std::size_t component_;
   Notice notice_;
-  std::atomic<bool> looks_;  ///< until something was said
+  std::atomic<bool> looks_;  ///< true until a notice is given
 };
 
 }  // namespace weir

@@ -14,7 +14,7 @@ constexpr std::string_view kWhat = "the layout of numbers";
 const std::vector<std::int64_t> kSingle{32, 8, 23, 0, 1, 9, 0, 127};
 const std::vector<std::int64_t> kDouble{64, 11, 52, 0, 1, 12, 0, 1023};
 
-// "(8, (64 11 52 0 1 12 0 1023))".
+// Reads "(8, (64 11 52 0 1 12 0 1023))" and returns the numbers in the inner brackets.
 std::vector<std::int64_t> bracketed_numbers(PlotfileText& text) {
   constexpr std::int64_t kMost = 16;
   text.expect('(', kWhat);

@@ -8,7 +8,7 @@
 namespace weir {
 namespace {
 
-/// Leaves that have voxels of `box`.
+/// Returns the leaves that have voxels of `box`.
 Box leaves_of(const Box& box) {
   return {floor_div(box.lo, kLeafDim), floor_div(box.hi - Index3{1, 1, 1}, kLeafDim) + Index3{1, 1, 1}};
 }
@@ -17,7 +17,7 @@ bool divides_leaf(const Index3& by) { return kLeafDim % by.x == 0 && kLeafDim % 
 
 bool on_multiples(const Index3& i, const Index3& by) { return i.x % by.x == 0 && i.y % by.y == 0 && i.z % by.z == 0; }
 
-/// The level by whose cells each leaf repeats.
+/// Finds, for each leaf, the level by the cells of which its values repeat.
 class LeafLevels {
  public:
   using Level = std::uint32_t;
@@ -66,7 +66,8 @@ class LeafLevels {
   }
   Box voxels(const Box& leaves) const { return intersect({leaves.lo * kLeafDim, leaves.hi * kLeafDim}, box_); }
 
-  /// The coarsest level from `level` on whose cells fill a leaf, and the part of it that lies in the box.
+  /// Returns the coarsest level, from `level` on, whose cells fill `inside` exactly and divide a leaf. `inside` is
+  /// the part of a leaf in the box.
   Level fitting(Level level, const Box& inside) const {
     while (!divides_leaf(repeats_[level]) || !on_multiples(inside.lo, repeats_[level]) ||
            !on_multiples(inside.hi, repeats_[level]))
@@ -76,8 +77,8 @@ class LeafLevels {
 
   Box box_;
   Box leaves_;
-  std::vector<Index3> repeats_;  ///< of each level
-  std::vector<Level> levels_;    ///< of the leaves, x fastest
+  std::vector<Index3> repeats_;  ///< for each level, voxels along one of its cells
+  std::vector<Level> levels_;    ///< for each leaf, x fastest
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Which leaves of a composited grid repeat the values of coarse cells.
+// Finds the leaves of a composited grid that repeat the values of coarse cells.
 #pragma once
 
 #include <span>
@@ -10,9 +10,9 @@
 
 namespace weir {
 
-/// Cuts `box`, of cells of the last of `levels`, into parts of whole leaves, as far as they lie in it. Each leaf
-/// repeats by the cells of the coarsest level that has one value for each group and no finer cells there; `cover` are
-/// the parts that give the box its values.
+/// Cuts `box`, a box of cells of the last of `levels`, into parts of whole leaves, as far as they lie in the box.
+/// Each leaf repeats by the cells of one level: the coarsest that is as fine as all values in the leaf and has cells
+/// that fill the leaf. `cover` are the parts that give the box its values.
 std::vector<RepeatedPart> repeated_leaves(std::span<const PlotfileLevel> levels, std::span<const CoverPart> cover,
                                           const Box& box);
 

@@ -9,10 +9,10 @@
 namespace weir {
 namespace {
 
-/// More coordinates of an irregular axis would make the sidecar larger than a small volume.
+/// The most coordinates of an irregular axis that are kept: more would make the sidecar larger than a small volume.
 constexpr std::size_t kMostKeptCoordinates = 16384;
 
-// degrees_north and degrees_east are one unit.
+// Returns the unit of the axis. degrees_north and degrees_east are the same unit.
 std::string unit_of(const AxisPlace& axis) { return axis.units.starts_with("degree") ? "degrees" : axis.units; }
 
 }  // namespace
@@ -49,7 +49,7 @@ std::string units_note(const VolumeAxes& axes) {
   std::set<std::string> units;
   for (std::size_t i = 0; i < axes.size(); ++i) {
     const AxisPlace& axis = *axes.at(i);
-    if (!axis.spacing || axis.units.empty()) continue;  // a place in no units
+    if (!axis.spacing || axis.units.empty()) continue;  // a place without units
     units.insert(unit_of(axis));
     text += cat(text.empty() ? "axis " : ", ", "xyz"[i], axis.label.empty() ? "" : " (", axis.label,
                 axis.label.empty() ? "" : ")", text.empty() ? " is in " : " in ", axis.units);

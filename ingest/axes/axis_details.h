@@ -1,4 +1,4 @@
-// What is said of the three axes of a volume besides their places.
+// The details of a volume's three axes besides their places: units, notes, order and orientation.
 #pragma once
 
 #include <array>
@@ -14,31 +14,31 @@ namespace weir {
 
 using VolumeAxes = std::array<const AxisPlace*, 3>;  ///< x, y, z
 
-/// What is said of `axis`, a volume's x, y or z by `of_volume` (0, 1, 2): units, note, and coordinates that are not
-/// equally spaced, up to a number that a sidecar has room for.
+/// Returns the units and note of `axis`, which is the volume's x, y or z by `of_volume` (0, 1, 2), and its
+/// coordinates if they are not equally spaced and few enough for a sidecar.
 AxisDetails axis_details(const AxisPlace& axis, std::size_t of_volume);
 
-/// Puts what is said of all of them into `details`: of each alone, and order and orientation.
+/// Writes the details of all axes into `details`: those of each axis, and the order, orientation and units of all.
 void describe_axes(const VolumeAxes& axes, FieldDetails& details);
 
-/// What is said of `axis`, a volume's x, y or z by `of_volume` (0, 1, 2), of which spacing and origin are not all: that
-/// its coordinates are irregular, or that they fall. Empty where that is nothing.
+/// Returns what spacing and origin do not say about `axis`, which is the volume's x, y or z by `of_volume` (0, 1, 2):
+/// its coordinates are irregular, or they fall. Otherwise returns "".
 std::string axis_note(const AxisPlace& axis, std::size_t of_volume);
 
-/// "axis x (xh) is in km, y (yh) in km, z (zh) in m", where those that have a spacing have it in different units; else
-/// empty.
+/// Returns "axis x (xh) is in km, y (yh) in km, z (zh) in m" if the axes with a spacing have different units,
+/// otherwise "".
 std::string units_note(const VolumeAxes& axes);
 
-/// "its axes are x, y, z, slowest first, and x is the fastest: the file's z lies along x, ...", where the names of at
-/// least two are those of others among them; else empty.
+/// Returns "its axes are x, y, z, slowest first, and x is the fastest: the file's z lies along x, ..." if at least
+/// two axes have the name of another direction, otherwise "".
 std::string order_note(const VolumeAxes& axes);
 
-/// Which of them points down and what that means, where CF's `positive` says it and spacing and origin do not; else
-/// empty.
+/// Returns which axis points down and what this means, if CF's `positive` says so; spacing and origin do not say it.
+/// Otherwise returns "".
 std::string down_note(const VolumeAxes& axes);
 
-/// What a listing says of them, as names and values: notes, order, orientation, spacing, origin. Nothing of where they
-/// are where one is a time.
+/// Returns what a listing says about the axes, as names and values: notes, order, orientation, spacing, origin.
+/// Returns nothing if one of them is a time.
 std::vector<std::pair<std::string, std::string>> listed_axes(const VolumeAxes& axes);
 
 }  // namespace weir

@@ -14,7 +14,7 @@ constexpr auto kPrefixes =
     std::to_array<std::string_view>({"", "atto", "femto", "pico", "nano", "micro", "milli", "centi", "deci", "deca",
                                      "hecto", "kilo", "mega", "giga", "tera"});
 
-// In lower case, as all of these; a prefix and an s at the end may be added.
+// All names here are in lower case. A prefix and a final s may be added to these.
 constexpr auto kTimeNames = std::to_array<std::string_view>({"second", "sec", "year", "annum"});
 constexpr auto kSpaceNames =
     std::to_array<std::string_view>({"meter", "metre", "parsec", "radian", "pascal", "bar", "micron"});
@@ -26,7 +26,7 @@ constexpr auto kTimeSymbols = std::to_array<std::string_view>(
      "kyr",   "kyrs", "myr",  "myrs", "gyr",  "gyrs",    "ka",      "ma",    "ga",     "code_time"});
 
 constexpr auto kSpaceLetters =
-    std::to_array<std::string_view>({"m", "A", "K"});  // K: of levels of potential temperature
+    std::to_array<std::string_view>({"m", "A", "K"});  // K: for levels of potential temperature
 constexpr auto kSpaceSymbols = std::to_array<std::string_view>(
     {"hm",     "dam",  "dm",          "cm",    "mm",     "um",      "\u00b5m",    "\u03bcm",    "nm",
      "pm",     "fm",   "km",          "pc",    "kpc",    "mpc",     "gpc",        "kpc/h",      "mpc/h",
@@ -35,7 +35,7 @@ constexpr auto kSpaceSymbols = std::to_array<std::string_view>(
      "\u212b", "gpm",  "code_length", "pixel", "pixels", "px",      "voxel",      "voxels",     "deg",
      "\u00b0", "rad",  "mrad",        "urad",  "arcsec", "arcmin",  "arcseconds", "arcminutes", "pa",
      "hpa",    "kpa",  "mb",          "mbar",  "dbar",   "atm",     "torr",       "psi"});
-/// degrees_north, sigma_level, "model level"
+/// Beginnings of units, as of degrees_north, sigma_level, "model level".
 constexpr auto kSpaceBegin =
     std::to_array<std::string_view>({"degree", "level", "layer", "sigma", "model_level", "model level"});
 
@@ -43,7 +43,7 @@ bool has_word(std::span<const std::string_view> words, std::string_view unit) {
   return std::ranges::find(words, unit) != words.end();
 }
 
-// Whether `unit` is a prefix and one of `names`, in the plural or not.
+// Returns whether `unit` is a prefix followed by one of `names`, in the singular or plural.
 bool is_made_of(std::span<const std::string_view> names, std::string_view unit) {
   if (unit.ends_with('s')) unit.remove_suffix(1);
   return std::ranges::any_of(names, [&](std::string_view name) {

@@ -49,7 +49,7 @@ ComponentAxis by_extent(std::span<const AxisPlace> axes) {
   return {last.extent, "by its extent alone", false};
 }
 
-// "0 to 2, x, y, z or magnitude"
+// Returns "0 to 2, x, y, z or magnitude".
 std::string choices_text(std::int64_t count) {
   const std::string_view names = count == 2 ? ", x, y" : count == 3 ? ", x, y, z" : "";
   return cat("0 to ", count - 1, names, " or magnitude");

@@ -15,7 +15,8 @@
 namespace weir {
 namespace {
 
-// The shortest text that reads back the same, as float32 where the file has no more.
+// Returns the shortest text that reads back as the same value, or as the same float32 if `precision` is that of
+// float32.
 std::string coordinate_text(double value, double precision) {
   std::array<char, 32> text{};
   const bool single = precision >= static_cast<double>(std::numeric_limits<float>::epsilon());

@@ -53,7 +53,7 @@ std::optional<std::size_t> space_direction(const std::string& label) {
 }
 
 bool names_space_axis(const std::string& label) {
-  // Which direction these are depends on the field.
+  // The direction of these depends on the field of science.
   constexpr std::array<std::string_view, 3> kNames{"j", "k", "eta"};
   constexpr std::array<std::string_view, 1> kBegin{"eta_"};
   const std::string name = lower_case(label);

@@ -1,4 +1,4 @@
-// Which names and coordinates an axis of space has.
+// Recognises the axes of space by their names and coordinates.
 #pragma once
 
 #include <cstddef>
@@ -12,20 +12,20 @@ namespace weir {
 
 inline constexpr std::size_t kSpaceAxes = 3;  // x, y and z
 
-/// Whether an axis called so is the fastest one of space: x, lon, west_east, xh, ...
+/// Returns whether `label` names the fastest axis of space: x, lon, west_east, xh, ...
 bool names_x_axis(const std::string& label);
 
-/// 0, 1 or 2 where an axis called so is the x, y or z of space (z: of height or depth); nullopt for other names.
+/// Returns 0, 1 or 2 if `label` names the x, y or z of space (z: height or depth), and nullopt for other names.
 std::optional<std::size_t> space_direction(const std::string& label);
 
-/// Whether an axis called so is one of space, whichever it is: the names above, j, k, eta, ...
+/// Returns whether `label` names an axis of space, whichever it is: the names of space_direction(), j, k, eta, ...
 bool names_space_axis(const std::string& label);
 
-/// Whether CF's attribute `positive` of coordinates (4.3) says that they rise downwards.
+/// Returns whether CF's attribute `positive` of coordinates (CF 4.3) says that they increase downwards.
 bool is_down(std::string_view positive);
 
-/// Whether what the file says of `axis` is said of an axis of space only: its name (x, lat, level, depth, south_north,
-/// ...), or coordinates with units.
+/// Returns whether the file describes `axis` as only an axis of space can be: by its name (x, lat, level, depth,
+/// south_north, ...), or by coordinates with units.
 bool is_space_axis(const AxisPlace& axis);
 
 }  // namespace weir

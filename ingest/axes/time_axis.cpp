@@ -16,7 +16,7 @@ bool is_standard_time(std::string_view standard_name) {
   return std::ranges::find(kNames, standard_name) != kNames.end();
 }
 
-// Of a number of steps, or in what the code itself counts.
+// Returns whether `units` is no real unit: a number of steps, or the code's own units.
 bool is_no_unit(std::string_view units) {
   constexpr std::array<std::string_view, 13> kNone{"",          "1",          "-",         "none",  "count",
                                                    "index",     "step",       "steps",     "cycle", "cycles",

@@ -30,7 +30,7 @@ void for_each_run(const Box& part, const Index3& chunk, const Box& box, const Vi
 
 ChunkBoxes::ChunkBoxes(ChunkedVolume volume, StoredChunks& chunks, ScratchPool& scratch)
     : volume_(std::move(volume)), chunks_(chunks), scratch_(scratch) {
-  std::vector<std::byte> fill;  // of one voxel
+  std::vector<std::byte> fill;  // stored bytes of one voxel
   for (std::int64_t c = 0; c < volume_.components.count; ++c) {
     fill.insert(fill.end(), volume_.fill.begin(), volume_.fill.end());
   }
@@ -85,7 +85,7 @@ ConversionLoss ChunkBoxes::read(const Box& box, std::span<float> values) {
         loss.add(read_chunk(first + index_at(i, count), box, values, *scratch));
       }
     } catch (...) {
-      next = chunks;  // the other lanes end too
+      next = chunks;  // makes the other lanes end, too
       throw;
     }
     const std::lock_guard lock(adding);

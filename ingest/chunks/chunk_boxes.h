@@ -1,5 +1,5 @@
-// Boxes of a volume that is stored in chunks, whatever format they lie in: each chunk that a box touches is decoded
-// once, by TBB's workers, in bounded memory.
+// Reads boxes of a volume that is stored in chunks, in any format. TBB's workers decode each chunk that a box touches
+// once, in bounded memory.
 #pragma once
 
 #include <cstddef>
@@ -16,54 +16,54 @@
 
 namespace weir {
 
-/// A volume and the chunks it is cut into, whose first one begins at voxel (0, 0, 0).
+/// A volume and its chunks. The first chunk begins at voxel (0, 0, 0).
 struct ChunkedVolume {
-  std::string name;  ///< messages begin with it
+  std::string name;  ///< messages begin with this name
   Index3 extent;     ///< voxels
   Index3 chunk;      ///< voxels, each >= 1
   ScalarType type = ScalarType::float32;
   bool big_endian = false;
   ValueMapping mapping;
-  VoxelComponents components = {};  ///< of each voxel, beside each other in a chunk
-  std::vector<std::byte> fill;      ///< one stored value: what voxels of chunks that are not stored read as
+  VoxelComponents components = {};  ///< components of each voxel, side by side in a chunk
+  std::vector<std::byte> fill;      ///< one stored value, which voxels of chunks that are not stored read as
 
   std::size_t voxel_bytes() const { return scalar_bytes(type) * static_cast<std::size_t>(components.count); }
 };
 
-/// Where chunks come from. Thread-safe.
+/// The source of decoded chunks. Thread-safe.
 class StoredChunks {
  public:
   virtual ~StoredChunks() = default;
 
-  /// The voxels of the chunk at `chunk` (chunk coordinates), x fastest, as they were before they were packed, which lie
-  /// in `scratch`: ChunkedVolume::chunk of them, those beyond the volume too. Empty where the chunk is not stored.
-  /// Throws Error(input), naming the chunk.
+  /// Returns the decoded voxels of the chunk at `chunk` (chunk coordinates), x fastest. They lie in `scratch`. There
+  /// are always ChunkedVolume::chunk of them, including those beyond the volume's border. Returns an empty span if
+  /// the chunk is not stored. Throws Error(input), naming the chunk.
   virtual std::span<const std::byte> decode(const Index3& chunk, ChunkScratch& scratch) = 0;
 };
 
-/// Thread-safe.
+/// Reads boxes of one chunked volume. Thread-safe.
 class ChunkBoxes {
  public:
-  /// `chunks` and `scratch` outlive it.
+  /// `chunks` and `scratch` must outlive this object.
   ChunkBoxes(ChunkedVolume volume, StoredChunks& chunks, ScratchPool& scratch);
 
   const ChunkedVolume& volume() const { return volume_; }
-  /// Chunk extent in voxels and bytes per voxel, for the block plan.
+  /// Returns the chunk extent in voxels and the bytes per voxel, for the block plan.
   AccessShape access() const { return {volume_.voxel_bytes(), volume_.chunk, {}}; }
 
-  /// Reads `box` (inside the volume, not empty) into `values`, x fastest. Every chunk it touches is decoded once.
-  /// Throws what StoredChunks::decode throws.
+  /// Reads `box` (inside the volume, not empty) into `values`, x fastest. Every chunk that it touches is decoded
+  /// once. Throws what StoredChunks::decode throws.
   ConversionLoss read(const Box& box, std::span<float> values);
 
  private:
-  /// The part of `box` that the chunk at `chunk` holds.
+  /// Reads the part of `box` that the chunk at `chunk` holds.
   ConversionLoss read_chunk(const Index3& chunk, const Box& box, std::span<float> values, ChunkScratch& scratch);
 
   ChunkedVolume volume_;
   StoredChunks& chunks_;
   ScratchPool& scratch_;
   float fill_ = 0;
-  ConversionLoss fill_loss_;  ///< of one voxel
+  ConversionLoss fill_loss_;  ///< conversion loss of one fill voxel
 };
 
 }  // namespace weir

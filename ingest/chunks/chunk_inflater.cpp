@@ -9,7 +9,7 @@ namespace weir {
 namespace {
 
 constexpr int kWindowBits = 15;
-constexpr int kGzipFlag = 16;  // added to the window bits: inflateReset2 expects gzip's header and trailer
+constexpr int kGzipFlag = 16;  // added to the window bits, so that inflateReset2 expects gzip's header and trailer
 
 bool only_zeros(std::span<const Bytef> bytes) {
   return std::all_of(bytes.begin(), bytes.end(), [](Bytef byte) { return byte == 0; });
@@ -37,7 +37,7 @@ std::size_t ChunkInflater::inflate_some(std::span<const std::byte> stream, std::
   stream_.next_out = reinterpret_cast<Bytef*>(bytes.data());
   stream_.avail_out = static_cast<uInt>(bytes.size());
   inflate_one(bytes.size());
-  // bgzip, pigz and cat make streams of several members (RFC 1952, 2.2), which gzip and Python's read as one.
+  // bgzip, pigz and cat write streams of several members (RFC 1952, 2.2). gzip and Python read them as one stream.
   while (wrapping == DeflateWrapping::gzip && !only_zeros({stream_.next_in, stream_.avail_in})) {
     inflateReset(&stream_);
     inflate_one(bytes.size());

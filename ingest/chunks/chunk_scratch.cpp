@@ -11,7 +11,8 @@ namespace {
 
 /// zlib's own state: 7 KiB and a window of 32 KiB.
 constexpr std::uint64_t kInflaterBytes = 40 * 1024;
-/// Of --memory, for all scratch together: what is larger takes from the blocks, and saves fewer decodes.
+/// All scratch together takes at most 1/8 of --memory. More would be lost to the blocks, and larger blocks save more
+/// decodes.
 constexpr std::uint64_t kScratchShare = 8;
 
 }  // namespace

@@ -10,17 +10,17 @@
 namespace weir {
 namespace {
 
-/// Values put together at a time by unshuffle_any: one cache line of each plane.
+/// Number of values that unshuffle_any puts together at a time: one cache line of each plane.
 constexpr std::size_t kTileValues = 64;
 
-/// Bits byte j of a value is shifted by to lie in memory at j.
+/// Returns by how many bits byte j of a value is shifted so that it lies in memory at j.
 template <typename Word>
 constexpr int shift_of(std::size_t j) {
   const std::size_t place = std::endian::native == std::endian::little ? j : sizeof(Word) - 1 - j;
   return static_cast<int>(8 * place);
 }
 
-/// Whole words, so that the compiler widens and merges planes in vector registers.
+/// Assembles whole words, so that the compiler widens and merges planes in vector registers.
 template <typename Word, std::size_t... J>
 void unshuffle_words(const std::byte* planes, std::size_t count, std::byte* values, std::index_sequence<J...>) {
   const std::array<const std::byte*, sizeof...(J)> plane{(planes + J * count)...};

@@ -14,7 +14,7 @@
 namespace weir {
 namespace {
 
-// A name without a slash is for the dynamic linker to find.
+// Returns the path for dlopen. A name without a slash lets the dynamic linker find the file.
 std::string place_of(const std::string& file, const std::string& what) {
   const char* const folder = ::secure_getenv("WEIR_DRIVERS");
   if (folder == nullptr || *folder == '\0') return file;

@@ -16,29 +16,29 @@
 namespace weir {
 namespace {
 
-// Of the thread's Hdf5Call. A handler can be told nothing but by what lives as long as the program.
+// The line of the thread's Hdf5Call. A signal handler can only read data that lives as long as the program.
 thread_local const std::string* line_now = nullptr;
 std::atomic<const Hdf5Reads*> reads_now{nullptr};
 std::atomic<const std::vector<std::string>*> removed_now{nullptr};
 static_assert(std::atomic<const std::string*>::is_always_lock_free && std::atomic<int>::is_always_lock_free,
               "a handler reads them");
 
-// Of the thread that calls it; null where it is not in the library.
+// Returns the line of the calling thread; nullptr if the thread is not in the library.
 const std::string* line_of_thread() {
   if (line_now != nullptr) return line_now;
   const Hdf5Reads* const reads = reads_now;
   return reads != nullptr && reads->thread == ::gettid() ? reads->line.load() : nullptr;
 }
 
-// Of the thread's Hdf5Call, likewise.
+// The stall line of the thread's Hdf5Call.
 thread_local const std::string* stall_line_now = nullptr;
 std::atomic<std::int64_t> longest_ms{0};
-// Nothing else in a program of weir's uses it.
+// A signal that nothing else in weir's programs uses.
 constexpr int kStalled = SIGVTALRM;
 
 constexpr std::array kCrashes{SIGSEGV, SIGBUS, SIGABRT};
 
-// Calls nothing but what POSIX allows in a handler.
+// Calls only functions that POSIX allows in a signal handler.
 [[noreturn]] void end_with(const std::string& line) {
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, line.data(), line.size());
   if (const std::vector<std::string>* const paths = removed_now) {
@@ -54,7 +54,7 @@ bool wants_own_stack(int signal) {
   return ::sigaction(signal, nullptr, &now) == 0 && (now.sa_flags & SA_ONSTACK) != 0;
 }
 
-/// Of the thread that makes it, where it has none. Ends with the thread.
+/// A signal stack for the thread that makes it, unless the thread has one. It ends with the thread.
 class HandlerStack {
  public:
   HandlerStack() {
@@ -76,24 +76,24 @@ class HandlerStack {
   HandlerStack& operator=(const HandlerStack&) = delete;
 
  private:
-  static constexpr std::size_t kBytes = 65536;  // the kernel puts all registers there, 11 KB with AMX
+  static constexpr std::size_t kBytes = 65536;  // the kernel saves all registers there, 11 KB with AMX
 
   std::vector<std::byte> bytes_;
 };
 
-// The signal has its default action again (SA_RESETHAND).
+// When this handler runs, the signal has its default action again (SA_RESETHAND).
 void end_crashed(int signal) {
   const std::string* const line = line_of_thread();
   if (line != nullptr) end_with(*line);
-  ::raise(signal);  // it comes when the handler returns
+  ::raise(signal);  // delivered when the handler returns
 }
 
 void end_stalled(int) {
   if (stall_line_now != nullptr) end_with(*stall_line_now);
 }
 
-// A signal to this thread once it has computed for longest_ms more; none where none is to come, or the system has no
-// timer.
+// Starts a timer that sends kStalled to this thread after it has computed for longest_ms. Returns nullopt if there is
+// no limit or the system has no timer.
 std::optional<timer_t> start_timer() {
   const std::int64_t longest = longest_ms;
   timer_t timer = nullptr;
@@ -110,7 +110,7 @@ std::optional<timer_t> start_timer() {
 }
 
 std::string one_line(std::string line) {
-  // Whatever characters the path has.
+  // The path may have any characters.
   std::replace_if(
       line.begin(), line.end(), [](char c) { return (c >= 0 && c < 32) || c == 127; }, '?');
   return line + '\n';

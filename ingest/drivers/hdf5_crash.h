@@ -1,5 +1,5 @@
-// What a program says when libhdf5 crashes at a damaged file, or comes to no end: some versions read beyond the memory
-// of damaged metadata, or follow them in a circle.
+// What a program reports when libhdf5 crashes on a damaged file or never returns. Some versions of the library read
+// beyond the memory of damaged metadata, or follow them in a circle.
 #pragma once
 
 #include <atomic>
@@ -10,24 +10,27 @@
 
 namespace weir {
 
-/// The line that report_hdf5_crashes() prints, with its end: `where` is the file, or file and dataset.
+/// Returns the line that report_hdf5_crashes() prints, with its line end. `where` names the file, or file and
+/// dataset.
 std::string hdf5_crash_line(const std::string& where);
 
-/// Which thread reads values in the library, and the line to print of them: one at a time, under the library's lock.
+/// The thread that reads values in the library, and the line to print if it crashes. Only one thread reads at a time,
+/// under the library's lock.
 struct Hdf5Reads {
   std::atomic<const std::string*> line{nullptr};
-  std::atomic<int> thread{0};  ///< as gettid() counts; 0: none
+  std::atomic<int> thread{0};  ///< its gettid(); 0: none
 };
 
-/// Makes report_hdf5_crashes() look there, too: a driver has its own. `reads` must live as long as the program.
+/// Makes report_hdf5_crashes() use `reads` too, because a driver has its own. `reads` must live as long as the
+/// program.
 void watch_hdf5_reads(const Hdf5Reads& reads);
 
-/// Gives the calling thread, for as long as it runs, a stack for handlers that want one of their own, as that of
-/// report_hdf5_crashes() does: the thread's is used up where the library follows damaged metadata in a circle.
+/// Gives the calling thread, until it ends, a separate stack for signal handlers that use one, as
+/// report_hdf5_crashes() does. The thread's own stack is used up if the library follows damaged metadata in a circle.
 void keep_handler_stack();
 
-/// While one exists, the thread that made it is in the library for the metadata of the file `path`. One at a time in a
-/// thread.
+/// While an Hdf5Call exists, the thread that made it is in the library for the metadata of the file `path`. At most
+/// one at a time in a thread.
 class Hdf5Call {
  public:
   explicit Hdf5Call(const std::string& path);
@@ -41,8 +44,8 @@ class Hdf5Call {
   std::optional<timer_t> timer_;
 };
 
-/// While one exists, such a crash removes `paths`, files and empty directories, in their order: what a conversion has
-/// begun. One at a time.
+/// While an Hdf5CrashRemoval exists, a crash also removes `paths`, files and empty directories, in their order: the
+/// unfinished output of a conversion. At most one at a time.
 class Hdf5CrashRemoval {
  public:
   explicit Hdf5CrashRemoval(std::vector<std::string> paths);
@@ -54,11 +57,11 @@ class Hdf5CrashRemoval {
   std::vector<std::string> paths_;
 };
 
-/// For main() of a program that does one thing and ends: SIGSEGV, SIGBUS and SIGABRT of a thread within a Hdf5Call, or
-/// that reads values as Hdf5Reads says, end it with a line of the file and exit code 3, since nothing that the library
-/// holds can be trusted any more. Elsewhere they do what they did, as where something else handles them already, like a
-/// sanitizer. A thread that computes for `longest` within one Hdf5Call, far longer than a whole file takes,
-/// ends the program as well.
+/// For main() of a program that does one thing and ends. If a thread crashes (SIGSEGV, SIGBUS, SIGABRT) within an
+/// Hdf5Call, or while it reads values as Hdf5Reads says, the program prints a line with the file and ends with exit
+/// code 3: nothing that the library holds can be trusted any more. Elsewhere the signals keep their effect. A signal
+/// that is handled already, for example by a sanitizer, is left alone. A thread that computes for `longest` within
+/// one Hdf5Call, far longer than a whole file takes, ends the program as well.
 void report_hdf5_crashes(std::chrono::milliseconds longest = std::chrono::minutes(5));
 
 }  // namespace weir

@@ -1,4 +1,4 @@
-// HDF5 files through weir_hdf5.so.
+// Reads HDF5 files through the driver weir_hdf5.so.
 #pragma once
 
 #include <memory>
@@ -12,14 +12,14 @@
 
 namespace weir {
 
-/// What weir_hdf5.so does: ingest/hdf5/hdf5_source.h.
+/// The functions of weir_hdf5.so, which ingest/hdf5/hdf5_source.h declares.
 struct Hdf5Driver {
   std::unique_ptr<VolumeSource> (*open)(const std::string& path, const SourceOptions& options);
   std::vector<DatasetInfo> (*list)(const std::string& path, const SourceOptions& options);
   const Hdf5Reads* reads;
 };
 
-/// The functions of the driver for the HDF5 file `path`. Throw Error(io) where there is no driver (load_driver).
+/// Open or list the HDF5 file `path` with the driver. Throw Error(io) if the driver cannot be loaded (load_driver).
 std::unique_ptr<VolumeSource> open_by_hdf5_driver(const std::string& path, const SourceOptions& options);
 std::vector<DatasetInfo> list_by_hdf5_driver(const std::string& path, const SourceOptions& options);
 

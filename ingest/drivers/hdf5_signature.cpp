@@ -30,7 +30,7 @@ bool has_hdf5_signature(const std::string& path) {
   return false;
 }
 
-// "CDF" and the version of the format.
+// A classic NetCDF file begins with "CDF" and the version of the format.
 bool is_classic_netcdf(std::span<const std::byte> head) {
   return begins_with(head, {"CDF\1", 4}) || begins_with(head, {"CDF\2", 4}) || begins_with(head, {"CDF\5", 4});
 }

@@ -13,7 +13,7 @@
 namespace weir {
 namespace {
 
-// The run of digits at the start of `text`, without leading zeros; `text` becomes what follows.
+// Removes the run of digits at the start of `text`, and returns it without leading zeros.
 std::string_view take_number(std::string_view& text) {
   std::size_t end = 0;
   while (end < text.size() && is_digit(text[end])) ++end;

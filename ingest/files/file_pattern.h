@@ -1,4 +1,4 @@
-// Files named by a pattern as shells have them, *, ? and [...], where no shell took it apart: in quotes.
+// Finds files by a shell pattern of *, ? and [...] that no shell expanded, because it was in quotes.
 #pragma once
 
 #include <string>
@@ -7,13 +7,13 @@
 
 namespace weir {
 
-/// Text order with runs of digits as numbers: "step_9" before "step_10".
+/// Compares texts with runs of digits as numbers: "step_9" is before "step_10".
 bool natural_less(std::string_view a, std::string_view b);
 
-/// Whether `path` has *, ? or [ in it and is no file's name.
+/// Returns whether `path` has *, ? or [ in it and is not the name of an existing file.
 bool is_file_pattern(const std::string& path);
 
-/// The paths that `pattern` matches, in natural order. Throws Error(input) where there is none.
+/// Returns the paths that `pattern` matches, in natural order. Throws Error(input) if there is none.
 std::vector<std::string> matching_files(const std::string& pattern);
 
 }  // namespace weir

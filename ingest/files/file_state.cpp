@@ -13,7 +13,7 @@ namespace {
 
 std::int64_t nanoseconds(const timespec& time) { return nanoseconds_of(time.tv_sec, time.tv_nsec); }
 
-// What has happened to a file that is not what it was.
+// Returns what happened to a file that has changed.
 std::string difference(const FileState& before, const FileState& now) {
   if (!now.exists) return "it is not there any more";
   if (!before.exists) return "it was not there before";
@@ -49,7 +49,7 @@ FileState look_at_file(const std::string& path) {
 std::int64_t tick_of(std::int64_t time_ns) { return time_ns % 1'000'000'000 == 0 ? 2'000'000'000 : 0; }
 
 bool touched_since(const FileState& file, const FileState& record) {
-  // As old: within one tick of the clock, and after it.
+  // Times within one tick of the clock count as equal, so they count as touched.
   return file.ctime_ns + tick_of(file.ctime_ns) >= record.mtime_ns;
 }
 

@@ -20,7 +20,8 @@ std::optional<std::string> head_in_directory(const std::string& path) {
 
 namespace {
 
-// Empty of a regular file, and of nothing.
+// Returns what an irregular file is. Returns "" for a regular file, for a directory called Header, and if nothing is
+// there.
 std::string irregular_what(const std::filesystem::path& file) {
   const auto no_file = [](const std::string& kind) {
     return "is " + kind + " and not a regular file; copy its content to one";

@@ -21,8 +21,8 @@ Error open_error(const std::string& path, const std::string& what) {
   return Error(ErrorKind::input, cat(path, ": ", what));
 }
 
-// Since Linux 5.2 mincore tells only the owner of a file and those who may write it; to others every
-// page seems cached.
+// Returns whether mincore tells the truth about this file. Since Linux 5.2 it does so only for the file's owner and
+// users who may write it; for others every page seems cached.
 bool may_see_residency(const std::string& path, const struct stat& status) {
   return status.st_uid == ::geteuid() || ::faccessat(AT_FDCWD, path.c_str(), W_OK, AT_EACCESS) == 0;
 }
@@ -54,7 +54,8 @@ InputFile::InputFile(const std::string& path, DirectIo mode, const std::string& 
     void* mapping = ::mmap(nullptr, size_, PROT_READ, MAP_SHARED, buffered_.get(), 0);
     if (mapping != MAP_FAILED) mapping_ = static_cast<std::byte*>(mapping);
   }
-  // Read-ahead would bring in pages that look as if they had been there before, and would stay.
+  // POSIX_FADV_RANDOM turns read-ahead off. Pages of a read-ahead would look as if they had been cached before, and
+  // would stay.
   if (mapping_ != nullptr) ::posix_fadvise(buffered_.get(), 0, 0, POSIX_FADV_RANDOM);
 }
 
@@ -66,7 +67,7 @@ void InputFile::look(std::uint64_t first, std::span<unsigned char> resident) con
   const std::uint64_t begin = first * page_bytes();
   const std::uint64_t end = std::min(begin + resident.size() * page_bytes(), round_up_to_page(size_));
   if (::mincore(mapping_ + begin, end - begin, resident.data()) == 0) return;
-  std::fill(resident.begin(), resident.end(), std::uint8_t{1});  // unknown: treat as someone else's
+  std::fill(resident.begin(), resident.end(), std::uint8_t{1});  // unknown pages count as someone else's, so they stay
 }
 
 bool InputFile::is_cached(std::uint64_t offset, std::uint64_t count) const {
@@ -159,7 +160,7 @@ std::size_t InputFile::read_some(int descriptor, std::uint64_t offset, std::span
     if (got == 0) break;
     done += static_cast<std::size_t>(got);
     bytes_read_.fetch_add(static_cast<std::uint64_t>(got), std::memory_order_relaxed);
-    // A direct read that stops off the grid has met the end of the file.
+    // A direct read that stops at an unaligned offset has reached the end of the file.
     if (refused != nullptr && done % kDirectAlignment != 0) break;
   }
   return done;

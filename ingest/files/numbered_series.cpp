@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Each number as a slash, which no name has.
+// Replaces each number by a slash, which no file's name can contain.
 std::string without_numbers(std::string_view name) {
   std::string text;
   for (const char c : name) {

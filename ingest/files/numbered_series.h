@@ -1,5 +1,5 @@
-// The series that a file belongs to: the files beside it whose names are the same but for their numbers, as
-// step_0042.nvdb and step_0043.nvdb are.
+// The series that a file belongs to: the files beside it with the same name except for the numbers, as step_0042.nvdb
+// and step_0043.nvdb.
 #pragma once
 
 #include <string>
@@ -7,14 +7,15 @@
 
 namespace weir {
 
-/// The same text for all files of one series, and for no other.
+/// Returns a text that is the same for all files of one series, and different for every other series.
 std::string series_key(const std::string& path);
 
-/// The same of a path from wherever it is named, as 32 hex digits, from which no path can be read.
+/// Returns series_key() as 32 hex digits that do not depend on how the path is written. No path can be read from
+/// them.
 std::string series_digest(const std::string& path);
 
-/// The files of its series that are there now, in natural order, in the words of `path` ("nvdb/a_7.nvdb"). One whose
-/// name has no number is a series of its own. Throws Error(io) where the directory cannot be read.
+/// Returns the existing files of the series of `path`, in natural order, written as `path` is ("nvdb/a_7.nvdb"). A
+/// file without a number in its name is a series of its own. Throws Error(io) if the directory cannot be read.
 std::vector<std::string> files_of_series(const std::string& path);
 
 }  // namespace weir

@@ -1,4 +1,4 @@
-// The entry of weir_hdf5.so.
+// The entry point of weir_hdf5.so.
 #include "ingest/drivers/driver.h"
 #include "ingest/drivers/hdf5_driver.h"
 #include "ingest/hdf5/file/hdf5_lock.h"

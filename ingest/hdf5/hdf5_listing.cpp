@@ -34,7 +34,7 @@ std::string packing_text(const ValueMapping& mapping) {
   return mapping.scales() ? cat("stored * ", mapping.scale, " + ", mapping.offset) : "";
 }
 
-// `axes` without that of components.
+// Adds the axes; `axes` do not include the axis of components.
 void add_axes(std::span<const AxisPlace> axes, Attributes& attributes) {
   if (axes.size() < kVolumeRank) return;
   const auto& [z, y, x] = axis_roles(axes).volume;
@@ -47,7 +47,7 @@ std::vector<LeadingAxis> axes_at(std::span<const AxisPlace> axes, const std::vec
   return chosen;
 }
 
-// What --index counts, as volume_slice does.
+// Adds the axes that --index counts, as volume_slice() counts them.
 void add_index_axes(const DatasetFacts& facts, DatasetInfo& info) {
   if (facts.axes.size() < kVolumeRank) return;
   const std::span axes = facts.axes;

@@ -33,7 +33,7 @@
 namespace weir {
 namespace {
 
-/// Chunks that weir decodes itself.
+/// A source of chunks that weir decodes itself.
 class ChunkedSource final : public VolumeSource {
  public:
   ChunkedSource(Hdf5Handle dataset, ChunkedSlice slice, SourceInfo info, std::uint64_t memory)
@@ -51,14 +51,14 @@ class ChunkedSource final : public VolumeSource {
   ChunkReader reader_;
 };
 
-// The file a dataset lies in, which an external link may have led to.
+// Returns the file that holds a dataset; an external link may have led to another file than the opened one.
 std::string file_of(hid_t dataset) {
   std::array<char, 4096> name{};
   const ssize_t length = H5Fget_name(dataset, name.data(), name.size());
   return length > 0 && static_cast<std::size_t>(length) < name.size() ? name.data() : "";
 }
 
-/// A dataset that is being opened: what all ways of reading it start from.
+/// A dataset that is being opened: the common input of all the ways to read it.
 struct Opening {
   Hdf5Object object;
   DatasetFacts facts;
@@ -67,7 +67,8 @@ struct Opening {
   const SourceOptions& options;
   bool all_stored = false;  ///< the index of its chunks has as many as there must be
 
-  /// The file that was opened and those that links and mappings led to; empty names are the dataset's own.
+  /// Notes the opened file and the files that links and mappings led to. An empty name stands for the dataset's own
+  /// file.
   void note_files(const std::vector<std::string>& further) {
     std::set<std::string> others(further.begin(), further.end());
     others.erase("");
@@ -78,9 +79,10 @@ struct Opening {
     info.files_digest = files.digest();
     info.files = files.files();
   }
-  /// No value of it was ever written; of chunks that is said by their number.
+  /// Returns whether no value of a contiguous dataset was ever written. For chunked datasets the number of chunks
+  /// says this.
   bool all_fill() const { return facts.storage->is_all_fill && facts.storage->kind == StorageKind::contiguous; }
-  /// Bytes of the array before the slice, which is in one piece.
+  /// Returns the bytes of the array before the slice, which lies in one piece.
   std::uint64_t first_byte() const {
     std::uint64_t position = 0;
     for (std::size_t i = 0; i < slice.positions.size(); ++i) {
@@ -92,7 +94,7 @@ struct Opening {
   std::uint64_t slice_bytes() const { return static_cast<std::uint64_t>(volume(slice.extent)) * voxel_bytes(); }
   Box voxels_read() const { return weir::voxels_read(slice, options.roi); }
   WantedVoxels wanted() const { return {voxels_read(), !options.roi}; }
-  /// Whose the elements are that are read.
+  /// Returns the words that say whether the read elements belong to the region or to the whole volume.
   const char* of_read() const { return options.roi ? " of the region's " : " of its "; }
   std::size_t voxel_bytes() const {
     return scalar_bytes(facts.type->scalar) * static_cast<std::size_t>(slice.components.count);
@@ -148,7 +150,7 @@ std::unique_ptr<VolumeSource> open_by_library(Opening opening) {
 
 std::unique_ptr<VolumeSource> open_chunked(Opening opening) {
   const hid_t dataset = opening.object.handle.get();
-  // Chunks with some of the components only are put together by the library.
+  // If a chunk holds only some of the components, the library must join the chunks.
   const bool whole = opening.slice.components.count == 1 ||
                      std::cmp_equal(opening.facts.storage->chunk.back(), opening.slice.components.count);
   if (!whole || !ChunkReader::decodes(dataset)) {
@@ -176,7 +178,7 @@ void refuse_where_all_must_be(const Opening& opening, const AbsentValues& absent
               option("missing-chunks", "fill")));
 }
 
-// Refuses them, or notes the fill value that they read as.
+// Refuses absent values, or notes the fill value that they read as.
 void note_filled(Opening& opening, const AbsentValues& absent) {
   refuse_where_all_must_be(opening, absent);
   std::array<float, 1> fill{};
@@ -185,12 +187,12 @@ void note_filled(Opening& opening, const AbsentValues& absent) {
     decode_values(opening.facts.storage->fill, type.scalar, type.big_endian, mapping, fill);
   };
   decode(opening.facts.meaning.mapping);
-  if (!std::isfinite(fill[0])) decode({});  // it stands for no data: as it is stored
+  if (!std::isfinite(fill[0])) decode({});  // the fill value stands for missing data: show it as stored
   opening.info.details.chunks_note =
       cat(absent.text(), " and ", absent.one ? "reads" : "read", " as its fill value, ", fill[0]);
 }
 
-// Says, or refuses, chunks that read as the fill value.
+// Notes or refuses chunks that read as the fill value.
 void note_unwritten(Opening& opening) {
   const Storage& storage = *opening.facts.storage;
   if (opening.all_fill()) return note_filled(opening, {"its values"});
@@ -207,7 +209,7 @@ void note_unwritten(Opening& opening) {
   note_filled(opening, {count, unwritten.count == 1, first});
 }
 
-// The same of elements of a virtual dataset that no source is mapped to.
+// Notes or refuses elements of a virtual dataset that no source is mapped to.
 void note_unmapped(Opening& opening, const Uncovered& unmapped) {
   if (unmapped.count == 0) return;
   const std::int64_t all = opening.voxels_read().voxels() * opening.slice.components.count;
@@ -215,7 +217,7 @@ void note_unmapped(Opening& opening, const Uncovered& unmapped) {
                         cat(" (the first at ", corner_text(unmapped.first), ")"), true});
 }
 
-// The same of chunks of its sources, each of which has a fill value of its own.
+// Notes or refuses unwritten chunks of a virtual dataset's sources. Each source has its own fill value.
 void note_unwritten_in_sources(Opening& opening, const UnwrittenInSources& unwritten) {
   if (unwritten.count == 0) return;
   const bool one = unwritten.count == 1;
@@ -234,7 +236,7 @@ std::unique_ptr<StoredBoxes> open_mapped(Opening& opening, const std::string& pa
   return std::move(mapped.boxes);
 }
 
-// Volumes one behind the other, the components of the vectors whose magnitude is asked for.
+// Opens vectors with components in volumes one behind the other, to read their magnitude.
 std::unique_ptr<VolumeSource> open_planar(Opening opening) {
   const StorageKind kind = opening.facts.storage->kind;
   const std::string parent = file_of(opening.object.handle.get());
@@ -270,7 +272,7 @@ std::unique_ptr<VolumeSource> open_planar(Opening opening) {
   return opening.from_boxes(std::move(boxes));
 }
 
-// A time between the axes of space, or behind them: the library picks one value here and one there.
+// Opens a volume with a time axis between or after the axes of space. The library gathers the scattered values.
 std::unique_ptr<VolumeSource> open_interleaved(Opening opening) {
   const StorageKind kind = opening.facts.storage->kind;
   if (kind != StorageKind::external && kind != StorageKind::mapped) return open_by_library(std::move(opening));
@@ -303,7 +305,7 @@ std::unique_ptr<VolumeSource> open_stored(Opening opening) {
   return opening.from_boxes(std::move(boxes));
 }
 
-// All components of a voxel have the one value.
+// Opens a constant. All components of a voxel have the same value.
 std::unique_ptr<VolumeSource> open_constant(Opening opening) {
   const VoxelComponents& components = opening.slice.components;
   const double value = *opening.facts.constant;
@@ -312,7 +314,8 @@ std::unique_ptr<VolumeSource> open_constant(Opening opening) {
                               std::move(opening.info));
 }
 
-// A volume over time is made for who names the dataset and says how far apart its planes are to be.
+// Refuses a dataset with an obstacle. A volume over time is made only if the user names the dataset and gives the
+// spacing of its planes.
 void check_obstacle(const Opening& opening) {
   const DatasetFacts& facts = opening.facts;
   const std::string where = opening.object.where();
@@ -323,7 +326,7 @@ void check_obstacle(const Opening& opening) {
               compose(where, ": ", facts.obstacle, "; to take the time for a length, give ", option("spacing")));
 }
 
-// The array's bytes, leading axes included, fit 63 bits.
+// Checks that the array's bytes, leading axes included, fit 63 bits.
 void check_bytes(const Opening& opening) {
   std::uint64_t bytes = checked_volume_bytes(opening.slice.extent, opening.voxel_bytes(), opening.object.where());
   for (const std::size_t axis : opening.slice.roles.others) {

@@ -22,7 +22,8 @@ std::string extents_text(std::span<const std::int64_t> extents) {
   return text;
 }
 
-/// The axes after the third, which choose one volume of several; the slowest comes first, as --index takes them.
+/// Returns the extents of the axes after the third, which choose one of several volumes; slowest first, as in
+/// --index.
 std::vector<std::int64_t> leading_extents(const HeaderVolume& volume) {
   const auto& extents = volume.extents;
   return {extents.rbegin(), extents.rend() - std::min<std::ptrdiff_t>(3, std::ssize(extents))};
@@ -32,7 +33,7 @@ bool must_choose(std::span<const std::int64_t> leading) {
   return std::any_of(leading.begin(), leading.end(), [](std::int64_t extent) { return extent > 1; });
 }
 
-/// Position of the chosen volume among all, in the file's order.
+/// Returns the position of the chosen volume among all, in the file's order.
 std::uint64_t chosen_volume(const std::string& path, std::span<const std::int64_t> leading,
                             std::span<const std::int64_t> index) {
   if (index.empty() && !must_choose(leading)) return 0;
@@ -81,15 +82,15 @@ Shape checked_shape(const HeaderVolume& volume) {
   return shape;
 }
 
-// Bytes behind a header's own values that may be a filled block.
+// Most bytes after a header's own values that may be padding up to a block.
 constexpr std::uint64_t kMostPadding = 4096;
 
-/// Where plain values begin in the data file.
+/// Returns the offset of plain values in the data file.
 std::uint64_t plain_offset(const HeaderVolume& volume, const Shape& shape, std::uint64_t file_bytes) {
   const bool attached = volume.data_path == volume.info.path;
   const std::uint64_t room = file_bytes - std::min(volume.data_offset, file_bytes);
-  // Several headers may share one data file. Behind a header's own values writers leave a line end or fill up a block,
-  // which the formats' own readers leave unread; more is of a volume that the header describes wrongly.
+  // Another data file may serve several headers. After a header's own values, writers leave a line end or fill up a
+  // block, which the formats' own readers ignore. More bytes mean that the header describes the volume wrongly.
   const auto plane_bytes = shape.volume_bytes / static_cast<std::uint64_t>(shape.extent.z);
   const std::uint64_t most = volume.ends_file ? 0 : std::min(plane_bytes - 1, kMostPadding);
   const bool fits = room >= shape.all_bytes && (volume.at_end || !attached || room - shape.all_bytes <= most);
@@ -105,7 +106,7 @@ std::uint64_t plain_offset(const HeaderVolume& volume, const Shape& shape, std::
   return volume.at_end ? file_bytes - shape.all_bytes : volume.data_offset;
 }
 
-/// That the file of the values has bytes that the header leaves out: the values may lie elsewhere in it.
+/// Returns a note if the data file has bytes that the header does not describe: the values may lie elsewhere in it.
 std::string data_note(const HeaderVolume& volume, const Shape& shape, std::uint64_t file_bytes) {
   if (volume.packed || volume.at_end || file_bytes - volume.data_offset == shape.all_bytes) return "";
   const bool attached = volume.data_path == volume.info.path;
@@ -114,7 +115,7 @@ std::string data_note(const HeaderVolume& volume, const Shape& shape, std::uint6
              " on, are what the header describes; where the values begin ", "elsewhere, correct ", volume.offset_key);
 }
 
-/// Where the compressed stream lies in the data file.
+/// Returns the place of the compressed stream in the data file.
 PackedRange packed_range(const HeaderVolume& volume, std::uint64_t file_bytes) {
   const std::uint64_t room = file_bytes - std::min(volume.data_offset, file_bytes);
   if (room == 0 || volume.packed_bytes > room) {

@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kMostShown = 20;
 constexpr std::size_t kMostChoicesShown = 8;
 
-// "'density', 'heat' and 3 more".
+// Returns text such as "'density', 'heat' and 3 more".
 std::string names_text(std::span<const NamedVolume> there, std::span<const std::size_t> which) {
   std::string text;
   for (std::size_t i = 0; i < std::min(which.size(), kMostShown); ++i) {

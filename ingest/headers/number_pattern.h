@@ -10,17 +10,17 @@
 
 namespace weir {
 
-/// A name with one %d, %Nd or %0Nd in it, as printf understands them but for signs.
+/// A name with one %d, %Nd or %0Nd in it, as in printf, but for numbers without a sign.
 class NumberPattern {
  public:
-  /// nullopt where the text has no such place, or several.
+  /// Returns the pattern in `text`; nullopt if `text` has no place for a number, or several.
   static std::optional<NumberPattern> parse(std::string_view text);
 
-  /// The number that makes this pattern `name`; nullopt where none below 2^63 does.
+  /// Returns the number for which this pattern gives `name`; nullopt if no number below 2^63 does.
   std::optional<std::int64_t> match(std::string_view name) const;
-  /// The name of `number`, which is not negative.
+  /// Returns the name for `number`, which must not be negative.
   std::string name(std::int64_t number) const;
-  /// What is left without the number and the separators (_ - . space) before it.
+  /// Returns the name without its extension, the number, and the separators (_ - . space) before the number.
   std::string stem() const;
 
  private:
@@ -35,14 +35,15 @@ struct NumberedFile {
   std::string path;
 };
 
-/// Whatever `pattern`, a path with a number in its last part, names, by rising number: what cannot be read as a volume,
-/// a link to nothing for instance, too, since a series must not leave out a step without a word. Throws Error(input)
-/// where the directory cannot be read or no name in it matches, Error(usage) where the text is no such pattern.
+/// Returns all files that `pattern` names, by rising number. The last part of `pattern`, a path, has the number.
+/// Files that cannot be read as a volume, for example a link to nothing, are returned too, so that a series does not
+/// silently leave out a step. Throws Error(input) if the directory cannot be read or no name in it matches, and
+/// Error(usage) if the text is not such a pattern.
 std::vector<NumberedFile> numbered_files(const std::string& pattern);
 
-/// With as many zeros before it as `largest` has digits more: names sort by number.
+/// Returns the number, padded with zeros to as many digits as `largest` has, so that names sort by number.
 std::string padded_number(std::int64_t number, std::int64_t largest);
-/// Both with "_" between; one of them where the other is empty.
+/// Returns both names with "_" between; if one is empty, the other.
 std::string joined_name(const std::string& a, const std::string& b);
 
 }  // namespace weir

@@ -18,7 +18,7 @@ namespace {
 constexpr std::int64_t kMaxDimensions = 10;  ///< MetaIO's limit
 
 using TypeName = std::pair<std::string_view, ScalarType>;
-// MetaIO's own widths: MET_LONG is four bytes on every machine.
+// Widths are MetaIO's own: MET_LONG is four bytes on every machine.
 constexpr std::array<TypeName, 12> kMetaTypes{{{"MET_CHAR", ScalarType::int8},
                                                {"MET_UCHAR", ScalarType::uint8},
                                                {"MET_SHORT", ScalarType::int16},
@@ -37,17 +37,17 @@ struct Entry {
   std::size_t line = 0;
 };
 
-/// "Key = Value"; nullopt where the line has no '='.
+/// Parses "Key = Value"; returns nullopt if the line has no '='.
 std::optional<std::pair<std::string_view, std::string_view>> key_and_value(std::string_view line) {
   const std::size_t equals = line.find('=');
   if (equals == std::string_view::npos) return std::nullopt;
   return std::pair(trimmed(line.substr(0, equals)), trimmed(line.substr(equals + 1)));
 }
 
-/// As many as a header without frames has room for.
+/// The most keys: as many as fit in a header without frames.
 constexpr std::size_t kMostKeys = kHeaderLimit / 8;
 
-/// The entries of a header, up to ElementDataFile, which ends it.
+/// The entries of a header up to ElementDataFile, which ends it.
 class Entries {
  public:
   Entries(std::string_view text, bool whole, const std::string& path) : path_(path) {
@@ -92,7 +92,7 @@ class Entries {
                  compose(path_, ": line ", entry.line, ": ", key, " is ", in_quotes(entry.value), "; ", expected));
   }
 
-  /// MetaIO takes every value that begins with T, t or 1 as true.
+  /// Returns the key's value as a flag. MetaIO treats every value that begins with T, t or 1 as true.
   bool flag(std::string_view key) const {
     if (!has(key)) return false;
     const std::string_view value = required(key).value;
@@ -110,7 +110,7 @@ class Entries {
     if (!value || !std::isfinite(*value)) throw wrong(key, "a number belongs there");
     return *value;
   }
-  /// Those of the first of `keys` that is there; empty where none is.
+  /// Returns the numbers of the first of `keys` that the header has; empty if it has none.
   std::vector<double> numbers(std::initializer_list<std::string_view> keys, std::size_t count) const {
     for (const std::string_view key : keys) {
       if (!has(key)) continue;
@@ -198,7 +198,7 @@ MetaImageHeader parse_meta_image_header(std::string_view text, bool whole, const
   header.spacing = entries.numbers({"ElementSpacing", "ElementSize"}, axes);
   header.origin = entries.numbers({"Offset", "Origin", "Position"}, axes);
   header.transform = entries.numbers({"TransformMatrix", "Rotation", "Orientation"}, axes * axes);
-  // "?" is what MetaIO writes of unknown ones.
+  // MetaIO writes "?" for unknown units.
   if (entries.has("DistanceUnits") && entries.required("DistanceUnits").value != "?") {
     header.distance_units = entries.required("DistanceUnits").value;
   }

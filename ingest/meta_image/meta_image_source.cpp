@@ -29,7 +29,7 @@ void place(const MetaImageHeader& header, HeaderVolume& volume) {
     first[a] = header.origin.empty() ? 0.0 : header.origin[a];
   }
   const AxisPlacement placement = place_axes(steps, first);
-  // The length itself: directions are written with rounding.
+  // The spacing is the header's own, not the steps' length, because directions are written with rounding.
   for (std::size_t a = 0; a < std::min(shown, header.spacing.size()); ++a) {
     volume.info.spacing[a] = std::fabs(header.spacing[a]);
   }
@@ -40,22 +40,22 @@ void place(const MetaImageHeader& header, HeaderVolume& volume) {
   if (!placement.orientation.empty()) volume.attributes.emplace_back("orientation", placement.orientation);
 }
 
-/// The header of a sequence has some twenty lines for each frame.
+/// The longest header of a sequence, which has some twenty lines for each frame.
 constexpr std::size_t kSequenceHeaderLimit = std::size_t{64} << 20U;
 
-/// Whether `head` describes frames and more lines of them may follow.
+/// Returns whether `head` describes frames and more lines of them may follow after its end.
 bool ends_among_frames(std::string_view head) {
   if (head.find(cat('\n', kFrameKey)) == std::string_view::npos) return false;
   const std::size_t last = head.find("\nElementDataFile");
   return last == std::string_view::npos || head.find('\n', last + 1) == std::string_view::npos;
 }
 
-/// The first bytes of a file, in which its header ends.
+/// Returns the first bytes of a file, enough to contain its header.
 std::string read_meta_image_head(InputFile& file) {
   std::string head = read_head(file);
   while (head.size() < std::min<std::uint64_t>(file.size(), kSequenceHeaderLimit) && ends_among_frames(head)) {
     const std::size_t more = std::min(8 * head.size(), kSequenceHeaderLimit);
-    head = {};  // not both at a time
+    head = {};  // so that memory never holds both
     head = read_head(file, more);
   }
   return head;

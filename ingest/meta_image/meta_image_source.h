@@ -1,5 +1,4 @@
-// MetaImage volumes: .mha with the values after the header, .mhd with them in a
-// file of their own.
+// MetaImage volumes: .mha files have the values after the header, .mhd files have them in a separate file.
 #pragma once
 
 #include <array>
@@ -16,15 +15,15 @@
 
 namespace weir {
 
-/// Of the names of its files, in lower case.
+/// Endings of MetaImage file names, in lower case.
 inline constexpr std::array<std::string_view, 2> kMetaImageEndings{".mhd", ".mha"};
 
-/// By the name, kMetaImageEndings: the text has no magic.
+/// Recognises a file by its name (kMetaImageEndings), because the text has no magic.
 bool recognises_meta_image(std::string_view path, std::span<const std::byte> head);
 
-/// --index chooses along the axes after the third; spacing, offset and transform become spacing and origin as
-/// place_axes does it. Throws Error(input) for what parse_meta_image_header refuses, and what open_header_volume
-/// throws.
+/// Opens the volume. --index chooses along the axes after the third. Spacing, offset and transform become spacing and
+/// origin with place_axes. Throws Error(input) for what parse_meta_image_header refuses, and the errors of
+/// open_header_volume.
 std::unique_ptr<VolumeSource> open_meta_image(const std::string& path, const SourceOptions& options);
 std::vector<DatasetInfo> list_meta_image(const std::string& path, const SourceOptions& options);
 

@@ -16,8 +16,8 @@ namespace {
 constexpr std::size_t kBytes1 = 348;
 constexpr std::size_t kBytes2 = 540;
 
-/// Byte offsets of the fields that are read; `Small` is the type of dim, `Real` that of pixdim, scl_slope and the
-/// matrices.
+/// Byte offsets of the fields that are read. `Small` is the type of dim; `Real` is the type of pixdim, scl_slope and
+/// the matrices.
 struct Layout1 {
   using Small = std::int16_t;
   using Real = float;
@@ -116,7 +116,8 @@ class FieldReader {
     if (dim(0) < 1 || dim(0) > 7) throw wrong("dim[0]", Layout::kDim, dim(0), "it must be 1 to 7");
     std::vector<std::int64_t> extents;
     for (std::int64_t i = 1; i <= dim(0); ++i) {
-      // As the reference library takes it: writers leave 0 for an axis of time or vectors that they do not use.
+      // A 0 counts as 1, as in the reference library: writers leave 0 for an axis of time or vectors that they do not
+      // use.
       if (i > 3 && dim(i) == 0) {
         extents.push_back(1);
         continue;
@@ -142,7 +143,7 @@ class FieldReader {
                 "integers of 8 to 64 bits, float32 and float64 can be read");
   }
 
-  // nifti1.h: bitpix is that of the datatype. Some writers leave it 0.
+  // By nifti1.h, bitpix must match the datatype. Some writers leave it 0.
   void require_bits(const Datatype& datatype) const {
     const auto bits = at<std::int16_t>(Layout::kBitpix);
     const std::size_t expected = 8 * scalar_bytes(*datatype.type);
@@ -154,7 +155,7 @@ class FieldReader {
 
   std::uint64_t values_offset(bool pair) const {
     const auto offset = at<typename Layout::Offset>(Layout::kVoxOffset);
-    // In a single file four bytes that tell of extensions follow the header.
+    // In a single file, four bytes that announce extensions follow the header.
     const auto least = static_cast<typename Layout::Offset>(pair ? 0 : Layout::kHeader + 4);
     constexpr auto kMost = static_cast<typename Layout::Offset>(std::int64_t{1} << 62U);
     const auto whole = static_cast<double>(offset);
@@ -179,7 +180,7 @@ class FieldReader {
 
   void read_placement(NiftiHeader& header) const {
     for (std::size_t a = 0; a < 3; ++a) {
-      // As the reference library takes it: what is no length is 1.
+      // As in the reference library: an invalid length counts as 1.
       const double length = std::fabs(real(Layout::kPixdim, a + 1));
       header.spacing[a] = std::isfinite(length) && length > 0 ? length : 1.0;
       header.steps[a][a] = header.spacing[a];
@@ -207,7 +208,7 @@ class FieldReader {
     Vector3 first{};
   };
 
-  // Where each axis has a step.
+  // Uses `affine` if it is finite and has a step other than zero along each axis. Returns whether it does.
   static bool take(NiftiHeader& header, const Affine& affine) {
     const auto finite = [](const Vector3& v) {
       return std::ranges::all_of(v, [](double part) { return std::isfinite(part); });
@@ -231,7 +232,8 @@ class FieldReader {
     return affine;
   }
 
-  // xyzt_units: the length in three bits, the time in the next three; 32 and above are frequencies and the like.
+  // xyzt_units: the lowest three bits are the unit of length, the next three the unit of time. Codes of 32 and above,
+  // frequencies for example, are ignored.
   void read_units(NiftiHeader& header) const {
     constexpr std::array<std::string_view, 8> kLengthUnits{"", "m", "mm", "um"};
     constexpr std::array<std::string_view, 8> kTimeUnits{"", "s", "ms", "us"};
@@ -243,7 +245,7 @@ class FieldReader {
     header.time_step = real(Layout::kPixdim, 4);
   }
 
-  // nifti1.h, "METHOD 2"; the left out quaternion component a is not negative.
+  // nifti1.h, "METHOD 2". The quaternion's component a is not stored; it is not negative.
   Affine qform(const Vector3& spacing) const {
     Affine affine;
     const double b = real(Layout::kQuaternion, 0);
@@ -266,7 +268,7 @@ class FieldReader {
   const std::string& path_;
 };
 
-/// The byte order in which the first four bytes are a header's size; nullopt where neither is.
+/// Returns the byte order in which the first four bytes are a header's size; nullopt if they are in neither order.
 std::optional<bool> is_big_endian(std::span<const std::byte> head) {
   if (head.size() < 4) return std::nullopt;
   for (const bool big_endian : {false, true}) {

@@ -18,7 +18,7 @@
 namespace weir {
 namespace {
 
-// The file of a header's values, in capitals where that is how the header is named, and it is there.
+// Returns the file of a header's values. Its ending is in capitals if the header's is and such a file exists.
 std::string image_of(const std::string& header) {
   std::filesystem::path image = header;
   std::error_code ignored;
@@ -36,12 +36,12 @@ std::vector<std::byte> read_bytes(InputFile& file, std::uint64_t offset, std::si
   return bytes;
 }
 
-/// The first kMaxNiftiHeader bytes of what a gzip file holds, or all of fewer.
+/// Returns the first kMaxNiftiHeader bytes that a gzip file unpacks to, or all if there are fewer.
 std::vector<std::byte> unpacked_head(InputFile& file) {
   constexpr std::size_t kPiece = 4096;
   std::vector<std::byte> head;
   StreamInflater inflater(file.path());
-  // gzip's own header may hold a long name or comment, but none that is worth reading on.
+  // gzip's own header may hold a name or comment. The bound stops reading if they are absurdly long.
   const std::uint64_t end = std::min<std::uint64_t>(file.size(), kHeaderLimit);
   for (std::uint64_t offset = 0; offset < end && head.size() < kMaxNiftiHeader; offset += kPiece) {
     inflater.push(read_bytes(file, offset, kPiece), [&](std::span<const std::byte> bytes) {
@@ -56,7 +56,7 @@ void place(const NiftiHeader& header, HeaderVolume& volume) {
   const std::size_t axes = std::min<std::size_t>(3, header.extents.size());
   const AxisPlacement placement = place_axes(std::span(header.steps).first(axes), header.first);
   volume.info.spacing = placement.spacing;
-  // The length itself: quaternions are written with rounding.
+  // The spacing is pixdim, not the steps' length, because quaternions are written with rounding.
   for (std::size_t a = 0; a < axes && !header.steps_rule; ++a) volume.info.spacing[a] = header.spacing[a];
   volume.info.origin = placement.origin;
   volume.info.details.orientation = placement.orientation;
@@ -67,8 +67,8 @@ void place(const NiftiHeader& header, HeaderVolume& volume) {
   if (!header.placement_note.empty()) volume.attributes.emplace_back("placement", header.placement_note);
 }
 
-// Of the volume at `index` on the axes after the third, the slowest first: the fourth axis is the time. None where a
-// step that counts is missing.
+// Returns the time of the volume at `index` on the axes after the third, slowest first; the fourth axis is the time.
+// Returns nullopt if the time, or a time step that is needed, is unknown.
 std::optional<TimePoint> nifti_time(const NiftiHeader& header, std::span<const std::int64_t> index) {
   const std::int64_t position = index.empty() ? 0 : index.back();
   if (header.time_unit.empty() || !std::isfinite(header.time_offset)) return std::nullopt;
@@ -78,7 +78,7 @@ std::optional<TimePoint> nifti_time(const NiftiHeader& header, std::span<const s
   return TimePoint{value, std::string(header.time_unit), {}};
 }
 
-/// `index`: of the volume that is opened, checked later.
+/// `index` is the position of the volume to open; it is checked later.
 HeaderVolume describe_nifti(const std::string& path, std::span<const std::int64_t> index) {
   InputFile file(path, DirectIo::off);
   std::vector<std::byte> head = read_bytes(file, 0, kMaxNiftiHeader);
@@ -102,7 +102,7 @@ HeaderVolume describe_nifti(const std::string& path, std::span<const std::int64_
   volume.data_path = header.pair ? image_of(path) : path;
   (volume.packed ? volume.packed_offset : volume.data_offset) = header.values_offset;
   volume.offset_key = "vox_offset";
-  volume.ends_file = header.has_hidden_extensions;  // else bytes of these would count as values
+  volume.ends_file = header.has_hidden_extensions;  // otherwise the extensions' bytes would count as values
   place(header, volume);
   volume.info.details.time = nifti_time(header, index);
   return volume;

@@ -1,5 +1,4 @@
-// NIfTI volumes: .nii and .nii.gz with the values after the header, .hdr with
-// them in the .img beside it.
+// NIfTI volumes: .nii and .nii.gz files have the values after the header, .hdr files have them in the .img beside it.
 #pragma once
 
 #include <array>
@@ -16,16 +15,18 @@
 
 namespace weir {
 
-/// Of the names of its files, in lower case; those of a header beside its values say nothing of the format.
+/// Endings of NIfTI file names, in lower case. The endings of a header beside its values are not among them, because
+/// other formats use them too.
 inline constexpr std::array<std::string_view, 2> kNiftiEndings{".nii", ".nii.gz"};
 
-/// By the name: kNiftiEndings, or .hdr where the file also begins as NIfTI does. The magic lies further in.
+/// Recognises a file by its name: kNiftiEndings, or .hdr if the file also begins like NIfTI. The magic lies further
+/// in.
 bool recognises_nifti(std::string_view path, std::span<const std::byte> head);
 
-/// NIfTI-1 and NIfTI-2. --index chooses along the axes after the third, of which the fourth may be a time; the sform,
-/// else the qform, else pixdim becomes spacing and origin as place_axes does it: the first that the header has and that
-/// is a place. details.values_note says which it has and is none. Throws Error(input) for what parse_nifti_header
-/// refuses, and what open_header_volume throws.
+/// Opens a NIfTI-1 or NIfTI-2 volume. --index chooses along the axes after the third; the fourth may be a time. The
+/// first usable of sform, qform and pixdim becomes spacing and origin with place_axes. details.values_note names a
+/// form that the header has but that is not usable. Throws Error(input) for what parse_nifti_header refuses, and the
+/// errors of open_header_volume.
 std::unique_ptr<VolumeSource> open_nifti(const std::string& path, const SourceOptions& options);
 std::vector<DatasetInfo> list_nifti(const std::string& path, const SourceOptions& options);
 

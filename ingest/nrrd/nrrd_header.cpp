@@ -20,7 +20,7 @@ struct Field {
 };
 
 using TypeNames = std::pair<ScalarType, std::string_view>;
-// The names of section 5.1, blanks in names taken out, framed by blanks.
+// The names of section 5.1, without the blanks inside names. Each name has a blank before and after it.
 constexpr std::array<TypeNames, 10> kNrrdTypes{
     {{ScalarType::int8, " signedchar int8 int8_t "},
      {ScalarType::uint8, " uchar unsignedchar uint8 uint8_t "},
@@ -86,10 +86,10 @@ class Fields {
  private:
   void add(std::string_view line, std::size_t number) {
     if (line.front() == '#') return;
-    // A key, up to the first ":=", and the name of a field, up to the first ": ", may have colons in them.
+    // A key (up to the first ":=") and a field's name (up to the first ": ") may themselves contain colons.
     const std::size_t pair = line.find(":=");
     const std::size_t field = line.find(": ");
-    if (pair != std::string_view::npos && pair < field) return;  // key:=value is for people
+    if (pair != std::string_view::npos && pair < field) return;  // key:=value pairs are comments for people
     const std::size_t colon = field != std::string_view::npos ? field : line.find(':');
     if (colon == std::string_view::npos) {
       throw Error(ErrorKind::input, cat(path_, ": line ", number, " of its header is ", in_quotes(line),
@@ -102,7 +102,7 @@ class Fields {
       throw Error(ErrorKind::input,
                   cat(path_, ": line ", number, " of its header gives ", in_quotes(name), " a second time"));
     }
-    // The lines after LIST are names of files, not fields.
+    // The lines after LIST are names of files, not fields, so reading must stop here.
     const std::string_view value = fields_[name].value;
     if (name == "datafile" && (value.starts_with("LIST") || value.find('%') != std::string_view::npos)) {
       throw wrong(name,
@@ -169,7 +169,7 @@ std::vector<std::string> words_of(const Fields& fields, const std::string& name,
   return found;
 }
 
-/// "\"x\" \"y axis\"": each in quotes, with \" for a quote inside. Nothing where a quote is open.
+/// Returns the texts in quotes, for "\"x\" \"y axis\""; \" stands for a quote inside. Empty if a quote is not closed.
 std::vector<std::string> quoted_words(std::string_view text) {
   std::vector<std::string> found;
   bool inside = false;
@@ -186,14 +186,15 @@ std::vector<std::string> quoted_words(std::string_view text) {
   return found;
 }
 
-/// Of each of `count` axes. They place nothing: those of another count are as good as none.
+/// Returns the names of `count` axes. Names do not affect the placement, so a wrong number of names counts as
+/// none.
 std::vector<std::string> names_of(const Fields& fields, const std::string& name, std::size_t count) {
   std::vector<std::string> names = quoted_words(fields.value(name));
   if (names.size() != count) names.clear();
   return names;
 }
 
-/// "(1,0,0) none (0,0.5,0)"; nullopt where the text is no such list.
+/// Parses vectors such as "(1,0,0) none (0,0.5,0)"; returns nullopt if the text is not such a list.
 std::optional<std::vector<std::optional<std::vector<double>>>> parse_vectors(std::string_view text) {
   std::vector<std::optional<std::vector<double>>> vectors;
   for (text = trimmed(text); !text.empty(); text = trimmed(text)) {

@@ -20,8 +20,8 @@
 namespace weir {
 namespace {
 
-/// Whether an axis is one of space rather than one of vectors or colours or of time; unknown where the header says
-/// nothing.
+/// The role of an axis: domain is an axis of space; range is an axis of vectors, colours or time; unknown if the
+/// header does not say.
 enum class AxisRole { domain, range, unknown };
 
 std::string_view nrrd_kind_of(const NrrdHeader& header, std::size_t axis) {
@@ -37,7 +37,7 @@ AxisRole role_of(const NrrdHeader& header, std::size_t axis) {
   return header.directions.empty() ? AxisRole::unknown : AxisRole::range;
 }
 
-/// How to make an axis that is none of space no longer one of x, y and z, which begin with axis `first`.
+/// Returns a command that removes the axis `axis`, which is not of space, from x, y and z. x is the axis `first`.
 std::string nrrd_axis_remedy(const NrrdHeader& header, std::size_t first, std::size_t axis) {
   const std::string slice = cat(" with `unu slice -a ", axis, " -p 0`");
   if (nrrd_kind_of(header, axis) != "time") return cat("take one component", slice);
@@ -48,7 +48,8 @@ std::string nrrd_axis_remedy(const NrrdHeader& header, std::size_t first, std::s
   return cat(remedy, ' ', axis, '`');
 }
 
-/// The axis that is x: the first, or the second where the first holds one value of no axis of space.
+/// Returns the axis that is x: the first, or the second if the first holds a single value and is not an axis of
+/// space.
 std::size_t first_axis(const NrrdHeader& header, const std::string& path) {
   const AxisRole role = role_of(header, 0);
   const bool scalar = header.sizes[0] == 1 && header.sizes.size() > 1;
@@ -69,18 +70,18 @@ Vector3 padded(const std::vector<double>& components) {
   return v;
 }
 
-/// Null where the header has none, of this axis or of any.
+/// Returns the space direction of `axis`; nullptr if the header has none for it.
 const std::vector<double>* direction_of(const NrrdHeader& header, std::size_t axis) {
   return header.directions.empty() || !header.directions[axis] ? nullptr : &*header.directions[axis];
 }
 
 struct AxisSteps {
-  double step = 1;   ///< from sample to sample, below 0 where positions fall
+  double step = 1;   ///< from sample to sample; below 0 if positions fall
   double first = 0;  ///< position of the first sample
 };
 
-/// Of an axis without a space direction. Samples of unknown centering lie in their cells' middle, as Teem takes them
-/// (nrrdDefaultCenter); where axis max is below axis min, positions fall (nrrdAxisInfoPos).
+/// Returns the steps along an axis without a space direction. Samples of unknown centering lie in the middle of their
+/// cells, as in Teem (nrrdDefaultCenter). If axis max is below axis min, positions fall (nrrdAxisInfoPos).
 AxisSteps steps_along(const NrrdHeader& header, std::size_t axis) {
   const double begin = header.axis_mins.empty() ? std::nan("") : header.axis_mins[axis];
   const double end = header.axis_maxs.empty() ? std::nan("") : header.axis_maxs[axis];
@@ -94,7 +95,7 @@ AxisSteps steps_along(const NrrdHeader& header, std::size_t axis) {
   return {step, std::isnan(begin) ? 0.0 : begin + (node ? 0.0 : step / 2)};
 }
 
-/// Where the first sample of `axes` axes from `first` on lies, and the steps along them.
+/// Returns the position of the first sample, and the steps along `axes` axes from `first` on.
 std::pair<Vector3, std::vector<Vector3>> first_and_steps(const NrrdHeader& header, std::size_t first,
                                                          std::size_t axes) {
   Vector3 corner{};
@@ -112,9 +113,10 @@ std::pair<Vector3, std::vector<Vector3>> first_and_steps(const NrrdHeader& heade
   return {corner, steps};
 }
 
-/// The units along `direction`, of those of the world's axes; empty where it runs along several in different ones.
+/// Returns the unit along `direction`, from the units of the world's axes; empty if it runs along axes with different
+/// units.
 std::string units_along(const std::vector<double>& direction, const std::vector<std::string>& units) {
-  constexpr double kRounding = 1e-6;  // of the largest part, as place_axes takes it
+  constexpr double kRounding = 1e-6;  // relative to the largest component, as in place_axes
   double largest = 0;
   for (const double part : direction) largest = std::max(largest, std::fabs(part));
   std::optional<std::string> found;
@@ -132,7 +134,7 @@ std::string units_of_axis(const NrrdHeader& header, std::size_t first, std::size
   return a < header.space_units.size() ? header.space_units[a] : "";
 }
 
-/// Once the labels and spacings are known.
+/// Sets the axis units of `volume`. Its labels and spacings must be set before.
 void describe_units(const NrrdHeader& header, std::size_t first, std::size_t axes, HeaderVolume& volume) {
   std::array<AxisPlace, 3> places;
   std::string listed;
@@ -158,7 +160,7 @@ void place(const NrrdHeader& header, std::size_t first, HeaderVolume& volume) {
   if (!placement.orientation.empty()) volume.attributes.emplace_back("orientation", placement.orientation);
 }
 
-/// Bytes before the line after the `count` next ones from `offset` on.
+/// Returns the offset of the byte after `count` lines from `offset` on.
 std::uint64_t skip_lines(InputFile& file, std::uint64_t offset, std::uint64_t count) {
   std::array<std::byte, 65536> piece;
   while (count > 0 && offset < file.size()) {

@@ -1,5 +1,4 @@
-// NRRD volumes: .nrrd with the values after the header, .nhdr with them in a file
-// of their own.
+// NRRD volumes: .nrrd files have the values after the header, .nhdr files have them in a separate file.
 #pragma once
 
 #include <array>
@@ -16,16 +15,16 @@
 
 namespace weir {
 
-/// Of the names of its files, in lower case.
+/// Endings of NRRD file names, in lower case.
 inline constexpr std::array<std::string_view, 2> kNrrdEndings{".nrrd", ".nhdr"};
 
-/// By its magic, whatever the name; and what only looks so, by a name (kNrrdEndings).
+/// Recognises a file by its magic, whatever its name, or by its name alone (kNrrdEndings).
 bool recognises_nrrd(std::string_view path, std::span<const std::byte> head);
 
-/// A first axis of one value (NRRD keeps channels there) is dropped, --index chooses along the axes after the next
-/// three. Space directions, or else spacings and ranges of the axes, become spacing and origin as place_axes does it.
-/// Throws Error(input) for what parse_nrrd_header refuses, for vectors, colours and times among the axes that would be
-/// x, y and z, and what open_header_volume throws.
+/// Opens the volume. A first axis of one value, on which NRRD keeps channels, is dropped. --index chooses along the
+/// axes after the next three. Space directions, or otherwise spacings and ranges of the axes, become spacing and
+/// origin with place_axes. Throws Error(input) for what parse_nrrd_header refuses and for vectors, colours and times
+/// among the axes that would be x, y and z. Also throws the errors of open_header_volume.
 std::unique_ptr<VolumeSource> open_nrrd(const std::string& path, const SourceOptions& options);
 std::vector<DatasetInfo> list_nrrd(const std::string& path, const SourceOptions& options);
 

@@ -8,9 +8,9 @@
 namespace weir {
 namespace {
 
-/// Lengths tried one by one, and numbers of equal parts.
+/// The number of lengths that are tried one by one, and of equal parts.
 constexpr std::int64_t kCutsTried = 64;
-/// Where blocks meet chunks repeats itself: cuts are judged by so many blocks.
+/// The number of blocks that a cut is judged by. The pattern of blocks and chunks repeats, so more are not needed.
 constexpr std::int64_t kBlocksJudged = 4096;
 
 }  // namespace
@@ -22,7 +22,7 @@ BlockAxis::BlockAxis(std::int64_t domain_lo, std::int64_t domain_hi, std::int64_
       count(floor_div(domain_hi - 1, kLeafDim) + 1 - first),
       chunk(chunk_voxels),
       chunk_edge(edge) {
-  // Where chunk edges are off the leaf lattice, no block of leaves ends with a chunk.
+  // If chunk edges are off the leaf lattice, no block of leaves ends with a chunk.
   if (chunk > 0 && chunk_edge % kLeafDim == 0) unit = std::min(std::lcm(chunk, kLeafDim) / kLeafDim, count);
   size = unit;
 }

@@ -18,7 +18,7 @@ void repeat_row(const float* distinct, std::int64_t by, std::int64_t count, floa
   for (std::int64_t x = 0; x < count; ++x) row[x] = distinct[x / by];
 }
 
-// Of lengths that the compiler knows: what leaves have is worth no call.
+// Copies a number of values that the compiler knows: a leaf's rows are too short for a call of memcpy.
 template <std::size_t Count>
 void copy_values(const float* from, float* to) {
   std::memcpy(to, from, Count * sizeof(float));

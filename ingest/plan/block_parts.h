@@ -1,4 +1,4 @@
-// A block whose values come in parts, one value for all voxels that repeat it (VolumeSource::repeated_parts).
+// A block that is read in parts, with one value for all voxels of a group (VolumeSource::repeated_parts).
 #pragma once
 
 #include <cstddef>
@@ -12,33 +12,34 @@
 
 namespace weir {
 
-/// Where the values of the parts of a block lie: one part behind the other.
+/// The layout of a block's values: the values of its parts follow each other.
 class BlockParts {
  public:
-  /// `parts` of the box `voxels`.
+  /// `parts` are the parts of the box `voxels`.
   BlockParts(std::vector<RepeatedPart> parts, const Box& voxels);
 
-  /// Reads all parts to the front of `values`, which has room for all voxels.
+  /// Reads all parts to the front of `values`, which has room for all voxels of the block.
   ConversionLoss read(VolumeSource& source, std::span<float> values) const;
 
-  /// Of the voxels of one leaf, or those of them that lie in the block: the value of each group to the front of
-  /// `distinct`, x fastest, out of the block's `values`. Returns how many voxels have each along the axes.
+  /// Collects the values of one leaf, or of its voxels that lie in the block, out of the block's `values`. Writes one
+  /// value per group to the front of `distinct`, x fastest. Returns how many voxels share a value along each axis.
   Index3 gather(std::span<const float> values, const Box& leaf, std::span<float> distinct) const;
 
  private:
-  /// Where the values of a part lie.
+  /// Where the values of one part lie.
   struct Place {
-    std::size_t first;  ///< of its values
+    std::size_t first;  ///< first value of the part
     Index3 groups;
     Index3 shift;  ///< a group is 1 << shift voxels along an axis
   };
   std::vector<RepeatedPart> parts_;
   std::vector<Place> places_;
   Box leaves_;
-  std::vector<std::uint32_t> part_of_;  ///< of each leaf, x fastest
+  std::vector<std::uint32_t> part_of_;  ///< index of each leaf's part, x fastest
 };
 
-/// Writes each of the values of groups of `by` voxels, x fastest, to all voxels of `extent` that have it.
+/// Writes each value of `distinct`, one per group of `by` voxels, x fastest, to all voxels of its group in `values`,
+/// which has `extent` voxels.
 void repeat_values(const float* distinct, const Index3& by, const Index3& extent, float* values);
 
 }  // namespace weir

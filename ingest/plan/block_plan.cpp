@@ -28,7 +28,8 @@ bool grow(Axes& axes, std::size_t a, std::int64_t size, std::uint64_t budget) {
   return false;
 }
 
-/// Grows axis `a` to a step (a lower node's width) or to the largest divisor of one that fits.
+/// Grows axis `a` to a step (a lower node's width), or to the largest divisor of a step that fits. Returns whether it
+/// is a whole step.
 bool grow_to_step(Axes& axes, std::size_t a, std::uint64_t budget) {
   const std::int64_t units = axes[a].step() / axes[a].unit;
   for (std::int64_t n = units; n > 1; --n) {
@@ -37,7 +38,7 @@ bool grow_to_step(Axes& axes, std::size_t a, std::uint64_t budget) {
   return units == 1 || axes[a].whole();
 }
 
-/// Grows axis `a` by whole steps as far as the budget allows; true where that is all of it.
+/// Grows axis `a` by whole steps as far as the budget allows. Returns true if it now has the whole axis.
 bool grow_by_steps(Axes& axes, std::size_t a, std::uint64_t budget) {
   if (grow(axes, a, axes[a].count, budget)) return true;
   const std::int64_t step = axes[a].step();
@@ -50,7 +51,8 @@ bool grow_by_steps(Axes& axes, std::size_t a, std::uint64_t budget) {
   return false;
 }
 
-/// Long rows for the disk, then a lower node's width in y and in z for the output, then more of both.
+/// Grows blocks of contiguous rows: first long rows in x for the disk, then a lower node's width in y and in z for
+/// the output, then more of both.
 void grow_rows(Axes& axes, std::uint64_t budget, BlockShape shape) {
   const std::uint64_t ample = std::clamp(kAmpleBlockBytes, largest_bytes(axes), budget);
   const std::size_t first = shape == BlockShape::wide ? 1 : 2;
@@ -67,14 +69,14 @@ double amplification(const Axes& axes) {
   return axes[0].amplification(kAll) * axes[1].amplification(kAll) * axes[2].amplification(kAll);
 }
 
-/// The cut that decodes the fewest chunks twice; of several the one with the longest rows.
+/// Chooses the cut that decodes the fewest chunks twice. Of several such cuts it takes the one with the longest rows.
 void cut_for_chunks(Axes& axes, std::uint64_t budget) {
   const std::array<std::vector<AxisCut>, 3> cuts{useful_cuts(axes[0]), useful_cuts(axes[1]), useful_cuts(axes[2])};
   const auto most_voxels = static_cast<std::int64_t>(budget / sizeof(float));
   double least = std::numeric_limits<double>::infinity();
   for (auto x = cuts[0].rbegin(); x != cuts[0].rend(); ++x) {
     for (auto y = cuts[1].rbegin(); y != cuts[1].rend(); ++y) {
-      // The longest cut in z that fits has the smallest amplification of those that do.
+      // Of the cuts in z that fit, the longest has the smallest amplification.
       const std::int64_t fits = most_voxels / (x->longest * y->longest);
       const auto beyond = std::ranges::upper_bound(cuts[2], fits, {}, &AxisCut::longest);
       if (beyond == cuts[2].begin()) continue;

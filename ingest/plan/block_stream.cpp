@@ -23,17 +23,17 @@ bool is_cancelled(const StreamOptions& options) {
   return options.cancel != nullptr && options.cancel->load(std::memory_order_relaxed);
 }
 
-/// The hand-over between the readers and the caller: of b buffers block i goes through buffer i % b, is read
-/// after block i - b has been worked on, and worked on after it has been read.
+/// The hand-over between the readers and the caller. With b buffers, block i uses buffer i % b. It is read after
+/// block i - b has been worked on, and worked on after it has been read.
 class Handover {
  public:
   Handover(std::size_t blocks, std::size_t buffers) : blocks_(blocks), buffers_(buffers), read_(buffers) {}
 
-  /// A reader: waits until the next block may be read; nullopt where there is none, or the caller has stopped.
+  /// Reader: waits until the next block may be read. Returns nullopt if there is none or the caller has stopped.
   std::optional<std::size_t> next_to_read() {
     std::unique_lock lock(mutex_);
     const std::size_t i = next_++;
-    // What failed is rethrown when its turn comes: the blocks before it are still asked for.
+    // A failure is rethrown when its block's turn comes, so the blocks before it are still read.
     const auto ends = [&] { return stopped_ || i >= blocks_ || (failure_ && failed_ < i); };
     changed_.wait(lock, [&] { return ends() || i < worked_ + buffers_; });
     const bool reads = !ends();
@@ -50,7 +50,7 @@ class Handover {
     });
   }
 
-  /// Caller: waits until block `i` has been read; rethrows what ended its reader.
+  /// Caller: waits until block `i` has been read. Rethrows the exception that ended its reader.
   void wait_read(std::size_t i) {
     std::unique_lock lock(mutex_);
     const auto is_read = [&] { return read_[i % buffers_] == i + 1; };
@@ -78,15 +78,15 @@ class Handover {
   const std::size_t buffers_;
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::size_t next_ = 0;           // that no reader has
-  std::vector<std::size_t> read_;  // by buffer: the block that it has, counted from 1
-  std::size_t worked_ = 0;         // blocks
+  std::size_t next_ = 0;           // the next block that no reader has taken
+  std::vector<std::size_t> read_;  // per buffer: the block that it holds, counted from 1
+  std::size_t worked_ = 0;         // number of blocks that were worked on
   bool stopped_ = false;
-  std::exception_ptr failure_;  // of block failed_, the first one that failed
+  std::exception_ptr failure_;  // exception of block failed_, the first that failed
   std::size_t failed_ = 0;
 };
 
-/// The reading threads; told to stop and joined on every way out of stream_blocks.
+/// The reading threads. Every way out of stream_blocks stops and joins them.
 class BlockReaders {
  public:
   /// `read(i)` reads block i.
@@ -96,7 +96,7 @@ class BlockReaders {
     try {
       while (threads_.size() < count) threads_.emplace_back([&handover, read] { run(handover, read); });
     } catch (const std::system_error&) {
-      if (threads_.empty()) throw;  // else the system has no thread more: one reader does
+      if (threads_.empty()) throw;  // otherwise the system has no more threads, and the readers that exist suffice
     }
   }
   ~BlockReaders() { handover_.stop(); }  // threads_ join after this
@@ -119,27 +119,29 @@ class BlockReaders {
   std::vector<std::jthread> threads_;
 };
 
-// Buffers of `bytes` each for `blocks` of them: one for what is worked on, the others for what is read ahead.
+// Returns the number of buffers of `bytes` each for `blocks` blocks: one for the block that is worked on, the others
+// for blocks that are read ahead.
 std::size_t buffer_count(std::size_t blocks, std::size_t bytes, const StreamOptions& options) {
   constexpr std::size_t kMost = 8;
   return std::min(blocks, std::clamp<std::size_t>(options.buffer_bytes / bytes, 2, kMost));
 }
 
-// Two, so that one begins a block while the other ends one; not where chunks that two blocks share are decoded once if
-// the blocks come one after the other, nor where a read takes memory of its own.
+// Returns 2 if possible, so that one reader begins a block while the other ends one. Returns 1 for chunked sources,
+// because a chunk that two blocks share is decoded once only if the blocks are read one after the other, and for
+// sources with reads that take memory of their own.
 std::size_t reader_count(std::size_t buffers, const VolumeSource& source) {
   return buffers > 2 && source.access().chunk == Index3{} && source.working_bytes() == 0 ? 2 : 1;
 }
 
-// Between two blocks. A `cancel` that is set meanwhile is found at the next rest: whoever is asked last before the end
-// knows that it is the end.
+// Rests between two blocks. A `cancel` that is set during at_rest takes effect at the next rest, so that the last
+// at_rest call before the end already knows that it is the last.
 void rest(const StreamOptions& options, std::size_t boxes_done) {
   const bool ends = is_cancelled(options);
   if (options.at_rest && boxes_done > 0) options.at_rest(boxes_done);
   if (ends) throw Error(ErrorKind::interrupted, "interrupted");
 }
 
-// Boxes from `first` on that are worked on between two rests.
+// Returns the end of the boxes, from `first` on, that are worked on between two rests.
 std::size_t end_of_group(std::span<const Box> boxes, std::size_t first) {
   constexpr std::int64_t kGroupVoxels = std::int64_t{64} << 20U;
   std::int64_t voxels = 0;
@@ -148,7 +150,7 @@ std::size_t end_of_group(std::span<const Box> boxes, std::size_t first) {
   return end;
 }
 
-// How the values of a box come, where that is in parts.
+// Returns the parts of `box`, or nullopt if none of its voxels repeat.
 std::optional<BlockParts> parts_of(const VolumeSource& source, const Box& box) {
   std::vector<RepeatedPart> parts = source.repeated_parts(box);
   const bool repeats = std::any_of(parts.begin(), parts.end(), [](const RepeatedPart& part) { return part.repeats(); });

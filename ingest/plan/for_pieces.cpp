@@ -31,7 +31,7 @@ void for_pieces(std::int64_t count, std::size_t threads, const std::function<voi
     try {
       for (std::int64_t i = 1; i < team; ++i) helpers.emplace_back(run);
     } catch (const std::system_error&) {
-      // No more threads to be had: those there are do the work.
+      // The system has no more threads. Those that exist do the work.
     }
     run();
   }

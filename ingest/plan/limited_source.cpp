@@ -30,7 +30,7 @@ class LimitedSource final : public ForwardedSource {
   }
 
  private:
-  // Several threads may be reading: each pays for what came in since another one paid.
+  // Several threads may read at once: each pays for the bytes read since the last payment.
   void spend() {
     std::uint64_t bytes = 0;
     {

@@ -1,4 +1,4 @@
-// A volume whose reading keeps to a bandwidth.
+// A source that reads no faster than a given bandwidth.
 #pragma once
 
 #include <memory>
@@ -8,8 +8,8 @@
 
 namespace weir {
 
-/// `source`, but its reads return no sooner than `bandwidth` allows for the bytes that VolumeSource::bytes_read counts,
-/// those that opening it took among them. What it reads is the same. `bandwidth` must outlive it.
+/// Returns a source with the values of `source`. Its reads return no sooner than `bandwidth` allows for the bytes
+/// that VolumeSource::bytes_read counts, including those of opening it. `bandwidth` must outlive the returned source.
 std::unique_ptr<VolumeSource> limit_source(std::unique_ptr<VolumeSource> source, Bandwidth& bandwidth);
 
 }  // namespace weir

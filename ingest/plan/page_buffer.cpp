@@ -30,13 +30,13 @@ PageBuffer::PageBuffer(std::size_t size) {
     throw io_error("memory", compose("get ", size, " bytes for reading; lower ", option("memory")), errno);
   }
   auto* begin = static_cast<std::byte*>(memory);
-  if (large > 0) {  // begins at a large page; what is mapped beside it is given back
+  if (large > 0) {  // start at a large page, and give back what is mapped before and after
     const std::size_t before =
         up_to_multiple(reinterpret_cast<std::uintptr_t>(begin), kLargePage) - reinterpret_cast<std::uintptr_t>(begin);
     if (before > 0) ::munmap(begin, before);
     begin += before;
     if (before < spare) ::munmap(begin + kept, spare - before);
-    ::madvise(begin, large, MADV_HUGEPAGE);  // where it is refused, there are small ones
+    ::madvise(begin, large, MADV_HUGEPAGE);  // if the kernel refuses, the pages stay small
   }
   bytes_ = {begin, size};
 }

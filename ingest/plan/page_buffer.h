@@ -1,6 +1,6 @@
-// Page-aligned memory straight from the kernel: not zero-filled by hand, given back to the kernel at once when freed.
-// It is of large pages as far as they fill it: where pages are slow to map, as in a virtual machine, small ones took a
-// fifth of the time of small conversions.
+// Page-aligned memory straight from the kernel. It is not zero-filled by hand and goes back to the kernel at once
+// when freed. It uses large pages as far as they fill the buffer. In a virtual machine, for instance, pages are slow
+// to map, and mapping small pages took a fifth of the time of small conversions.
 #pragma once
 
 #include <cstddef>
@@ -8,17 +8,17 @@
 
 namespace weir {
 
-/// Owns `size` bytes, zero until written. Pages cost memory only once touched.
+/// Owns `size` bytes that are zero until written. A page costs memory only once it is touched.
 class PageBuffer {
  public:
-  /// Throws Error(io) naming the size where the kernel refuses. Zero bytes are allowed.
+  /// Throws Error(io) naming the size if the kernel refuses. `size` may be 0.
   explicit PageBuffer(std::size_t size);
   ~PageBuffer();
   PageBuffer(PageBuffer&& other) noexcept;
   PageBuffer& operator=(PageBuffer&& other) noexcept;
 
   std::span<std::byte> bytes() const { return bytes_; }
-  /// The buffer as floats, whole ones only.
+  /// Returns the buffer as floats, without bytes beyond the last whole float.
   std::span<float> floats() const { return {reinterpret_cast<float*>(bytes_.data()), bytes_.size() / sizeof(float)}; }
 
  private:

@@ -1,4 +1,4 @@
-// One value for each group of a leaf's voxels, written to all voxels of its group.
+// Expands one value per group of a leaf's voxels to all voxels of the group.
 #pragma once
 
 #include <array>
@@ -7,7 +7,8 @@
 
 namespace weir {
 
-/// Edges of the groups of a leaf's 512 values, whichever axis is the slowest of them: 1, 2, 4 or 8 each.
+/// Edge lengths of the groups of a leaf's 512 values: 1, 2, 4 or 8 each. `slow` is the slowest axis of the values,
+/// whichever axis this is.
 struct LeafGroups {
   std::size_t slow = 1;
   std::size_t middle = 1;
@@ -16,8 +17,8 @@ struct LeafGroups {
   friend bool operator==(const LeafGroups&, const LeafGroups&) = default;
 };
 
-/// `distinct` are in the order of the values, one for each group. Nothing else uses the first of these two: with edges
-/// that the compiler knows it is fast.
+/// Writes `distinct`, one value per group in the order of the values, to `values`. Only repeat_groups() calls this
+/// function: it is fast if the compiler knows the edges.
 template <typename Value>
 [[gnu::always_inline]] inline void repeat_groups_of(const LeafGroups& groups, const Value* distinct, Value* values) {
   for (std::size_t s = 0; s < 8; s += groups.slow) {

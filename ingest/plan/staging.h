@@ -12,13 +12,12 @@
 
 namespace weir {
 
-inline constexpr std::size_t kIoThreads = 4;                       ///< reads in flight of a box
+inline constexpr std::size_t kIoThreads = 4;                       ///< reads in flight for one box
 inline constexpr std::size_t kPieceBytes = std::size_t{1} << 20U;  ///< bytes per read
 /// All staging memory of one source, counted against --memory.
 inline constexpr std::size_t kStagingBytes = kIoThreads * (kPieceBytes + 2 * kDirectAlignment);
 
-/// kIoThreads buffers for one piece each, lent to whoever reads. Thread-safe; untouched buffers cost
-/// no memory.
+/// kIoThreads buffers of one piece each, lent to readers. Thread-safe. Untouched buffers cost no memory.
 class StagingPool {
  public:
   /// A buffer of kPieceBytes + 2 * kDirectAlignment bytes, page-aligned, given back on destruction.

@@ -7,13 +7,14 @@
 namespace weir {
 namespace {
 
-/// Voxels of a tile along x and along the faster one of y and z: a cache line of either side is used up while it is
-/// there.
+/// Edge of a tile in voxels, along x and along the faster of y and z. A cache line of either side is used up while it
+/// is in the cache.
 constexpr std::int64_t kTileEdge = 16;
 
 using Offsets = std::array<std::int64_t, 3>;
 
-// `stride` and `out_stride` are bytes along x, then the faster, then the slower one of y and z; `extent` likewise.
+// `stride` and `out_stride` are in bytes, in the order x, faster of y and z, slower of y and z. `extent` has the same
+// order.
 template <std::size_t Bytes>
 void copy_tiles(const std::byte* source, const Offsets& stride, std::byte* out, const Offsets& out_stride,
                 const Offsets& extent) {

@@ -18,10 +18,10 @@ namespace {
 
 constexpr std::string_view kAnyArray = "convert it to raw, HDF5, Zarr, NRRD or NIfTI";
 
-/// Told by its first bytes.
+/// A format that is recognised by bytes at `offset` in the file.
 struct MarkedFormat {
   std::string_view magic;
-  std::uint64_t offset;  ///< of these, in the file
+  std::uint64_t offset;  ///< offset of `magic` in the file
   std::string_view name;
 };
 constexpr std::array<MarkedFormat, 6> kMarked{{{{"II*\0", 4}, 0, "a TIFF file"},
@@ -31,7 +31,7 @@ constexpr std::array<MarkedFormat, 6> kMarked{{{{"II*\0", 4}, 0, "a TIFF file"},
                                                {"DICM", 128, "a DICOM file"},
                                                {"MAP ", 208, "an MRC file"}}};
 
-/// Told by its name.
+/// A format that is recognised by the suffix of its name.
 struct NamedFormat {
   std::string_view suffix;
   std::string_view name;
@@ -48,7 +48,7 @@ constexpr std::array<NamedFormat, 5> kNamed{
      {".xdmf", kXdmf, kArraysOfXdmf},
      {".xmf", kXdmf, kArraysOfXdmf}}};
 
-// Empty where the file ends before.
+// Returns `count` bytes at `offset`, or "" if the file ends before.
 std::string bytes_at(InputFile& file, std::uint64_t offset, std::size_t count) {
   if (file.size() < offset + count) return {};
   std::string bytes(count, '\0');
@@ -56,7 +56,8 @@ std::string bytes_at(InputFile& file, std::uint64_t offset, std::size_t count) {
   return bytes;
 }
 
-// Its first four bytes are its length, 348 (NIfTI-1, Analyze 7.5) or 540 (NIfTI-2), in either byte order.
+// Returns whether the file is an image header: its first four bytes are its length, 348 (NIfTI-1, Analyze 7.5) or 540
+// (NIfTI-2), in either byte order.
 bool is_image_header(const std::string& path) {
   InputFile file(path, DirectIo::off);
   const std::string begin = bytes_at(file, 0, 4);
@@ -65,7 +66,7 @@ bool is_image_header(const std::string& path) {
   return std::ranges::find(kLengths, begin) != kLengths.end();
 }
 
-// "brain.hdr" of "brain.img".
+// Returns the header beside an image: "brain.hdr" for "brain.img".
 std::optional<std::string> image_header_of(const std::string& path) {
   if (!lower_case(path).ends_with(".img")) return std::nullopt;
   for (const char* const suffix : {".hdr", ".HDR"}) {

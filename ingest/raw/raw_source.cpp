@@ -48,7 +48,7 @@ constexpr std::array<PackedBy, 4> kPackers{{{".gz", "\x1F\x8B", "gzip", "gunzip 
                                             {".bz2", "BZh", "bzip2", "bunzip2 -k"},
                                             {".zst", "\x28\xB5\x2F\xFD", "zstd", "zstd -d"}}};
 
-// A packer's magic, behind a name that says it.
+// Throws if the name has a packer's suffix and the file begins with this packer's magic bytes.
 void refuse_packed(InputFile& file) {
   for (const PackedBy& by : kPackers) {
     if (!lower_case(file.path()).ends_with(by.suffix) || file.size() < by.magic.size()) continue;
@@ -60,7 +60,7 @@ void refuse_packed(InputFile& file) {
   }
 }
 
-// By its name: the bytes of such a file begin with numpy's header.
+// Refuses numpy files by their name, because their bytes begin with numpy's header.
 void refuse_numpy(const std::string& path) {
   if (const std::string lower = lower_case(path); !lower.ends_with(".npy") && !lower.ends_with(".npz")) return;
   throw input_error(
@@ -92,7 +92,7 @@ RawShape resolve_shape(InputFile& file, const SourceOptions& options) {
   }
   shape.type = options.type ? *options.type : *named_type;
 
-  // A name without "be" says nothing: published little-endian and big-endian files both lack it.
+  // A name without "be" says nothing about the byte order: published little-endian and big-endian files both lack it.
   const bool named_big = name && name->type && name->big_endian;
   if (named_big && options.big_endian == false) throw contradiction(path, "endian", "little", name->type_text);
   shape.big_endian = options.big_endian.value_or(named_big);

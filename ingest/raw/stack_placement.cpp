@@ -15,14 +15,14 @@
 namespace weir {
 namespace {
 
-constexpr double kPlanePrecision = std::numeric_limits<float>::epsilon();  // headers round to a few digits
+constexpr double kPlanePrecision = std::numeric_limits<float>::epsilon();  // headers round positions to a few digits
 
 bool nearly(double a, double b, double spacing) {
   return std::fabs(a - b) <=
          kRegularTolerance * std::fabs(spacing) + kPlanePrecision * std::max(std::fabs(a), std::fabs(b));
 }
 
-// Of all planes, in the order of `files`.
+// Returns the positions of all planes, in the order of `files`.
 std::vector<double> positions_of(const std::vector<StackedPlanes>& files) {
   std::vector<double> positions;
   for (const StackedPlanes& file : files) {
@@ -59,7 +59,7 @@ AxisPlace axis_of(std::vector<double> positions) {
   return axis;
 }
 
-// All rise, or all fall, as the first two do.
+// Throws unless all positions rise, or all fall, as the first two do.
 void check_order(const std::vector<StackedPlanes>& files, const std::vector<double>& positions) {
   const bool falls = positions[1] < positions[0];
   std::size_t at = 0;
@@ -88,7 +88,7 @@ double first_position(const SourceInfo& info, std::size_t axis) {
 StackedPlanes stacked_planes(const std::string& path, const SourceInfo& info) {
   const AxisDetails& z = info.details.axes[2];
   const bool irregular = !z.reversed && !z.note.empty();
-  // Steps along axes that fall, or lie across those of the world, are not those of its z.
+  // A step along an axis that falls, or is oblique to the world's axes, is not a step along the world's z.
   const bool aligned = is_aligned(info);
   return {path,
           info.extent.z,

@@ -22,7 +22,7 @@ namespace {
 
 struct FileSlab {
   std::string path;
-  Index3 origin;       ///< of the file's own index space
+  Index3 origin;       ///< index of the file's first voxel, in the file's own index space
   std::int64_t z = 0;  ///< first plane in the stack
   std::int64_t planes = 0;
   bool lacks_chunks = false;
@@ -54,12 +54,13 @@ class StackSource final : public VolumeSource {
  public:
   StackSource(const std::string& pattern, const SourceOptions& options, OpenVolume open)
       : open_volume_(std::move(open)), options_(options), as_they_are_(options.spacing.has_value()) {
-    // These are the stack's.
+    // These options apply to the stack, not to its files.
     options_.stack = false;
     options_.spacing.reset();
     options_.origin.reset();
     options_.roi.reset();
-    // Where a region is read, the chunks of that count, once it is known which planes of which file it has.
+    // If only a region is read, only its chunks may not be missing. look_for_chunks() checks this once the planes of
+    // each file are known.
     if (options.roi) options_.missing_chunks = MissingChunks::fill;
     const std::vector<NumberedFile> files = numbered_files(pattern);
     for (const NumberedFile& file : files) {
@@ -108,7 +109,7 @@ class StackSource final : public VolumeSource {
   }
 
  private:
-  /// Each open file has buffers of its own.
+  /// The most open files, because each has buffers of its own.
   static constexpr std::size_t kOpenFiles = kIoThreads;
 
   using OpenSlab = std::pair<std::size_t, std::shared_ptr<VolumeSource>>;
@@ -133,7 +134,7 @@ class StackSource final : public VolumeSource {
     if (!as_they_are_) {
       check_placed_alike(path, info, first_);
     } else if (info.details.time && first_.details.time && info.details.time->value != first_.details.time->value) {
-      info_.details.time.reset();  // they have none in common
+      info_.details.time.reset();  // the files have no common time
     }
     planes_.push_back(stacked_planes(path, info));
     info_.files.insert(info_.files.end(), info.files.begin(), info.files.end());
@@ -144,7 +145,7 @@ class StackSource final : public VolumeSource {
     working_bytes_ = std::max(working_bytes_, source->working_bytes());
   }
 
-  // What the first one of those files says that lack chunks, and how many further ones there are.
+  // Adds the note of a file that lacks chunks: the first such file's note, and how many more files there are.
   void note_chunks(const std::string& path, const SourceInfo& info) {
     const std::string& note = info.details.chunks_note;
     if (note.empty()) return;
@@ -156,8 +157,8 @@ class StackSource final : public VolumeSource {
     }
   }
 
-  // Of the files that lack chunks, says or refuses those that lack some in the region. Opens one as asked in any case:
-  // its format may have no chunks.
+  // Looks for files that lack chunks in the region, and notes or refuses them as `missing` says. Opens at least one
+  // file with the user's `missing`, so that a format without chunks refuses the option.
   void look_for_chunks(const VolumeRegion& region, MissingChunks missing) {
     const Box read = intersect(region.in(info_.domain()), info_.domain());
     lacking_ = 0;
@@ -176,7 +177,7 @@ class StackSource final : public VolumeSource {
     }
   }
 
-  // By what the files say, but where the user places the stack.
+  // Places the stack by what its files say, unless the user gives a spacing.
   void place() {
     const bool backwards = stacked_backwards(planes_, !as_they_are_);
     if (backwards) {
@@ -194,8 +195,8 @@ class StackSource final : public VolumeSource {
     planes_.clear();
   }
 
-  // Blocks of whole files where they are small, so that each is opened once a pass; else a file's own chunks, where
-  // they end with it.
+  // Chooses the chunk for the block plan. If files are small, it is a whole file, so that each file is opened once
+  // per pass. Otherwise it is the file's own chunk, if chunks end where the file ends.
   void choose_access() {
     const auto alike = [&](const FileSlab& slab) { return slab.planes == slabs_.front().planes; };
     const bool regular = std::all_of(slabs_.begin(), slabs_.end() - 1, alike);
@@ -228,7 +229,7 @@ class StackSource final : public VolumeSource {
         return found->second;
       }
     }
-    // Whoever reads from a file last closes it, and then its bytes are counted.
+    // The last reader of a file closes it, and its bytes are then counted.
     std::shared_ptr<VolumeSource> source(open_volume_(slabs_[i].path, options_).release(),
                                          [this](VolumeSource* closing) {
                                            const std::unique_ptr<VolumeSource> owned(closing);
@@ -245,19 +246,19 @@ class StackSource final : public VolumeSource {
 
   OpenVolume open_volume_;
   SourceOptions options_;
-  const bool as_they_are_;  ///< the user says where the planes lie
+  const bool as_they_are_;  ///< the user gives a spacing, so files stay in the order of their numbers
   SourceInfo info_;
-  SourceInfo first_;  ///< of the first file
+  SourceInfo first_;  ///< info of the first file
   AccessShape access_;
   std::vector<FileSlab> slabs_;
-  std::vector<StackedPlanes> planes_;  ///< of the slabs, until they are placed
+  std::vector<StackedPlanes> planes_;  ///< planes of the slabs, until they are placed
   std::size_t lacking_ = 0;            ///< files without some of their chunks
-  std::string chunks_note_;            ///< of the first of them
+  std::string chunks_note_;            ///< note of the first file that lacks chunks
   FileStates files_;
-  std::uint64_t working_bytes_ = 0;  ///< of one file
+  std::uint64_t working_bytes_ = 0;  ///< the most that one file needs
   mutable std::mutex mutex_;
   std::atomic<std::uint64_t> closed_bytes_read_{0};
-  std::list<OpenSlab> open_;  ///< the last one used first
+  std::list<OpenSlab> open_;  ///< most recently used first
 };
 
 }  // namespace

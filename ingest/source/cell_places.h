@@ -1,4 +1,4 @@
-// Where the voxels of a volume that is put together from cells of another one lie there.
+// Maps the voxels of a volume that is put together from cells of another volume to their places in that volume.
 #pragma once
 
 #include "format/base/index.h"
@@ -6,19 +6,19 @@
 
 namespace weir {
 
-/// Cells are of whole leaves, and fill the volume. Thread-safe.
+/// The cells of such a volume. Each cell consists of whole leaves, and together they fill the volume. Thread-safe.
 class CellPlaces {
  public:
   virtual ~CellPlaces() = default;
 
-  /// Voxels of the volume that were taken from one place of the other one: those of the cell that holds `voxel`.
+  /// Returns the cell that holds `voxel`: the voxels that were taken from one place of the other volume.
   virtual Box cell(const Index3& voxel) const = 0;
-  /// Where `voxel` lies in the other volume.
+  /// Returns where `voxel` lies in the other volume.
   virtual Index3 origin_of(const Index3& voxel) const = 0;
-  /// Of the other volume.
+  /// Returns the domain of the other volume.
   virtual Box origin_domain() const = 0;
-  /// Bounds of the finite values of the leaf that holds `voxel` and of those around it in the other volume; null where
-  /// they are not known.
+  /// Returns the bounds of the finite values, in the other volume, of the leaf that holds `voxel` and of the leaves
+  /// around it. Returns null if they are not known.
   virtual const MinMax* reach(const Index3& voxel) const = 0;
 };
 

@@ -11,7 +11,7 @@ namespace weir {
 
 namespace {
 
-// The axes of `dataset` that options.index_choices give positions on.
+// Returns the axes of `dataset` that options.index_choices give positions on.
 const std::vector<LeadingAxis>& axes_to_choose_on(const DatasetInfo& dataset, const SourceOptions& options) {
   if (options.component) return dataset.component_index_axes;
   const std::vector<LeadingAxis>& all = dataset.vector_index_axes;
@@ -25,10 +25,10 @@ std::string listed(const std::vector<std::string>& names) {
   return text;
 }
 
-// HDF5 and Zarr take "/run/density" and "run/density" for the same.
+// HDF5 and Zarr treat "/run/density" and "run/density" as the same name.
 std::string_view without_slash(std::string_view name) { return name.starts_with('/') ? name.substr(1) : name; }
 
-// What is wrong with options.index_choices, which do not fit `dataset`.
+// Returns the error that says why options.index_choices do not fit `dataset`.
 Error unfit(const std::string& path, const DatasetInfo& dataset, const SourceOptions& options) {
   const std::vector<AxisChoice>& choices = options.index_choices;
   const std::vector<LeadingAxis>& axes = axes_to_choose_on(dataset, options);
@@ -53,7 +53,7 @@ Error unfit(const std::string& path, const DatasetInfo& dataset, const SourceOpt
                              axes.empty() ? "no leading axis" : text, "; weir inspect lists what there is"));
 }
 
-// The one that options.index_choices choose positions in.
+// Returns the dataset that options.index_choices choose positions in.
 const DatasetInfo& dataset_of_choices(const std::string& path, const std::vector<DatasetInfo>& datasets,
                                       const SourceOptions& options) {
   const std::vector<AxisChoice>& choices = options.index_choices;
@@ -61,7 +61,7 @@ const DatasetInfo& dataset_of_choices(const std::string& path, const std::vector
   std::vector<const DatasetInfo*> volumes;
   std::vector<const DatasetInfo*> fitting;
   for (const DatasetInfo& dataset : datasets) {
-    const bool alone = datasets.size() == 1;  // then it is meant, whatever keeps it from being read
+    const bool alone = datasets.size() == 1;  // the only dataset is meant even if it has an obstacle
     const bool meant = name.empty() ? alone || (dataset.obstacle.empty() && !dataset.by_name_only)
                                     : without_slash(dataset.name) == without_slash(name);
     if (!meant) continue;

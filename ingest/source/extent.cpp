@@ -24,7 +24,7 @@ std::string extent_obstacle(const Index3& extent, std::size_t bytes_per_voxel) {
   }
   std::int64_t voxels = 0;
   std::int64_t bytes = 0;
-  // Everything downstream is float32, so those bytes must be countable too.
+  // Everything downstream is float32, so the bytes of the volume as float32 must be countable, too.
   const auto widest = static_cast<std::int64_t>(std::max(bytes_per_voxel, sizeof(float)));
   if (__builtin_mul_overflow(extent.x * extent.y, extent.z, &voxels) ||
       __builtin_mul_overflow(voxels, widest, &bytes)) {

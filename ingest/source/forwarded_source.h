@@ -1,4 +1,4 @@
-// Another source under this one's name: what a source that changes a part of another one starts from.
+// Base class of sources that change a part of another source: it forwards every call.
 #pragma once
 
 #include <memory>
@@ -8,11 +8,11 @@
 
 namespace weir {
 
-/// Answers every call as the source that it holds does.
+/// Forwards every call to the source that it holds.
 class ForwardedSource : public VolumeSource {
  public:
   explicit ForwardedSource(std::unique_ptr<VolumeSource> source) : owned_(std::move(source)), source_(*owned_) {}
-  /// `source` must outlive it.
+  /// `source` must outlive this object.
   explicit ForwardedSource(VolumeSource& source) : source_(source) {}
 
   const SourceInfo& info() const override { return source_.info(); }

@@ -1,4 +1,4 @@
-// Leaves whose values lie in memory: a block of them is not read.
+// Leaves with values that lie in memory already: a block of them need not be read.
 #pragma once
 
 #include <array>
@@ -13,8 +13,8 @@ class HeldLeaves {
  public:
   virtual ~HeldLeaves() = default;
 
-  /// The values of the leaf whose voxels in the domain are `inside`, x fastest. They stay as long as the object and
-  /// `room`, where they may be put.
+  /// Returns the values of the leaf with the in-domain voxels `inside`, x fastest. The function may put them into
+  /// `room`. They stay valid as long as this object and `room`.
   virtual std::span<const float> leaf(const Box& inside, std::array<float, kLeafVoxels>& room) const = 0;
 };
 

@@ -10,10 +10,10 @@
 namespace weir {
 namespace {
 
-/// Volumes of one call, at most: as many files as a directory is good for.
+/// The most volumes of one call: about as many files as a directory handles well.
 constexpr std::uint64_t kMostPositions = 1'000'000;
 
-// "" is no number and no error: what it stands for is left open.
+// Reads one end of a range. An empty text is valid and leaves `end` unset.
 bool read_end(std::string_view text, std::optional<std::int64_t>& end) {
   if (text.empty()) return true;
   end = parse_int(text);
@@ -27,7 +27,8 @@ std::string choice_text(const AxisChoice& choice) {
   return choice.range ? cat(end(choice.first), ':', end(choice.end)) : cat(*choice.first);
 }
 
-// Position among `axes` of the one that the choice at `place` is for; their number where there is none.
+// Returns the position among `axes` of the axis that the choice at `place` is for. Returns a position past the end if
+// there is none.
 std::size_t axis_of(const AxisChoice& choice, std::size_t place, std::span<const LeadingAxis> axes) {
   if (choice.axis.empty()) return place;
   const auto found =
@@ -35,7 +36,7 @@ std::size_t axis_of(const AxisChoice& choice, std::size_t place, std::span<const
   return static_cast<std::size_t>(found - axes.begin());
 }
 
-// [first, end) of the axis's own positions. `name` is the axis's.
+// Returns the chosen positions [first, end) of the axis `axis`, which messages call `name`.
 std::pair<std::int64_t, std::int64_t> checked_bounds(const std::string& where, const std::string& name,
                                                      const AxisChoice& choice, const LeadingAxis& axis) {
   const std::int64_t extent = axis.extent;

@@ -1,4 +1,5 @@
-// Volumes of a file that cannot be converted: said where another one is taken that nobody named.
+// Volumes of a file that cannot be converted. A notice lists them when weir reads another volume of the file that the
+// user did not name.
 #pragma once
 
 #include <span>
@@ -9,17 +10,17 @@
 
 namespace weir {
 
-/// A volume that cannot be converted, and why.
+/// A volume that cannot be converted, and the reason.
 struct LeftOut {
   std::string name;
   std::string obstacle;
 };
 
-/// Whether `dataset` would be a volume but for its obstacle: it has three axes or more, none of the last three a time,
-/// and is not one that is read by its name alone.
+/// Returns whether only its obstacle keeps `dataset` from being a volume: it has three axes or more, none of the last
+/// three is a time, and it is not read by name only.
 bool is_unread_volume(const DatasetInfo& dataset);
 
-/// "PATH: TAKEN is read; left out: NAME: OBSTACLE; NAME: OBSTACLE; and 3 more (weir inspect lists them)".
+/// Returns "PATH: TAKEN is read; left out: NAME: OBSTACLE; NAME: OBSTACLE; and 3 more (weir inspect lists them)".
 /// `left_out` is not empty.
 Message left_out_notice(const std::string& path, const std::string& taken, std::span<const LeftOut> left_out);
 

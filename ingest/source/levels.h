@@ -1,4 +1,4 @@
-// What becomes of the levels of refinement of a file.
+// How the levels of refinement of a file become volumes.
 #pragma once
 
 #include <string_view>
@@ -6,8 +6,8 @@
 namespace weir {
 
 enum class Levels {
-  composite,  ///< one volume, of the cells of the finest level that is read
-  separate    ///< a volume of each level; of cells that a finer level has, and of those that it lacks itself, no value
+  composite,  ///< one volume, made of the finest cells that are read
+  separate    ///< one volume per level; cells that a finer level covers, or that the level lacks, have no value
 };
 
 constexpr std::string_view levels_name(Levels levels) { return levels == Levels::composite ? "composite" : "separate"; }

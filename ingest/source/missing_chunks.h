@@ -1,11 +1,11 @@
-// What voxels of chunks read that an array does not store.
+// How chunks that an array does not store are read.
 #pragma once
 
 namespace weir {
 
 enum class MissingChunks {
   fill,  ///< the array's fill value, as its format says
-  error  ///< nothing: such an array is refused
+  error  ///< an array with missing chunks is refused
 };
 
 }  // namespace weir

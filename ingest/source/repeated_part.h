@@ -1,4 +1,4 @@
-// A part of a volume whose voxels repeat each other, as those of coarse cells on a finer grid do.
+// A part of a volume with groups of equal voxels, for instance coarse cells on a finer grid.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,8 @@
 
 namespace weir {
 
-/// The voxels of a box in groups of `by` along the axes, from its lowest corner on, that have one value each.
+/// A box of voxels in groups of `by` voxels along the axes, counted from its lowest corner. All voxels of a group
+/// have one value.
 struct RepeatedPart {
   Box box;  ///< index space; extents are multiples of `by`, corners lie on multiples of it
   Index3 by{1, 1, 1};
@@ -17,7 +18,7 @@ struct RepeatedPart {
     const Index3 e = box.extent();
     return {e.x / by.x, e.y / by.y, e.z / by.z};
   }
-  /// Of all groups.
+  /// Returns the number of groups, which is the number of distinct values.
   std::int64_t values() const { return volume(groups()); }
 };
 

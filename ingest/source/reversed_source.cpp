@@ -17,7 +17,7 @@ class ReversedSource final : public ForwardedSource {
   ReversedSource(std::unique_ptr<VolumeSource> source, const std::array<bool, 3>& reversed)
       : ForwardedSource(std::move(source)), reversed_(reversed) {}
 
-  // Chunks end where they began.
+  // Mirroring swaps the beginning and the end of each chunk, so the chunk grid's corner is mirrored.
   AccessShape access() const override {
     AccessShape shape = source().access();
     shape.chunk_origin = mirrored({shape.chunk_origin, shape.chunk_origin}).lo;
@@ -38,7 +38,7 @@ class ReversedSource final : public ForwardedSource {
     for (Box& part : boxes) part = mirrored(part);
     return boxes;
   }
-  // The source's leaves are none here, where its extent is no multiple of 8.
+  // If the extent is no multiple of 8, the source's leaves are not leaves of the mirrored volume.
   std::vector<RepeatedPart> repeated_parts(const Box& box) const override { return {{box}}; }
   ConversionLoss read_repeated(const RepeatedPart& part, std::span<float> values) override {
     return read_alone(part.box, values);
@@ -48,7 +48,7 @@ class ReversedSource final : public ForwardedSource {
   const HeldLeaves* held(const Box& /*box*/) const override { return nullptr; }
 
  private:
-  // Where the source has the voxels of `box`.
+  // Returns the box of the source that holds the voxels of `box`.
   Box mirrored(const Box& box) const { return mirrored_box(box, info().domain(), reversed_); }
 
   void reverse(const Index3& extent, std::span<float> values) const {
@@ -63,7 +63,7 @@ class ReversedSource final : public ForwardedSource {
     if (reversed_[2]) reverse_runs(values, plane);
   }
 
-  // Runs of `length` values in reverse order, each as it is.
+  // Reverses the order of the runs of `length` values. The values within a run keep their order.
   static void reverse_runs(std::span<float> values, std::size_t length) {
     for (std::size_t first = 0, last = values.size(); last - first >= 2 * length; first += length) {
       last -= length;

@@ -1,4 +1,4 @@
-// Which files a volume lies in, for what must not be written over them.
+// Finds the files of a volume, so that an output does not overwrite them.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace weir {
 
-/// Those that `info` names, as they were opened, and the one that its path leads to now.
+/// Returns the ids of the files that `info` names, as they were opened, and of the file that its path leads to now.
 std::vector<FileId> source_file_ids(const SourceInfo& info);
 
 }  // namespace weir

@@ -17,7 +17,7 @@ namespace {
 /// A source at another place in the world.
 class PlacedSource final : public ForwardedSource {
  public:
-  // `info` is the source's own but for its place.
+  // `info` is the source's info with another place.
   PlacedSource(std::unique_ptr<VolumeSource> source, SourceInfo info)
       : ForwardedSource(std::move(source)), info_(std::move(info)) {}
 
@@ -29,7 +29,7 @@ class PlacedSource final : public ForwardedSource {
 
 class CroppedSource final : public ForwardedSource {
  public:
-  // `info` is the source's own but for its domain, which lies inside the source's.
+  // `info` is the source's info with a smaller domain, inside the source's.
   CroppedSource(std::unique_ptr<VolumeSource> source, SourceInfo info)
       : ForwardedSource(std::move(source)), info_(std::move(info)) {}
 
@@ -54,7 +54,7 @@ class CroppedSource final : public ForwardedSource {
     check(part.box);
     return source().read_repeated(part, values);
   }
-  // These are of whole volumes and whole leaves, which the region's border cuts.
+  // These cover whole volumes and whole leaves, which the region's border cuts.
   ResidentVolume* resident() override { return nullptr; }
   const CellPlaces* places() const override { return nullptr; }
   const HeldLeaves* held(const Box& /*box*/) const override { return nullptr; }
@@ -69,7 +69,8 @@ class CroppedSource final : public ForwardedSource {
   SourceInfo info_;
 };
 
-// Of the spacing or origin, `key`, of `info`: given by the user, or as `from` says it in the file.
+// Returns the error for an invalid spacing or origin (`key`) of `info`, given by the user or found in the file by
+// `from`.
 Error unusable(const SourceInfo& info, bool given, std::string_view key, double value, std::string_view rule,
                const std::string& from) {
   if (given) return {ErrorKind::usage, compose(info.path, ": ", option(key), " has ", value, "; each must be ", rule)};
@@ -146,8 +147,8 @@ void check_given_place(const SourceInfo& placed, const SourceOptions& options) {
   }
 }
 
-// A distance takes the place of positions, but is no time: positions that count it stay, or, where they follow from a
-// spacing, their units go.
+// Removes what a given spacing makes obsolete. A spacing replaces coordinates in space. It does not replace a time:
+// coordinates of a time ("... since ...") stay, but if the axis has a spacing only, its time units are removed.
 void leave_out_positions(AxisDetails& axis) {
   const bool counts_time = axis.units.find(" since ") != std::string::npos;
   if (!counts_time) {
@@ -169,7 +170,7 @@ std::unique_ptr<VolumeSource> place_source(std::unique_ptr<VolumeSource> source,
                 compose(placed.path, ": ", why, "; give a smaller ", option("spacing")));
   }
   if (!options.spacing && !options.origin) return source;
-  if (options.spacing) {  // what is said of the file's own is of no use
+  if (options.spacing) {  // notes on the file's own spacing no longer apply
     for (AxisDetails& axis : placed.details.axes) {
       if (!axis.reversed) axis.note.clear();
       leave_out_positions(axis);

@@ -18,7 +18,8 @@ bool holds_integer(const StoredValue& value) {
   return std::visit(
       [](const auto v) {
         if constexpr (std::is_floating_point_v<std::decay_t<decltype(v)>>) {
-          // Exact powers of two bound every integer type, its maximum itself need not be a double.
+          // The bound is one above the type's maximum. This is a power of two, which a double holds exactly; the
+          // maximum itself it may not hold.
           constexpr double kEnd = static_cast<double>(std::numeric_limits<T>::max() / 2 + 1) * 2;
           return v >= static_cast<double>(std::numeric_limits<T>::lowest()) && v < kEnd && std::trunc(v) == v;
         } else {
@@ -28,7 +29,8 @@ bool holds_integer(const StoredValue& value) {
       value);
 }
 
-// Whether `value`, where it is finite, rounds to a finite one: `end` lies half a step above the largest of these.
+// Returns whether `value` is not finite or rounds to a finite value. `end` lies half a step above the largest finite
+// value of the type.
 bool holds_real(const StoredValue& value, double end) {
   const double v = as_double(value);
   return !std::isfinite(v) || std::fabs(v) < end;

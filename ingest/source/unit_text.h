@@ -9,7 +9,8 @@ namespace weir {
 
 inline constexpr std::size_t kMostUnitBytes = 128;
 
-/// `text`, or nothing where it is longer than a unit is: it would stand in every line about a value.
+/// Returns `text`, or "" if it is longer than kMostUnitBytes, because the unit appears in every message about a
+/// value.
 inline std::string unit_text(std::string text) {
   return text.size() <= kMostUnitBytes ? std::move(text) : std::string();
 }

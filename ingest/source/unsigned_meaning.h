@@ -1,5 +1,5 @@
-// Integers that are stored as signed ones and meant as unsigned, or the other way, as NetCDF's attribute _Unsigned
-// says: NetCDF-3 had signed ones alone, OPeNDAP unsigned bytes alone.
+// Integers that are stored as signed but meant as unsigned, or the reverse, as NetCDF's attribute _Unsigned says.
+// NetCDF-3 had signed integers only, and OPeNDAP has unsigned bytes only.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ inline constexpr std::array kIntegerTypes{
     IntegerTypes{ScalarType::int8, ScalarType::uint8}, IntegerTypes{ScalarType::int16, ScalarType::uint16},
     IntegerTypes{ScalarType::int32, ScalarType::uint32}, IntegerTypes{ScalarType::int64, ScalarType::uint64}};
 
-/// The unsigned type of the width of `type`, a signed integer; any other type as it is.
+/// Returns the unsigned type of the same width if `type` is a signed integer, otherwise `type`.
 constexpr ScalarType unsigned_type(ScalarType type) {
   for (const IntegerTypes& types : kIntegerTypes) {
     if (types.with_sign == type) return types.without;
@@ -30,7 +30,7 @@ constexpr ScalarType unsigned_type(ScalarType type) {
   return type;
 }
 
-/// The signed type of the width of `type`, an unsigned integer; any other type as it is.
+/// Returns the signed type of the same width if `type` is an unsigned integer, otherwise `type`.
 constexpr ScalarType signed_type(ScalarType type) {
   for (const IntegerTypes& types : kIntegerTypes) {
     if (types.without == type) return types.with_sign;
@@ -38,8 +38,8 @@ constexpr ScalarType signed_type(ScalarType type) {
   return type;
 }
 
-/// What is said of such values is of the type that they are stored as: -1 stands for the 255 of what is meant as uint8.
-/// Of another `type` than an unsigned integer, the value as it is.
+/// Returns `value`, given in the stored signed type, as a value of `type`, an unsigned integer: -1 becomes 255 for
+/// uint8. For any other `type`, returns `value` unchanged.
 inline StoredValue as_unsigned(const StoredValue& value, ScalarType type) {
   const bool meant = signed_type(type) != type;
   const auto* const negative = std::get_if<std::int64_t>(&value);
@@ -48,8 +48,8 @@ inline StoredValue as_unsigned(const StoredValue& value, ScalarType type) {
   return static_cast<std::uint64_t>(*negative) & (~std::uint64_t{0} >> (64U - bits));
 }
 
-/// The other way: 255 stands for the -1 of what is meant as int8. Of another `type` than a signed integer, the value as
-/// it is.
+/// Returns `value`, given in the stored unsigned type, as a value of `type`, a signed integer: 255 becomes -1 for
+/// int8. For any other `type`, returns `value` unchanged.
 inline StoredValue as_signed(const StoredValue& value, ScalarType type) {
   const bool meant = unsigned_type(type) != type;
   const auto* const natural = std::get_if<std::uint64_t>(&value);
@@ -58,14 +58,16 @@ inline StoredValue as_signed(const StoredValue& value, ScalarType type) {
   return static_cast<std::int64_t>(*natural | (bits == 64 ? 0 : ~std::uint64_t{0} << bits));
 }
 
-/// The type that is meant by _Unsigned = `text`, "true" or "false" in any case; `type` where it is neither.
+/// Returns the type that _Unsigned = `text` means: "true" or "false", in upper or lower case. Returns `type` for any
+/// other text.
 inline ScalarType meant_type(std::string_view text, ScalarType type) {
   const std::string said = lower_case(text);
   if (said == "true") return unsigned_type(type);
   return said == "false" ? signed_type(type) : type;
 }
 
-/// `value` of what is stored in the other of the two types than `type`, which is meant.
+/// Returns `value`, which may be given in the stored type of the other signedness, as a value of the meant type
+/// `type`.
 inline StoredValue as_meant(const StoredValue& value, ScalarType type) {
   return as_signed(as_unsigned(value, type), type);
 }

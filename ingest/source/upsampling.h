@@ -1,4 +1,4 @@
-// What fine voxels read where only coarser cells have values.
+// How fine voxels get values where only coarser cells have some.
 #pragma once
 
 #include <string_view>
@@ -6,7 +6,7 @@
 namespace weir {
 
 enum class Upsampling {
-  constant,  ///< the value of the coarse cell they lie in
+  constant,  ///< the value of the coarse cell that holds the voxel
   linear     ///< trilinear between the centres of coarse cells
 };
 

@@ -1,5 +1,5 @@
-// Sources of volumes. One implementation per file format; all of them hand out boxes of float32 values, x fastest, and
-// never hold more than they were handed.
+// Sources of volumes, one implementation per file format. All of them read boxes of float32 values, x fastest, into
+// the caller's memory. Besides, they need only the memory of kStagingBytes and working_bytes().
 #pragma once
 
 #include <array>
@@ -28,41 +28,41 @@ struct SourceInfo {
   std::string path;
   std::string format;                      ///< "raw", "synthetic", ...
   std::string dataset;                     ///< name inside a container, else empty
-  std::vector<std::int64_t> index;         ///< position on the leading axes of an array of more than three
-  std::array<std::string, 3> axis_labels;  ///< of x, y, z, x fastest in memory; empty where the file names none
-  std::string units;                       ///< of the values as the file says it, "kg m-3"; else empty
+  std::vector<std::int64_t> index;         ///< position on the leading axes of an array with more than three axes
+  std::array<std::string, 3> axis_labels;  ///< of x, y, z, x fastest in memory; empty if the file names none
+  std::string units;                       ///< units of the values as in the file, "kg m-3"; else empty
   std::optional<double> unit_si;           ///< openPMD unitSI: value * unit_si is in SI units
   Index3 extent;                           ///< voxels, each >= 1 and < 2^31
-  Index3 index_origin;  ///< index of the first voxel; not zero for OpenVDB input or a region of interest
-  GridClass grid_class = GridClass::unknown;     ///< as a file of OpenVDB or NanoVDB says it
-  std::optional<float> background;               ///< what lies around the domain, where that matters: a level set's
+  Index3 index_origin;  ///< index of the first voxel; can be nonzero for OpenVDB input or a region of interest
+  GridClass grid_class = GridClass::unknown;     ///< as an OpenVDB or NanoVDB file says it
+  std::optional<float> background;               ///< value around the domain, if it matters (level sets)
   ScalarType type = ScalarType::float32;         ///< as stored
-  bool lengths = false;                          ///< of vectors, whose components are of `type`
+  bool lengths = false;                          ///< the values are lengths of vectors with components of `type`
   ValueMapping mapping;                          ///< from stored values to the volume's
   std::array<double, 3> spacing{1.0, 1.0, 1.0};  ///< world units per voxel, > 0
   std::array<double, 3> origin{0.0, 0.0, 0.0};   ///< world position of the centre of voxel (0, 0, 0)
-  std::array<std::string, 3> spacing_from = {};  ///< what of the file says it, "attribute resolution"; may be empty
-  std::array<std::string, 3> origin_from = {};   ///< the same of the origin
+  std::array<std::string, 3> spacing_from = {};  ///< where the file gives it, "attribute resolution"; may be empty
+  std::array<std::string, 3> origin_from = {};   ///< where the file gives the origin
   std::uint64_t file_bytes = 0;                  ///< of the file at `path`
   std::int64_t mtime_ns = 0;                     ///< modification time, nanoseconds since 1970
-  std::string files_digest;                      ///< FileStates of all files it lies in; empty where that is one
-  std::vector<FileState> files;                  ///< all it lies in, as they were opened; none: not in files
-  FieldDetails details;                          ///< for the sidecar
+  std::string files_digest;      ///< FileStates digest of all files of the volume; empty if there is only one
+  std::vector<FileState> files;  ///< all files of the volume, as they were opened; empty if it is not in files
+  FieldDetails details;          ///< for the sidecar
 
-  /// Whether each value is one that is stored, and so one that `type` has; else it is computed from stored ones.
+  /// Returns whether every value is a stored value, which `type` can hold. If false, values are computed from stored
+  /// ones.
   bool values_as_stored() const { return !lengths && !mapping.scales(); }
 
   /// The voxels as a box in index space.
   Box domain() const { return {index_origin, index_origin + extent}; }
 };
 
-/// What the conversion of values to float32 lost. Non-finite values that the source itself holds
-/// are not counted here.
+/// What the conversion of values to float32 lost. Non-finite values of the source itself are not counted.
 struct ConversionLoss {
   std::uint64_t inexact = 0;   ///< values that are not representable in float32 and were rounded
   std::uint64_t overflow = 0;  ///< finite values that became infinite
   double max_abs_error = 0;    ///< largest |float32 - original| among the inexact ones
-  std::uint64_t unmarked = 0;  ///< values that stand for "no data" and were taken as data (ValueMapping::keeps_missing)
+  std::uint64_t unmarked = 0;  ///< values that mean "no data" and were taken as data (ValueMapping::keeps_missing)
 
   void add(const ConversionLoss& other) {
     inexact += other.inexact;
@@ -70,18 +70,18 @@ struct ConversionLoss {
     max_abs_error = max_abs_error > other.max_abs_error ? max_abs_error : other.max_abs_error;
     unmarked += other.unmarked;
   }
-  /// Of `n` times as many values.
+  /// Returns the loss of `n` times as many values.
   ConversionLoss times(std::uint64_t n) const { return {inexact * n, overflow * n, max_abs_error, unmarked * n}; }
 };
 
-/// How a source is best read; input to the block plan.
+/// How a source is best read. The block plan uses it.
 struct AccessShape {
   std::size_t bytes_per_voxel = 4;  ///< in the file
-  Index3 chunk{0, 0, 0};            ///< chunk extent in voxels, zero where rows are contiguous
+  Index3 chunk{0, 0, 0};            ///< chunk extent in voxels, zero if rows are contiguous
   Index3 chunk_origin{0, 0, 0};     ///< index of a corner of any chunk; chunks lie on its grid
 };
 
-/// Owned by one conversion. `read` may be called from several threads at once.
+/// A volume that one conversion owns. `read` may be called from several threads at once.
 class VolumeSource {
  public:
   virtual ~VolumeSource() = default;
@@ -89,47 +89,47 @@ class VolumeSource {
   virtual const SourceInfo& info() const = 0;
   virtual AccessShape access() const = 0;
 
-  /// Reads `box` (index space, inside info().domain(), not empty) into `values`, which holds exactly
-  /// box.voxels() floats, x fastest. Throws Error(input) with path and offset where bytes are
-  /// missing, Error(io) where the device fails.
+  /// Reads `box` (index space, inside info().domain(), not empty) into `values`, which holds exactly box.voxels()
+  /// floats, x fastest. Throws Error(input) with path and offset if bytes are missing, Error(io) if the device fails.
   virtual ConversionLoss read(const Box& box, std::span<float> values) = 0;
 
-  /// True where reading is a copy out of memory (the file is in the page cache) and waits for nothing:
-  /// callers then read on their working threads, in pieces that stay in a core's cache.
+  /// Returns whether reading is a copy out of memory (the file is in the page cache) and waits for nothing. Callers
+  /// then read on their working threads, in pieces that stay in a core's cache.
   virtual bool in_memory() const { return false; }
 
-  /// The same as read, by the calling thread alone and without asking again whether the bytes are in
-  /// memory: for callers that in_memory() told so.
+  /// Reads as read() does, but on the calling thread alone and without checking again whether the bytes are in
+  /// memory. For callers that got true from in_memory().
   virtual ConversionLoss read_alone(const Box& box, std::span<float> values) { return read(box, values); }
 
-  /// The same values where a device has them (format/packed/block_coder.h); null where none has. Lives as long as the
-  /// source.
+  /// Returns the volume on a device that already holds its values (format/packed/block_coder.h), or null. It lives as
+  /// long as the source.
   virtual ResidentVolume* resident() { return nullptr; }
 
-  /// Where its voxels lie in the volume that it is a sample of; null where it is none. Lives as long as the source.
+  /// Returns where the voxels lie in another volume, if this source is a sample of one; otherwise null. It lives as
+  /// long as the source.
   virtual const CellPlaces* places() const { return nullptr; }
 
-  /// Boxes without a common voxel, of all voxels of `box` that have a value where info().mapping.gaps; known without
-  /// reading any. `box` is as for read.
+  /// Returns disjoint boxes that hold all voxels of `box` with a value, for volumes with info().mapping.gaps. Reads
+  /// no values. `box` is as for read().
   virtual std::vector<Box> voxels_with_values(const Box& box) const { return {box}; }
 
-  /// Cuts `box`, which is as for read, into parts whose voxels are known to repeat each other and others, where parts
-  /// are leaves (8^3 voxels at multiples of 8 of the index) as far as they lie in `box`, and `by` divides 8.
+  /// Cuts `box` (as for read()) into parts with voxels that are known to repeat each other, and other parts. The
+  /// parts are leaves (8^3 voxels at multiples of 8 of the index) as far as they lie in `box`, and `by` divides 8.
   virtual std::vector<RepeatedPart> repeated_parts(const Box& box) const { return {{box}}; }
-  /// Reads one of them: the value of each group, x fastest; the loss is that of all voxels. By the calling thread
-  /// alone.
+  /// Reads one part of repeated_parts() on the calling thread alone: the value of each group, x fastest. The loss is
+  /// that of all voxels.
   virtual ConversionLoss read_repeated(const RepeatedPart& part, std::span<float> values) {
     return read(part.box, values);
   }
 
-  /// Where the values of `box`, which has whole leaves as far as the domain has them, lie in memory leaf by leaf; null
-  /// where they have to be read. Lives as long as the source.
+  /// Returns the values of `box` that lie in memory leaf by leaf, or null if they have to be read. `box` has whole
+  /// leaves as far as the domain has them. The object lives as long as the source.
   virtual const HeldLeaves* held(const Box& /*box*/) const { return nullptr; }
 
-  /// Memory that reading needs besides the callers' buffers and kStagingBytes, in bytes: decoded chunks.
+  /// Returns the bytes that reading needs besides the callers' buffers and kStagingBytes: decoded chunks.
   virtual std::uint64_t working_bytes() const { return 0; }
 
-  /// Bytes read from the device or cache so far (for progress and the sidecar).
+  /// Returns the bytes read so far from the device or cache (for progress and the sidecar).
   virtual std::uint64_t bytes_read() const = 0;
 };
 

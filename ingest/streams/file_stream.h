@@ -11,8 +11,8 @@
 
 namespace weir {
 
-/// Reads through the page cache and leaves the pages there, for these files are read more than once. Seeking within
-/// the buffer costs nothing.
+/// Reads through the page cache and leaves the pages there, because these files are read more than once. Seeking
+/// within the buffer costs nothing.
 class FileStreambuf final : public std::streambuf {
  public:
   static constexpr std::size_t kBufferBytes = std::size_t{256} << 10U;
@@ -27,10 +27,10 @@ class FileStreambuf final : public std::streambuf {
  private:
   InputFile& file_;
   std::vector<char> buffer_;
-  std::uint64_t begin_ = 0;  ///< of the buffer's bytes in the file
+  std::uint64_t begin_ = 0;  ///< offset of the buffer's bytes in the file
 };
 
-/// `file` must outlive the stream. Reading past the end throws std::ios_base::failure, a failing device what
+/// `file` must outlive the stream. Reading past the end throws std::ios_base::failure. A failing device throws what
 /// InputFile throws.
 class FileStream final : public std::istream {
  public:

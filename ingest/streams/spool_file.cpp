@@ -9,7 +9,7 @@
 namespace weir {
 namespace {
 
-// Systems keep this directory on a disk and clear it: FHS 3.0, section 5.15.
+// Systems keep this directory on a disk and clear it (FHS 3.0, section 5.15).
 constexpr const char* kDiskDirectory = "/var/tmp";
 
 std::unique_ptr<File> create_spool(FileSystem& files, const std::string& chosen, const std::string& packed_path) {
@@ -18,10 +18,10 @@ std::unique_ptr<File> create_spool(FileSystem& files, const std::string& chosen,
     try {
       return files.create_unnamed(directory);
     } catch (const Error&) {
-      if (!chosen.empty()) throw;  // data often lies where nobody may write; a chosen directory is a wish
+      if (!chosen.empty()) throw;  // data often lies in read-only directories; a chosen one must work
     }
   }
-  // Unpacking into a memory file system would be memory that no ceiling counts.
+  // On a memory file system, unpacking would take memory that no ceiling counts.
   if (!files.exists(kDiskDirectory) || files.is_memory(kDiskDirectory)) {
     throw Error(ErrorKind::io, compose(packed_path, ": must be unpacked, but ", directory, " and ", kDiskDirectory,
                                        " are no writable directories on a disk; name one with ", option("work-dir")));

@@ -1,5 +1,5 @@
-// Where compressed streams, which cannot seek, are unpacked to: a file without a
-// name on a disk, of exactly the bytes expected. A crash leaves nothing behind.
+// A spool file that compressed streams, which cannot seek, are unpacked to: a file without a name on a disk, of
+// exactly the expected bytes. A crash leaves nothing behind.
 #pragma once
 
 #include <atomic>
@@ -15,24 +15,24 @@
 
 namespace weir {
 
-/// Written once from its beginning to its end, then read as any input file. Not thread-safe. Holds no
-/// buffer: every write goes to the file, so hand over many bytes at a time.
+/// A file that is written once from its beginning to its end, then read as any input file. Not thread-safe. Has no
+/// buffer: every write goes to the file, so callers should write many bytes at a time.
 class SpoolFile {
  public:
-  /// For `bytes` > 0 bytes unpacked from the file at `packed_path`, in options.spool_directory or, where
-  /// that is empty, that file's directory; where this is a memory file system, or empty and not writable,
-  /// in /var/tmp. Reserves the bytes. Throws Error(io) where there is no room or no such directory.
+  /// Reserves `bytes` > 0 bytes for what is unpacked from the file at `packed_path`. The spool file lies in
+  /// options.spool_directory or, if that is empty, in the packed file's directory. It lies in /var/tmp if the
+  /// directory is on a memory file system, or if none was given and the packed file's directory is not writable.
+  /// Throws Error(io) if there is no room or no such directory.
   SpoolFile(FileSystem& files, const SourceOptions& options, std::string packed_path, std::uint64_t bytes);
 
-  /// Throws Error(interrupted) where options.cancel is set; write looks, too.
+  /// Throws Error(interrupted) if options.cancel is set. write() checks this, too.
   void check_cancel() const;
 
-  /// Appends. Throws Error(input) where that makes more bytes than expected, Error(io) where the device
-  /// fails.
+  /// Appends `bytes`. Throws Error(input) if the file would exceed the expected bytes, Error(io) if the device fails.
   void write(std::span<const std::byte> bytes);
 
-  /// The file for reading by options.direct_io, its path() that of the packed file, said to be unpacked.
-  /// It outlives this object. Throws Error(input) where bytes are missing.
+  /// Returns the file for reading by options.direct_io; it outlives this object. Its path() is that of the packed
+  /// file, marked as unpacked. Throws Error(input) if bytes are missing.
   std::unique_ptr<InputFile> finish();
 
  private:

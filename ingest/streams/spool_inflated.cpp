@@ -21,7 +21,7 @@ constexpr std::size_t kPackedPiece = std::size_t{1} << 20U;
 
 std::unique_ptr<InputFile> spool_inflated(InputFile& file, const PackedRange& packed, const UnpackedRange& wanted,
                                           const SourceOptions& options) {
-  // Before room is asked for: a few bytes in the header must not reserve a disk.
+  // This check comes before space is reserved: a few bytes of a damaged header must not reserve a whole disk.
   if (wanted.end / kMaxInflation > packed.bytes) {
     throw Error(ErrorKind::input, cat(file.path(), ": ", packed.bytes, " compressed bytes cannot hold the ", wanted.end,
                                       " bytes its header asks for; one of the two is damaged"));

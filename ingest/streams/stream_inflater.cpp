@@ -14,7 +14,7 @@ namespace weir {
 namespace {
 
 constexpr std::byte kGzipMagic{0x1F};
-constexpr int kGzipOrZlib = 32 + MAX_WBITS;  ///< zlib.h, inflateInit2: the wrapper is told by its first bytes
+constexpr int kGzipOrZlib = 32 + MAX_WBITS;  ///< zlib.h, inflateInit2: detects the wrapper from its first bytes
 
 }  // namespace
 
@@ -30,10 +30,11 @@ void StreamInflater::push(std::span<const std::byte> packed, const Sink& sink) {
   while (!packed.empty()) {
     if (ended_ && !restart(packed)) return;
     const auto piece = static_cast<uInt>(std::min<std::size_t>(packed.size(), std::numeric_limits<uInt>::max()));
-    // zlib reads it only; without ZLIB_CONST, which a build in groups cannot define in time, its type says otherwise.
+    // zlib only reads next_in. Its type is not const without ZLIB_CONST, which cannot be defined early enough in a
+    // grouped build.
     stream_->next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(packed.data()));
     stream_->avail_in = piece;
-    // What zlib holds back when the output is full comes with the next call, even without input.
+    // If the output is full, zlib keeps the rest and returns it with the next call, even without new input.
     do {
       stream_->next_out = reinterpret_cast<Bytef*>(output_.data());
       stream_->avail_out = static_cast<uInt>(output_.size());
@@ -54,7 +55,8 @@ void StreamInflater::push(std::span<const std::byte> packed, const Sink& sink) {
   }
 }
 
-// After a member's end: skips zero padding and begins the next member; false where only padding is left.
+// Continues after a member's end: skips zero padding and begins the next member. Returns false if only padding is
+// left.
 bool StreamInflater::restart(std::span<const std::byte>& packed) {
   const auto next = std::find_if(packed.begin(), packed.end(), [](std::byte b) { return b != std::byte{0}; });
   const auto padding = static_cast<std::size_t>(next - packed.begin());

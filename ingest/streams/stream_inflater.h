@@ -1,4 +1,4 @@
-// Deflate streams with a gzip or zlib wrapper, unpacked piece by piece.
+// Unpacks deflate streams with a gzip or zlib wrapper piece by piece.
 #pragma once
 
 #include <cstddef>
@@ -13,23 +13,23 @@ struct z_stream_s;
 
 namespace weir {
 
-/// Unpacks one stream, whose wrapper tells gzip from zlib; gzip may be several members in a row and end in
+/// Unpacks one stream and detects its wrapper, gzip or zlib. A gzip stream may be several members in a row and end in
 /// zero padding. Holds kOutputBytes and zlib's window of 32 KiB. Not thread-safe.
 class StreamInflater {
  public:
   using Sink = std::function<void(std::span<const std::byte>)>;
   static constexpr std::size_t kOutputBytes = std::size_t{256} << 10U;
 
-  /// `where` begins the messages: the path, and the place in it.
+  /// Messages begin with `where`: the path, and the place in the file.
   explicit StreamInflater(std::string where);
   ~StreamInflater();
   StreamInflater(const StreamInflater&) = delete;
   StreamInflater& operator=(const StreamInflater&) = delete;
 
-  /// Unpacks the next bytes of the stream into `sink`, up to kOutputBytes a call; a sink that has enough
-  /// throws. Throws Error(input) with the offset in the stream where it is damaged or goes on after its end.
+  /// Unpacks the next bytes of the stream into `sink`, up to kOutputBytes a call. A sink may throw once it has
+  /// enough. Throws Error(input) with the offset in the stream if it is damaged or continues after its end.
   void push(std::span<const std::byte> packed, const Sink& sink);
-  /// Throws Error(input) where the stream is not at its end.
+  /// Throws Error(input) if the stream is not at its end.
   void finish() const;
 
  private:

@@ -12,10 +12,10 @@ namespace {
 
 constexpr float kCloudGain = 0.66F;
 constexpr float kCloudDeviation = 0.34F;
-constexpr float kCore = 0.45F;           // the envelope grows no further, so that the noise shows in the inside too
-constexpr float kBoundRounding = 1e-3F;  // more than the rounding of a bound
+constexpr float kCore = 0.45F;           // the most that the envelope adds, so that noise also shows inside
+constexpr float kBoundRounding = 1e-3F;  // more than the rounding error of a bound
 
-// From noise to density, in place.
+// Turns a row of noise into density, in place.
 WEIR_SIMD void finish(const std::array<float, kTileDim>& q, float* row, std::int64_t count) {
   for (std::int64_t x = 0; x < count; ++x) {
     const float envelope = 1.0F - q[static_cast<std::size_t>(x)];
@@ -32,8 +32,8 @@ class Cloud final : public SyntheticField {
 
   void fill(const Tile& tile) const override {
     const TileEllipsoids ellipsoids(heap_, tile.box);
-    // No noise reaches zero from far outside: first by the bound of any tile's noise, then by this one's,
-    // then row by row.
+    // Far outside, noise cannot lift the density above zero. Three tests find this: with the bound of any tile's
+    // noise, with the bound of this tile's noise, and row by row.
     if (empty(ellipsoids.least(), noise_.amplitude_sum())) return clear(tile);
     TileNoise noise(noise_, tile.box);
     if (empty(ellipsoids.least(), noise.upper_bound())) return clear(tile);

@@ -8,7 +8,7 @@
 
 namespace weir {
 
-/// density = s / (s + 1/2) where s = min(e, 0.45) + n > 0, else exactly +0; e is the largest of
+/// density = s / (s + 1/2) with s = min(e, 0.45) + n > 0, otherwise exactly +0; e is the largest of
 /// 1 - q over the ellipsoids (q = 1 on their surface), n noise of standard deviation 0.34. Values in
 /// [0, 1), 60 to 90 % of them zero in volumes of 64^3 and more; tiles that cannot hold density cost
 /// next to nothing.

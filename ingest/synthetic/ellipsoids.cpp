@@ -9,14 +9,14 @@ namespace weir {
 namespace {
 
 constexpr float kFar = 1e30F;
-constexpr float kSlack = 1e-3F;  // bounds are loosened by more than they are rounded
+constexpr float kSlack = 1e-3F;  // bounds are loosened by more than their rounding error
 
 struct Range {
   float min = 0;
   float max = 0;
 };
 
-// Of (distance)^2 over positions lo ... hi - 1: zero is the least where the centre is between them.
+// Returns the range of (distance)^2 over positions lo ... hi - 1. Its minimum is zero if the centre is between them.
 Range term_range(const Ellipsoid& e, std::size_t axis, std::int64_t lo, std::int64_t hi) {
   const float a = e.distance(axis, lo);
   const float b = e.distance(axis, hi - 1);
@@ -40,7 +40,7 @@ EllipsoidHeap make_heap(const SyntheticOptions& options) {
     const auto random = [&](std::int64_t what) {
       return unit_float(hash_position(key, what, static_cast<std::int64_t>(i), 0));
     };
-    // In units of the extent.
+    // Centre and radii are in units of the extent.
     std::array<float, 3> centre{0.5F, 0.42F, 0.5F};
     std::array<float, 3> radii{0.38F, 0.24F, 0.36F};
     if (i > 0) {

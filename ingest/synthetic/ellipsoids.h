@@ -1,4 +1,4 @@
-// The envelope of a cloud: a heap of ellipsoids, and the nearest of them.
+// The envelope of a cloud: a heap of ellipsoids, and the distance to the nearest of them.
 #pragma once
 
 #include <array>
@@ -25,20 +25,21 @@ struct Ellipsoid {
 inline constexpr std::size_t kEllipsoids = 14;
 using EllipsoidHeap = std::array<Ellipsoid, kEllipsoids>;
 
-/// A body in the middle and lobes around it, in proportion to the extent; y is up. Between 10 and 40 %
-/// of the volume lie inside.
+/// Returns a body in the middle with lobes around it, in proportion to the extent; y is up. Between 10 and 40 % of
+/// the volume lie inside.
 EllipsoidHeap make_heap(const SyntheticOptions& options);
 
-/// The least q over a heap for the rows of one tile; ellipsoids that are nowhere in it the nearest are left out.
+/// The least q over a heap, for the rows of one tile. Ellipsoids that are nowhere the nearest in the tile are left
+/// out.
 class TileEllipsoids {
  public:
   TileEllipsoids(const EllipsoidHeap& heap, const Box& box);
 
-  /// q is nowhere in the tile below this.
+  /// A lower bound of q in the tile.
   float least() const { return least_; }
-  /// Nor in the row below this.
+  /// Returns a lower bound of q in the row.
   float least_in_row(std::int64_t y, std::int64_t z) const;
-  /// q of the row's voxels; those behind the end of the box are undefined.
+  /// Sets `q` for the row's voxels. Values beyond the end of the box are undefined.
   void row(std::int64_t y, std::int64_t z, std::array<float, kTileDim>& q) const;
 
  private:

@@ -13,12 +13,12 @@ std::unique_ptr<SyntheticField> make_by_voxel(Value value) {
   return std::make_unique<VoxelField<Value>>(value);
 }
 
-// A position in [0, count) from the upper bits of a hash.
+// Returns a position in [0, count) from the upper bits of a hash.
 std::int64_t pick(std::uint64_t bits, std::int64_t count) {
   return static_cast<std::int64_t>((bits >> 1U) % static_cast<std::uint64_t>(count));
 }
 
-/// The gradient, overwritten where the linear index says so.
+/// The gradient, with non-finite values at the linear indices that exceptions.h names.
 class SomeNonfinite final : public SyntheticField {
  public:
   explicit SomeNonfinite(const SyntheticOptions& options)
@@ -45,7 +45,7 @@ class SomeNonfinite final : public SyntheticField {
   std::unique_ptr<SyntheticField> gradient_;
 };
 
-/// Ones, then the odd voxel of every leaf that touches the tile.
+/// Fills a tile with ones, then sets the odd voxel of every leaf that touches it.
 class NearlyConstant final : public SyntheticField {
  public:
   explicit NearlyConstant(const SyntheticOptions& options)

@@ -1,6 +1,5 @@
-// A synthetic volume as a pure function of kind, seed, extent and voxel index:
-// the same bits whatever box is asked for, by how many threads, in which order.
-// Only + - * / and sqrt on floats are used, which IEEE 754 defines exactly, so
+// A synthetic volume as a pure function of kind, seed, extent and voxel index: the bits do not depend on the box, the
+// number of threads or the order. Only + - * / and sqrt on floats are used. IEEE 754 defines them exactly, so that
 // digests hold for every compiler and vector width (-ffp-contract=off).
 #pragma once
 
@@ -12,13 +11,13 @@ namespace weir {
 
 struct SyntheticOptions {
   Index3 extent;           ///< voxels, each >= 1
-  std::uint64_t seed = 1;  ///< of the kinds with randomness; the others ignore it
+  std::uint64_t seed = 1;  ///< for the kinds with randomness; the others ignore it
 };
 
-/// Edge of the pieces a box is evaluated in. 32^3 floats stay in the second-level cache.
+/// Edge of the pieces in which a box is evaluated. 32^3 floats fit in the second-level cache.
 inline constexpr std::int64_t kTileDim = 32;
 
-/// Where the voxels of `box` go: rows of a larger array, x fastest.
+/// The destination of the voxels of `box`: rows of a larger array, x fastest.
 struct Tile {
   Box box;  ///< inside one cube of kTileDim voxels whose corner lies on multiples of kTileDim
   float* first = nullptr;

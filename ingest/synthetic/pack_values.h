@@ -1,4 +1,4 @@
-// Synthetic values as they go into a raw file: any scalar type, any byte order.
+// Packs synthetic values for a raw file, in any scalar type and byte order.
 #pragma once
 
 #include <cstddef>
@@ -11,15 +11,14 @@ namespace weir {
 
 class ValuePacker {
  public:
-  /// How `kind`'s values become `type`:
-  /// floats: as they are. Integers, IntegerScaling::stretch: value * scale + shift rounded to nearest
-  /// (halves away from zero) and clamped, where for signed types shift = 0 and the nominal range's larger end
-  /// becomes the type's largest value, and for unsigned types the range from min(min, 0) to max becomes
-  /// the type's range. IntegerScaling::verbatim: rounded and clamped.
-  /// Throws Error(usage) where an integer type cannot hold what the kind is about.
+  /// Packs `kind`'s values as `type`. Floats are kept as they are. Integers with IntegerScaling::stretch are value *
+  /// scale + shift, rounded to nearest (halves away from zero) and clamped. For signed types, shift is 0 and the
+  /// larger end of the nominal range becomes the type's largest value. For unsigned types, the range from min(min, 0)
+  /// to max becomes the type's range. Integers with IntegerScaling::verbatim are rounded and clamped. Throws
+  /// Error(usage) if `type` is not supported or cannot hold the values that define the kind.
   ValuePacker(const SyntheticKind& kind, ScalarType type, bool big_endian);
 
-  /// True where the floats' own bytes are what belongs into the file.
+  /// Returns whether the floats' own bytes are the file's bytes.
   bool is_identity() const { return identity_; }
   /// `bytes` holds exactly values.size() values of the type. Runs in parallel.
   void pack(std::span<const float> values, std::span<std::byte> bytes) const;

@@ -30,7 +30,7 @@ std::unique_ptr<SyntheticField> make_signed_zeros(const SyntheticOptions& option
 }
 
 std::unique_ptr<SyntheticField> make_denormals(const SyntheticOptions& options) {
-  // By bits: arithmetic on denormals is twenty times slower on some processors.
+  // Built from bits, because arithmetic on denormals is twenty times slower on some processors.
   return make_random(
       options, [](std::uint64_t bits) { return std::bit_cast<float>(static_cast<std::uint32_t>(bits >> 52U) + 1); });
 }

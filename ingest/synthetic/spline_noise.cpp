@@ -12,15 +12,15 @@ namespace weir {
 namespace {
 
 constexpr std::int64_t kTaps = 4;
-constexpr float kWeightRounding = 1e-5F;  // the weights of a voxel sum to one only up to rounding
+constexpr float kWeightRounding = 1e-5F;  // a voxel's weights sum to one only up to rounding
 
-// Variance of one octave of amplitude 1: nodes uniform in [-1, 1) have 1/3, and the B-spline keeps
-// the integral of its square, 151/315, along each axis.
+// Variance of one octave of amplitude 1. Nodes uniform in [-1, 1) have the variance 1/3. The B-spline multiplies it
+// by the integral of its square, 151/315, along each axis.
 constexpr double kOctaveVariance = 1.0 / 3.0 * (151.0 / 315.0) * (151.0 / 315.0) * (151.0 / 315.0);
 
 using Weights = std::array<float, kTaps>;
 
-// The uniform cubic B-spline at phase (i + 1/2) / period.
+// Returns the weights of the uniform cubic B-spline at phase (i + 1/2) / period.
 Weights spline_weights(std::int64_t i, std::int64_t period) {
   const float t = (static_cast<float>(i) + 0.5F) / static_cast<float>(period);
   const float s = 1.0F - t;
@@ -28,7 +28,7 @@ Weights spline_weights(std::int64_t i, std::int64_t period) {
           (3.0F * s * s * s - 6.0F * s * s + 4.0F) / 6.0F, t * t * t / 6.0F};
 }
 
-// Weights of every phase of every period, one array per tap so that neighbours are next to each other.
+// Weights of every phase of every period. Each tap has its own array, so the weights of neighbours are adjacent.
 struct WeightTable {
   WeightTable() {
     for (unsigned shift = SplineNoise::kFinestShift; shift <= SplineNoise::kCoarsestShift; ++shift) {
@@ -51,15 +51,15 @@ const WeightTable& weight_table() {
 
 using TapRows = std::array<const float*, kTaps>;
 
-// Weights from `position` on; kTileDim of them where that is a multiple of kTileDim.
+// Returns the weights from `position` on: kTileDim of them if `position` is a multiple of kTileDim.
 TapRows tap_rows(unsigned shift, std::int64_t position) {
   const std::int64_t phase = position & ((std::int64_t{1} << shift) - 1);
   const auto& taps = weight_table().taps[shift];
   return {taps[0].data() + phase, taps[1].data() + phase, taps[2].data() + phase, taps[3].data() + phase};
 }
 
-// out[i] = interpolation of four arrays `stride` apart; the order of the additions is part of the
-// definition of the noise.
+// Interpolates four arrays, `stride` apart, into `out`. The order of the additions is part of the definition of the
+// noise.
 inline void blend(const Weights& w, const float* nodes, std::int64_t stride, float* __restrict out,
                   std::int64_t count) {
   const float* nodes1 = nodes + stride;
@@ -74,8 +74,8 @@ WEIR_SIMD void blend_plane(const Weights& w, const float* nodes, std::int64_t st
   blend(w, nodes, stride, out, count);
 }
 
-// Four floats at once (gcc and clang), each with the arithmetic of a single one: left to itself the
-// compiler shuffles short cells into long vectors, which takes twice as long.
+// Four floats at once (gcc and clang), each with the arithmetic of a single float. Without it, the compiler shuffles
+// short cells into long vectors, which takes twice as long.
 using Float4 = float __attribute__((vector_size(16)));
 
 inline Float4 load(const float* values) {
@@ -84,8 +84,8 @@ inline Float4 load(const float* values) {
   return result;
 }
 
-// Adds one octave to the kTileDim voxels of a row: y for the nodes of the row, then cells of kPeriod
-// voxels (longer periods: kTileDim) in x. `w` holds the weights in y, `nodes` the row's first node.
+// Adds one octave to the kTileDim voxels of a row. Interpolates the row's nodes in y, then cells of kPeriod voxels
+// (kTileDim for longer periods) in x. `w` holds the weights in y; `nodes` points at the row's first node.
 template <std::int64_t kPeriod>
 inline void add_octave(const Weights& w, const float* nodes, std::int64_t stride, const TapRows& x_weights,
                        float* __restrict values) {
@@ -135,7 +135,7 @@ std::int64_t round_down(std::int64_t v) { return floor_div(v, kTileDim) * kTileD
 
 SplineNoise::SplineNoise(std::uint64_t seed, const Index3& extent, float gain, float deviation) {
   const auto longest = static_cast<std::uint64_t>(std::max({extent.x, extent.y, extent.z}));
-  // The power of two in (longest / 6, longest / 3].
+  // Periods start at the power of two in (longest / 6, longest / 3].
   const auto coarsest = static_cast<unsigned>(std::bit_width(longest / 3));
   float amplitude = 1.0F;
   double variance = 0.0;

@@ -1,6 +1,5 @@
-// Band-limited noise: octaves of hashed lattice values under a cubic B-spline.
-// The spline is C2, its weights are positive and sum to one, so that the values
-// of the lattice nodes around a box bound the noise inside it.
+// Band-limited noise: octaves of hashed lattice values, interpolated with a cubic B-spline. The spline is C2, and its
+// weights are positive and sum to one. So the lattice values around a box bound the noise inside the box.
 #pragma once
 
 #include <array>
@@ -16,9 +15,9 @@ namespace weir {
 struct NoiseOctave {
   unsigned shift = 0;  ///< log2 of the period in voxels, kFinestShift ... kCoarsestShift
   float amplitude = 0;
-  std::uint64_t key = 0;  ///< of the node hash
-  /// Voxels, multiples of kTileDim: a tile lies in one cell of a long period and in whole cells of a
-  /// short one, which fixes every trip count, and long periods still do not share their nodes.
+  std::uint64_t key = 0;  ///< key of the node hash
+  /// Voxels, multiples of kTileDim. A tile then lies in one cell of a long period and in whole cells of a short one,
+  /// which fixes every trip count. Long periods still do not share their nodes.
   Index3 offset;
 };
 
@@ -27,13 +26,13 @@ class SplineNoise {
   static constexpr unsigned kFinestShift = 2;
   static constexpr unsigned kCoarsestShift = 10;
 
-  /// Octaves with periods from the power of two next to a quarter of the extent's longest axis, at
-  /// most 2^kCoarsestShift, down to 2^kFinestShift voxels; each has `gain` times the amplitude of
-  /// the one before, and together they have the standard deviation `deviation`.
+  /// Makes octaves with periods from about a quarter of the extent's longest axis (a power of two, at most
+  /// 2^kCoarsestShift) down to 2^kFinestShift voxels. Each octave has `gain` times the amplitude of the one before.
+  /// Together they have the standard deviation `deviation`.
   SplineNoise(std::uint64_t seed, const Index3& extent, float gain, float deviation);
 
   std::span<const NoiseOctave> octaves() const { return octaves_; }
-  /// No value exceeds it anywhere.
+  /// An upper bound of all noise values.
   float amplitude_sum() const { return amplitude_sum_; }
 
  private:
@@ -48,19 +47,19 @@ struct NoiseLattice {
   Index3 count;                             ///< nodes along each axis; x padded to a multiple of four
   std::vector<float> nodes;                 ///< x fastest
   std::vector<float> plane;                 ///< nodes interpolated in z
-  std::array<const float*, 4> x_weights{};  ///< kTileDim of each tap, periodic
+  std::array<const float*, 4> x_weights{};  ///< kTileDim weights of each tap, periodic
 };
 
-/// The noise in one tile. Work is shared between voxels by interpolating z once per plane, y once per
-/// row and x once per voxel.
+/// The noise in one tile. Interpolates z once per plane, y once per row and x once per voxel, so that voxels share
+/// work.
 class TileNoise {
  public:
-  /// `box` is a Tile's: within one aligned run of kTileDim voxels in x.
+  /// `box` must be a Tile's box: in x, within one aligned run of kTileDim voxels.
   TileNoise(const SplineNoise& noise, const Box& box);
 
-  /// No value in the box exceeds it.
+  /// An upper bound of the values in the box.
   float upper_bound() const { return upper_bound_; }
-  /// Makes `z` the plane of add_row. Returns a bound that no value in it exceeds.
+  /// Makes `z` the plane of add_row(). Returns an upper bound of the values in the plane.
   float set_plane(std::int64_t z);
   /// Adds the noise of row `y` to `values`: box.extent().x floats.
   void add_row(std::int64_t y, float* values) const;

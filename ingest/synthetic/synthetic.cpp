@@ -71,7 +71,7 @@ class SyntheticSource final : public VolumeSource {
 
   ConversionLoss read(const Box& box, std::span<float> values) override {
     const Index3 extent = box.extent();
-    // Tiles lie on global multiples of their size, where the lattices of the noise need the fewest nodes.
+    // Tiles lie on global multiples of their size, so that the noise lattices need the fewest nodes.
     const NodeLattice tiles = make_lattice(box, kTileDim);
     tbb::parallel_for(std::int64_t{0}, tiles.size(), [&](std::int64_t i) {
       const Box part = tiles.voxels(tiles.position(i));

@@ -15,7 +15,7 @@ SplineNoise inertial_range(const SyntheticOptions& options) {
   return SplineNoise(options.seed, options.extent, kTurbulenceGain, kTurbulenceDeviation);
 }
 
-/// finish(x, y, z, turbulence) is the voxel's value.
+/// Turbulence with a last step: finish(x, y, z, turbulence) is the voxel's value.
 template <typename Finish>
 class Turbulence final : public SyntheticField {
  public:
@@ -48,7 +48,7 @@ std::unique_ptr<SyntheticField> make_turbulent(const SyntheticOptions& options, 
   return std::make_unique<Turbulence<Finish>>(options, finish);
 }
 
-// To the nearest integer, ties away from zero, for |v| far below 2^24; unlike std::round it vectorises.
+// Rounds to the nearest integer, ties away from zero, for |v| far below 2^24. Unlike std::round it vectorises.
 float nearest_integer(float v) { return static_cast<float>(static_cast<int>(v + (v < 0.0F ? -0.5F : 0.5F))); }
 
 }  // namespace

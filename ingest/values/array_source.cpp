@@ -22,13 +22,13 @@ namespace {
 
 constexpr std::string_view kPath = "memory";
 
-/// Where x is not the array's fastest axis: values gathered at a time, kTileRows rows of kTileVoxels, so that a cache
-/// line is used up while it is there. 32 KiB of the widest type.
+/// Tile size for arrays with another fastest axis than x: kTileRows rows of kTileVoxels values are gathered at a
+/// time, so that a cache line is used up while it is in the cache. This is 32 KiB of the widest type.
 constexpr std::int64_t kTileVoxels = 256;
 constexpr std::int64_t kTileRows = 16;
 constexpr std::size_t kWidest = 8;
 
-/// Copies `count` values of `Bytes` bytes each, `from` and `to` steps of bytes apart.
+/// Copies `count` values of `Bytes` bytes each. `from` and `to` are the steps in bytes.
 template <std::size_t Bytes>
 void copy_values(const std::byte* source, std::int64_t from, std::byte* target, std::int64_t to, std::int64_t count) {
   for (std::int64_t i = 0; i < count; ++i) std::memcpy(target + i * to, source + i * from, Bytes);
@@ -79,7 +79,7 @@ class ArraySource final : public VolumeSource {
                          kNativeIsBig, info_.mapping, values);
   }
 
-  // Rows lie in the array as they are wanted; rows without a gap between them are one.
+  // Reads rows that already lie in the array as they are wanted. Rows without a gap between them are read as one.
   ConversionLoss read_runs(const Box& box, std::span<float> values) const {
     const Index3 e = box.extent();
     const bool rows_join = stride_[1] == e.x * bytes_;
@@ -93,7 +93,7 @@ class ArraySource final : public VolumeSource {
     return loss;
   }
 
-  // Gathers tiles of rows along x; the rows of a tile are neighbours along the faster one of y and z.
+  // Gathers tiles of rows along x. The rows of a tile are neighbours along the faster of y and z.
   ConversionLoss read_tiles(const Box& box, std::span<float> values) const {
     const bool y_faster = std::abs(stride_[1]) <= std::abs(stride_[2]);
     const Index3 step = y_faster ? Index3{kTileVoxels, kTileRows, 1} : Index3{kTileVoxels, 1, kTileRows};
@@ -138,7 +138,7 @@ class ArraySource final : public VolumeSource {
 
   const std::byte* first_;
   std::array<std::int64_t, 3> stride_;  // bytes
-  std::int64_t bytes_;                  // of a value
+  std::int64_t bytes_;                  // bytes of a value
   SourceInfo info_;
   std::atomic<std::uint64_t> bytes_read_{0};
 };
@@ -164,7 +164,7 @@ void check_place(const DenseArray& array) {
 }  // namespace
 
 std::array<std::int64_t, 3> packed_stride(const Index3& extent, ScalarType type) {
-  // Unsigned: an extent that makes them overflow is refused later, where it is looked at.
+  // Computes in unsigned numbers, which may overflow. array_info refuses such an extent later.
   const std::uint64_t bytes = scalar_bytes(type);
   const std::uint64_t row = bytes * static_cast<std::uint64_t>(extent.x);
   const std::uint64_t plane = row * static_cast<std::uint64_t>(extent.y);
@@ -189,8 +189,8 @@ SourceInfo array_info(const DenseArray& array) {
   SourceInfo info;
   info.path = kPath;
   info.format = "memory";
-  // Memory keeps no such time; this one is no other array's, so that no other one's interrupted conversion is
-  // continued.
+  // Memory has no modification time. The time of this call is unique to the array, so that no interrupted conversion
+  // of another array is continued with it.
   info.mtime_ns = std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();
   info.file_bytes = checked_volume_bytes(array.extent, scalar_bytes(array.type), info.path);
   check_place(array);

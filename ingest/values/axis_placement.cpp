@@ -11,10 +11,11 @@
 namespace weir {
 namespace {
 
-/// Of a step's largest part: smaller ones are rounding of the float32 matrices and quaternions in headers.
+/// Parts of a step below this fraction of its largest part are rounding of the float32 matrices and quaternions in
+/// headers.
 constexpr double kAxisRounding = 1e-6;
 
-/// The world axis that a step runs along; nullopt for an oblique one and none at all.
+/// Returns the world axis that a step runs along. Returns nullopt for an oblique step and for a zero step.
 std::optional<std::size_t> world_axis(const Vector3& step) {
   const double largest = std::max({std::fabs(step[0]), std::fabs(step[1]), std::fabs(step[2])});
   std::optional<std::size_t> axis;
@@ -49,7 +50,7 @@ AxisPlacement place_axes(std::span<const Vector3> steps, const Vector3& zero, co
   const std::array<std::int64_t, 3> indices{first.x, first.y, first.z};
   std::string axes;
   for (std::size_t a = 0; a < 3; ++a) {
-    // An axis without a step takes a world axis that is left, its own if it can.
+    // An axis without a step takes a free world axis, its own if possible.
     for (std::size_t c = 0; !along[a]; ++c) {
       const std::size_t candidate = (a + c) % 3;
       if (taken[candidate]) continue;
@@ -58,7 +59,8 @@ AxisPlacement place_axes(std::span<const Vector3> steps, const Vector3& zero, co
     }
     placement.origin[a] = zero[*along[a]];
     const bool against = a < steps.size() && steps[a][*along[a]] < 0;
-    // zero + index * step = origin + index * spacing at the first voxel, and spacing = -step.
+    // An axis that runs against its world axis has spacing = -step. At the first voxel, zero + index * step = origin
+    // + index * spacing.
     if (against && indices[a] != 0) placement.origin[a] -= 2 * static_cast<double>(indices[a]) * placement.spacing[a];
     axes += (axes.empty() ? "" : ", ");
     axes += against ? '-' : '+';

@@ -21,7 +21,7 @@ T load(const std::byte* bytes, std::size_t i) {
   return load_scalar<T>(bytes + i * sizeof(T), Swap != kNativeIsBig);
 }
 
-/// IEEE 754 binary16 to binary32, exact; NaN payloads move to the upper bits.
+/// Converts IEEE 754 binary16 to binary32. The result is exact; NaN payloads move to the upper bits.
 float half_to_float(std::uint16_t half) {
   const auto sign = static_cast<std::uint32_t>(half & 0x8000U) << 16U;
   const std::uint32_t exponent = (half >> 10U) & 0x1FU;
@@ -34,10 +34,10 @@ float half_to_float(std::uint16_t half) {
   return std::bit_cast<float>(sign | (widened << 23U) | (fraction << 13U));
 }
 
-/// The upper half of a binary32.
+/// Converts bfloat16, which is the upper half of a binary32.
 template <bool Swap>
 ConversionLoss convert_bfloat16(const std::byte* bytes, std::span<float> values) {
-  // Through integers, as in copy_float32.
+  // Copies integers, for the same reason as copy_float32: loading a signalling NaN as a float could make it quiet.
   auto* out = reinterpret_cast<std::byte*>(values.data());
   for (std::size_t i = 0; i < values.size(); ++i) {
     const std::uint32_t word = std::uint32_t{load<std::uint16_t, Swap>(bytes, i)} << 16U;
@@ -60,7 +60,7 @@ ConversionLoss convert_exact(const std::byte* bytes, std::span<float> values) {
 
 template <bool Swap>
 ConversionLoss copy_float32(const std::byte* bytes, std::span<float> values) {
-  // Through integers: loading a signalling NaN as a float could quieten it.
+  // Copies integers, because loading a signalling NaN as a float could make it quiet.
   auto* out = reinterpret_cast<std::byte*>(values.data());
   if constexpr (Swap) {
     for (std::size_t i = 0; i < values.size(); ++i) {
@@ -73,14 +73,14 @@ ConversionLoss copy_float32(const std::byte* bytes, std::span<float> values) {
   return {};
 }
 
-/// Values converted at a time: the temporaries stay in the first-level cache.
+/// Number of values converted at a time: the temporaries stay in the first-level cache.
 constexpr std::size_t kChunk = 512;
-/// Maxima and counts are kept in lanes; neither depends on the order, so the loops may be vectorised.
+/// Number of lanes for maxima and counts. Neither depends on the order, so the loops may be vectorised.
 constexpr std::size_t kLanes = 16;
 
-/// The difference between float32 and original is exact in double: it spans at most the 53 bits of a
-/// float64 or the 32 bits of an integer. It is NaN where both are the same infinity or NaN, and
-/// infinite where a finite value overflowed.
+/// Rounds values and computes their errors. The difference between float32 and original is exact in double, because
+/// it spans at most the 53 bits of a float64 or the 32 bits of an integer. It is NaN if both are the same infinity or
+/// NaN, and infinite if a finite value overflowed.
 template <typename T>
 inline __attribute__((always_inline)) void round_values(const T* original, float* values, double* error) {
   for (std::size_t i = 0; i < kChunk; ++i) values[i] = static_cast<float>(original[i]);
@@ -98,7 +98,7 @@ WEIR_SIMD void round_chunk(const std::uint32_t* original, float* values, double*
   round_values<std::uint32_t>(original, values, error);
 }
 
-/// 64-bit integers and their difference to a float32 need 64 bits of significand, which long double has.
+/// Rounds 64-bit integers. Their difference to a float32 needs 64 bits of significand, which long double has.
 template <typename T>
 void round_wide(const T* original, float* values, double* error) {
   static_assert(std::numeric_limits<long double>::digits >= 64);

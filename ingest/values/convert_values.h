@@ -1,4 +1,4 @@
-// Values as they lie in a file to float32.
+// Converts values as they lie in a file to float32.
 #pragma once
 
 #include <cstddef>
@@ -9,13 +9,13 @@
 
 namespace weir {
 
-/// True where the bytes of a file are the float32 values already, on this machine.
+/// Returns whether the bytes of a file already are the float32 values on this machine.
 bool is_native_float32(ScalarType type, bool big_endian);
 
-/// Converts `values.size()` values of `type` from `bytes`, which holds exactly that many and needs no
-/// alignment, and says what was lost: 8- and 16-bit integers, float16, bfloat16 and float32 (NaN
-/// payloads included) lose nothing; wider integers above 2^24 and float64 are rounded to nearest even; a finite
-/// float64 beyond the range of float32 becomes infinite. Non-finite values pass uncounted.
+/// Converts `values.size()` values of `type` from `bytes`, which holds exactly this many and needs no alignment, and
+/// returns what was lost. 8- and 16-bit integers, float16, bfloat16 and float32 (NaN payloads included) lose nothing.
+/// Wider integers above 2^24 and float64 are rounded to nearest even. A finite float64 beyond the range of float32
+/// becomes infinite. Non-finite values are not counted.
 ConversionLoss convert_values(std::span<const std::byte> bytes, ScalarType type, bool big_endian,
                               std::span<float> values);
 

@@ -13,11 +13,11 @@
 namespace weir {
 namespace {
 
-/// Voxels decoded at a time: the temporaries stay in the first-level cache.
+/// Number of voxels decoded at a time: the temporaries stay in the first-level cache.
 constexpr std::size_t kVoxelsAtOnce = 512;
 constexpr std::size_t kLargestScalar = sizeof(double);
 
-/// Every `stride` bytes one number of `Width` bytes, put side by side.
+/// Copies one number of `Width` bytes from every `stride` bytes, and puts the numbers side by side.
 template <std::size_t Width>
 void gather(const std::byte* from, std::size_t stride, std::size_t count, std::byte* to) {
   for (std::size_t i = 0; i < count; ++i) std::memcpy(to + i * Width, from + i * stride, Width);
@@ -38,7 +38,7 @@ void widen(std::span<const std::byte> bytes, bool big_endian, const ValueMapping
   }
 }
 
-/// Numbers after scale and offset, in double.
+/// Decodes numbers to double, after scale and offset.
 void scaled_numbers(std::span<const std::byte> bytes, ScalarType type, bool big_endian, const ValueMapping& mapping,
                     std::span<double> numbers) {
   switch (type) {
@@ -69,7 +69,7 @@ class Magnitudes {
     marking_.keeps_missing = false;
   }
 
-  /// The next component of values.size() voxels.
+  /// Adds the next component of `voxels` voxels.
   void add(std::span<const std::byte> bytes, std::size_t voxels) {
     const auto numbers = std::span(numbers_).first(voxels);
     scaled_numbers(bytes, type_, big_endian_, mapping_, numbers);
@@ -79,11 +79,11 @@ class Magnitudes {
     decode_values(bytes, type_, big_endian_, marking_, marked);
     for (std::size_t i = 0; i < voxels; ++i) missing_[i] = missing_[i] || is_missing(marked[i]);
   }
-  /// Of what was added; begins anew.
+  /// Computes the lengths from the components that were added, and begins anew.
   ConversionLoss take(std::span<float> values) {
     const auto without =
         std::count(missing_.begin(), missing_.begin() + static_cast<std::ptrdiff_t>(values.size()), true);
-    if (mapping_.keeps_missing) missing_ = {};  // data
+    if (mapping_.keeps_missing) missing_ = {};  // missing values count as data
     ConversionLoss loss = take_lengths(std::span(sums_).first(values.size()),
                                        std::span<const bool>(missing_).first(values.size()), values);
     if (mapping_.keeps_missing) loss.unmarked = static_cast<std::uint64_t>(without);
@@ -96,7 +96,7 @@ class Magnitudes {
   ScalarType type_;
   bool big_endian_;
   const ValueMapping& mapping_;
-  ValueMapping marking_;  ///< the same, with missing values marked in any case
+  ValueMapping marking_;  ///< mapping_ with missing values marked in any case
   std::array<double, kVoxelsAtOnce> sums_{};
   std::array<bool, kVoxelsAtOnce> missing_{};
   std::array<double, kVoxelsAtOnce> numbers_{};

@@ -1,4 +1,4 @@
-// Stored numbers as doubles: what places and times need, where a volume's values are float32.
+// Decodes stored numbers as doubles. Places and times need doubles; a volume's values are float32.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,8 @@
 
 namespace weir {
 
-/// All of `bytes`, whole values of `type`, after `mapping`; NaN where it says that they are missing. What a double
-/// cannot hold, integers beyond 53 bits for instance, is rounded, once they are scaled.
+/// Returns all values of `bytes`, whole values of `type`, after `mapping`; missing values become NaN. Numbers that a
+/// double cannot hold, for instance integers beyond 53 bits, are rounded after they are scaled.
 std::vector<double> decode_doubles(std::span<const std::byte> bytes, ScalarType type, bool big_endian,
                                    const ValueMapping& mapping);
 

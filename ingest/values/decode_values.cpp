@@ -17,7 +17,7 @@
 namespace weir {
 namespace {
 
-/// Values decoded at a time: the temporaries stay in the first-level cache.
+/// Number of values decoded at a time: the temporaries stay in the first-level cache.
 constexpr std::size_t kAtOnce = 512;
 
 using MissingMask = std::array<bool, kAtOnce>;
@@ -37,7 +37,7 @@ class Decoder {
     MissingMask missing{};
     for (const T m : missing_) mark(stored, m, missing);
     if (mapping_.keeps_missing) return decode_as_data(stored, missing, values);
-    // A missing value, 1e36 in a double say, must not count as rounded.
+    // A missing value, for instance 1e36 in a double, must not count as rounded.
     for (std::size_t i = 0; i < stored.size(); ++i) stored[i] = missing[i] ? T{} : stored[i];
     const ConversionLoss loss = convert(stored, missing, values);
     const float mark = missing_value();
@@ -83,7 +83,7 @@ class Decoder {
     return convert_values(std::as_bytes(used), ScalarType::float64, kNativeIsBig, values);
   }
 
-  // 64-bit integers: what an offset takes from large ones may leave small ones, of which every bit counts.
+  // Scales 64-bit integers. An offset may turn large integers into small differences, for which every bit counts.
   ConversionLoss scale_wide(std::span<const T> stored, const MissingMask& missing, std::span<float> values) const {
     ConversionLoss loss;
     for (std::size_t i = 0; i < stored.size(); ++i) {
@@ -101,7 +101,7 @@ class Decoder {
   ScalarType type_;
   const ValueMapping& mapping_;
   std::vector<T> missing_;
-  bool guards_;  // whether a stored NaN could be taken for missing_value()
+  bool guards_;  // voxels may be missing, so no stored NaN may have the bits of missing_value()
 };
 
 template <typename T>
@@ -128,7 +128,8 @@ ConversionLoss decode_as(std::span<const std::byte> bytes, ScalarType type, bool
   return loss;
 }
 
-// float16 and bfloat16 have no arithmetic of their own everywhere: every value is exact in float32.
+// Decodes float16 and bfloat16 through float32, which holds each of their values exactly, because not every machine
+// has arithmetic for them.
 ConversionLoss decode_half(std::span<const std::byte> bytes, ScalarType type, bool big_endian,
                            const ValueMapping& mapping, std::span<float> values) {
   const ValueMapping stored = with_stored_missing(mapping, type);
@@ -144,7 +145,7 @@ ConversionLoss decode_half(std::span<const std::byte> bytes, ScalarType type, bo
   return loss;
 }
 
-// Gives stored NaN of the bits of missing_value() other bits.
+// Gives stored NaNs with the bits of missing_value() other bits.
 void tell_from_missing(std::span<float> values) {
   for (float& value : values) {
     const auto bits = std::bit_cast<std::uint32_t>(value);
@@ -157,7 +158,7 @@ void tell_from_missing(std::span<float> values) {
 ConversionLoss decode_values(std::span<const std::byte> bytes, ScalarType type, bool big_endian,
                              const ValueMapping& mapping, std::span<float> values) {
   if (mapping.identity()) return convert_values(bytes, type, big_endian, values);
-  if (!mapping.scales() && mapping.missing.empty()) {  // the usual level of a plotfile
+  if (!mapping.scales() && mapping.missing.empty()) {  // the usual case of a plotfile's level
     const ConversionLoss loss = convert_values(bytes, type, big_endian, values);
     tell_from_missing(values);
     return loss;

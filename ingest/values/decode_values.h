@@ -1,5 +1,4 @@
-// Stored values to the volume's: convert_values, and then scale, offset and
-// missing data.
+// Decodes stored values to the volume's values: convert_values, and then scale, offset and missing data.
 #pragma once
 
 #include <cstddef>
@@ -11,9 +10,10 @@
 
 namespace weir {
 
-/// As convert_values, after `mapping`: missing values, and they alone where there may be any, become missing_value()
-/// and count as no loss, unless the mapping keeps them as data, which counts them as unmarked; scaled ones are computed
-/// by ValueMapping::scaled, and their loss is counted against what that gives.
+/// Converts as convert_values does, and applies `mapping`. Missing values become missing_value() and count as no
+/// loss. If the mapping keeps them as data, they are counted as unmarked instead. In volumes that may have missing
+/// values, no other value gets the bits of missing_value(). Scaled values are computed by ValueMapping::scaled, and
+/// their loss is counted against its result.
 ConversionLoss decode_values(std::span<const std::byte> bytes, ScalarType type, bool big_endian,
                              const ValueMapping& mapping, std::span<float> values);
 

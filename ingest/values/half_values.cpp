@@ -20,7 +20,7 @@ std::uint16_t half_bits(double value) {
   if (std::isinf(value)) return sign | 0x7C00;
   const double size = std::fabs(value);
   const int exponent = size == 0 ? kLeastExponent : std::max(std::ilogb(size), kLeastExponent);
-  // The leading bit of a normal number adds the one that is missing in the exponent.
+  // The leading bit of a normal number adds the 1 that is missing in the exponent.
   const int fraction = static_cast<int>(std::nearbyint(std::ldexp(size, kFractionBits - exponent)));
   return static_cast<std::uint16_t>(sign | (((exponent - kLeastExponent) << kFractionBits) + fraction));
 }

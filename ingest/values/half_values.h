@@ -1,4 +1,4 @@
-// Numbers as float16 and bfloat16 store them.
+// Encodes numbers as float16 and bfloat16.
 #pragma once
 
 #include <cstdint>
@@ -8,14 +8,15 @@
 
 namespace weir {
 
-/// The bits of the IEEE half nearest to `value`, ties to even: of a finite one below 65520, of NaN and infinities.
+/// Returns the bits of the IEEE half nearest to `value`, ties to even. `value` is NaN, infinite or finite below 65520
+/// in size.
 std::uint16_t half_bits(double value);
-/// The bits of the bfloat16 nearest to `value`, ties to even: of a finite one that float32 holds, of NaN and
-/// infinities.
+/// Returns the bits of the bfloat16 nearest to `value`, ties to even. `value` is NaN, infinite or a finite value that
+/// float32 holds.
 std::uint16_t bfloat16_bits(double value);
 
-/// `mapping` with the missing values that `type`, float16 or bfloat16, stores: -999.9 as the -1000 that a float16 makes
-/// of it. Those that it cannot hold are left out.
+/// Returns `mapping` with the missing values as `type`, float16 or bfloat16, stores them: -999.9 becomes the -1000
+/// that a float16 holds. Missing values that `type` cannot hold are left out.
 ValueMapping with_stored_missing(const ValueMapping& mapping, ScalarType type);
 
 }  // namespace weir

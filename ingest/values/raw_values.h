@@ -1,5 +1,5 @@
-// A dense array as it lies in a file: values in file order, x fastest, without
-// compression. What raw files are, and what most headers describe.
+// A source for a dense array in a file: uncompressed values in file order, x fastest. Raw files are such arrays, and
+// most header formats describe them.
 #pragma once
 
 #include <cstddef>
@@ -20,15 +20,15 @@ struct RawLayout {
   ScalarType type = ScalarType::float32;
   bool big_endian = false;
   ValueMapping mapping;
-  VoxelComponents components = {};  ///< of each voxel, side by side
+  VoxelComponents components = {};  ///< components of each voxel, side by side
 
   std::size_t voxel_bytes() const { return scalar_bytes(type) * static_cast<std::size_t>(components.count); }
 };
 
-/// A source of `info`, whose values lie in `file` by `layout`; fills info.type, mapping, file_bytes,
-/// mtime_ns and files where they are zero or empty. The extent's bytes must fit the file: otherwise Error(internal),
-/// since the caller reports that with a better message. Needs up to kStagingBytes (ingest/plan/staging.h) besides the
-/// callers' buffers.
+/// Returns a source of `info` that reads its values from `file` by `layout`. Fills info.type, mapping, file_bytes,
+/// mtime_ns and files if they are zero or empty. The extent's bytes must fit the file: otherwise throws
+/// Error(internal), because the caller reports this with a better message. Needs up to kStagingBytes
+/// (ingest/plan/staging.h) besides the callers' buffers.
 std::unique_ptr<VolumeSource> make_raw_values(std::unique_ptr<InputFile> file, const RawLayout& layout,
                                               SourceInfo info);
 

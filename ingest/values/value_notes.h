@@ -1,4 +1,4 @@
-// What a file says of its values and weir makes nothing of, in words.
+// Notes on what a file says about its values and weir does not apply.
 #pragma once
 
 #include <array>
@@ -10,16 +10,17 @@
 
 namespace weir {
 
-/// Attributes of NetCDF that say which values are valid, and are not applied.
+/// Attributes of NetCDF that say which values are valid. weir does not apply them.
 inline constexpr std::array<const char*, 3> kValidAttributes{"valid_range", "valid_min", "valid_max"};
 
-/// That the attribute `name`, one of kValidAttributes, is not applied.
+/// Returns the note that the attribute `name`, one of kValidAttributes, is not applied.
 std::string not_applied_note(std::string_view name);
 
-/// That the attribute `name` says that `value` stands for no data, which none of `type` is; empty where one may be.
+/// Returns the note that the attribute `name` declares `value` as "no data" although `type` cannot hold it. Returns
+/// "" if it can.
 std::string unheld_note(std::string_view name, const StoredValue& value, ScalarType type);
 
-/// Adds `note`, where there is one, to `notes`.
+/// Adds `note` to `notes` unless it is empty.
 void add_note(const std::string& note, std::string& notes);
 
 }  // namespace weir

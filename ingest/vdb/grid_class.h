@@ -1,4 +1,4 @@
-// The class and the background that a grid of either VDB format gives its volume.
+// The class and the background that a volume gets from a grid of either VDB format.
 #pragma once
 
 #include <cstdint>
@@ -9,17 +9,17 @@
 
 namespace weir {
 
-/// Of a grid of one real number a voxel that is called `name`: "level set" or "fog volume". NanoVDB's validators take
-/// no other class; it becomes unknown.
+/// Returns the class called `name`, for a grid with one real number a voxel: "level set" or "fog volume". NanoVDB's
+/// validators accept no other class for such grids, so any other name gives unknown.
 GridClass grid_class_called(std::string_view name);
-/// The same of the number that a NanoVDB file stores.
+/// Returns the class as above for the number that a NanoVDB file stores.
 GridClass grid_class_stored(std::uint32_t number);
-/// "level set" or "fog volume", as OpenVDB writes them; empty where it is unknown.
+/// Returns "level set" or "fog volume", as OpenVDB writes them; empty if the class is unknown.
 std::string_view grid_class_name(GridClass grid_class);
 
-/// SourceInfo::background of a grid whose file says `stored`. Beyond the narrow band a level set is its background
-/// outside: any other one may read as inside. The survey finds that of other classes, as of any other volume, and one
-/// that is not finite.
+/// Returns SourceInfo::background for a grid with the background `stored` in its file. A level set keeps a finite
+/// background: it is the value outside, beyond the narrow band, and any other value may read as inside. For other
+/// classes, and for a background that is not finite, the survey finds the background, as for any other volume.
 std::optional<float> background_to_keep(GridClass grid_class, double stored);
 
 }  // namespace weir

@@ -15,14 +15,14 @@
 namespace weir {
 namespace {
 
-/// Boxes below this many voxels per thread are not worth another thread.
+/// A box with fewer voxels per thread than this is not worth another thread.
 constexpr std::int64_t kVoxelsPerThread = 64 * 1024;
 
 constexpr std::size_t kLeafValues = kLeafVoxels;
 constexpr std::size_t kMaxValueBytes = 24;  // vectors of three doubles
 using LeafBytes = std::array<std::byte, kLeafValues * kMaxValueBytes>;
 
-/// The values of `part` (in voxels from the leaf's corner) out of a leaf, x fastest, `Bytes` each.
+/// Copies the values of `part` (in voxels from the leaf's corner) out of a leaf, x fastest, `Bytes` bytes each.
 template <std::size_t Bytes>
 void pack(const LeafBytes& leaf, const Box& part, std::byte* packed) {
   for (std::int64_t z = part.lo.z; z < part.hi.z; ++z) {
@@ -100,7 +100,7 @@ class LeafSource final : public VolumeSource {
     }
   }
 
-  /// The leaves of one row along x of those over a box, into the box's values.
+  /// Reads the leaves of one row along x, among the leaves over a box, into the box's values.
   ConversionLoss read_row(LeafReader& reader, const NodeLattice& leaves, std::int64_t row, std::span<float> values) {
     const Box& box = leaves.domain;
     const Index3 extent = box.extent();

@@ -31,7 +31,7 @@ class StoredNvdbTree final : public LeafTree {
         cached_(cached) {
     grid.for_each_root_entry([&](const RootEntry& entry) {
       const auto upper = entry.upper == nullptr ? 0 : static_cast<std::uint64_t>(entry.upper - grid.bytes().data());
-      root_.try_emplace(key_of(entry.origin), RootPlace{upper, entry.value});  // the first one counts
+      root_.try_emplace(key_of(entry.origin), RootPlace{upper, entry.value});  // the first entry of a place counts
     });
   }
 
@@ -40,7 +40,7 @@ class StoredNvdbTree final : public LeafTree {
   std::uint64_t working_bytes() const override { return NvdbNodes::kLimit + root_.size() * kRootEntryBytes; }
   std::uint64_t bytes_read() const override { return file_->bytes_read(); }
 
-  // Null where the root has no entry.
+  // Returns null if the root has no entry.
   const RootPlace* root_place(const Index3& upper_origin) const {
     const auto found = root_.find(key_of(upper_origin));
     return found == root_.end() ? nullptr : &found->second;
@@ -49,7 +49,7 @@ class StoredNvdbTree final : public LeafTree {
   std::uint64_t root_at() const { return root_at_; }
   NvdbNodes& nodes() const { return nodes_; }
 
-  // The leaf at offset `at`, to which the node at `from` points.
+  // Reads the leaf at offset `at`, to which the node at `from` points.
   void read_leaf(std::uint64_t at, std::uint64_t from, std::span<float> values) const {
     std::array<std::byte, nvdb::kFloatLeafBytes> leaf;
     if (type_ == GridType::float32) {
@@ -58,7 +58,7 @@ class StoredNvdbTree final : public LeafTree {
       std::memcpy(values.data(), leaf.data() + nvdb::leaf::kValues, values.size_bytes());
       return;
     }
-    // How long a leaf is stands in its head: all that it may have, at once.
+    // The leaf's head says how long the leaf is. One read takes the most bytes that a leaf may have; the checks follow.
     nodes_.check(at, nvdb::kLeafHeadBytes, from);
     const std::uint64_t most = type_ == GridType::fpn ? quantised_leaf_bytes(kMaxLeafBitsLog2)
                                                       : quantised_leaf_bytes(leaf_bits_log2(type_, leaf.data()));
@@ -91,7 +91,7 @@ class StoredNvdbTree final : public LeafTree {
   std::map<RootKey, RootPlace> root_;
 };
 
-// An inner node and where it lies.
+// An inner node and its offset.
 struct InnerNode {
   NvdbNodes::Node bytes;
   std::uint64_t at = 0;
@@ -110,7 +110,8 @@ class NvdbLeaves final : public LeafReader {
   }
 
  private:
-  // Position of a voxel in the table of a node whose entries have an edge of `dim` voxels, `side` to an edge.
+  // Returns the index of a voxel's entry in a node's table. An entry has an edge of `dim` voxels; a node has `side`
+  // entries along an edge.
   static std::size_t entry_of(const Index3& i, std::int64_t dim, std::int64_t side) {
     const auto axis = [&](std::int64_t v) { return floor_div(v, dim) & (side - 1); };
     return static_cast<std::size_t>((axis(i.x) * side + axis(i.y)) * side + axis(i.z));
@@ -122,7 +123,7 @@ class NvdbLeaves final : public LeafReader {
   static float tile(const InnerNode& node, const nvdb::InternalLayout& layout, std::size_t entry) {
     return weir::load<float>(node.data() + layout.table + 8 * entry);
   }
-  // Wraps where the file says so; whoever reads there checks it.
+  // The offset may wrap around in a damaged file. Every caller checks the offset before it reads there.
   static std::uint64_t child(const InnerNode& node, const nvdb::InternalLayout& layout, std::size_t entry) {
     return node.at + weir::load<std::uint64_t>(node.data() + layout.table + 8 * entry);
   }
@@ -148,7 +149,7 @@ class NvdbLeaves final : public LeafReader {
   }
 
   const StoredNvdbTree& tree_;
-  InnerNode upper_;  // the last one of each kind
+  InnerNode upper_;  // the last used node of each kind
   InnerNode lower_;
 };
 

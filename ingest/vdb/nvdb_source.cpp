@@ -34,7 +34,7 @@ GridClass stored_class_of(const NvdbGrid& grid) {
   return grid_class_stored(weir::load<std::uint32_t>(grid.data().data() + nvdb::grid::kGridClass));
 }
 
-/// One of a file's grids; what stands in the way of opening it is in volume.obstacle.
+/// One of a file's grids. volume.obstacle says why the grid cannot be opened.
 struct GridCandidate {
   NamedVolume volume;
   NvdbRecord record;
@@ -54,7 +54,7 @@ GridCandidate open_candidate(const FileMapping& mapping, const std::string& path
   return candidate;
 }
 
-// Several grids of one name are numbered as OpenVDB's tools do it.
+// Numbers several grids of one name as OpenVDB's tools do.
 void number_equal_names(std::vector<GridCandidate>& all) {
   std::map<std::string, std::size_t> count;
   for (const GridCandidate& candidate : all) ++count[candidate.volume.name];
@@ -75,7 +75,7 @@ std::vector<GridCandidate> candidates_of(const FileMapping& mapping, const std::
 }
 
 std::size_t choose(const std::vector<GridCandidate>& there, const std::string& path, const std::string& wanted) {
-  // The only grid of a file says itself what is wrong with it.
+  // If the file has only one grid, the error is the grid's own obstacle.
   if (there.size() == 1 && wanted.empty() && !there[0].volume.obstacle.empty()) {
     throw Error(ErrorKind::input, cat(path, ": ", there[0].volume.obstacle));
   }

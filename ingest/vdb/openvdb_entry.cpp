@@ -1,4 +1,4 @@
-// The entry of weir_openvdb.so, and all that is compiled against OpenVDB.
+// The entry point of weir_openvdb.so, and all code that is compiled against OpenVDB.
 #include <openvdb/io/Compression.h>
 #include <openvdb/io/io.h>
 #include <openvdb/openvdb.h>
@@ -40,8 +40,8 @@ class Leaves final : public LeafReader {
   openvdb::tree::ValueAccessor<const Tree, false> accessor_;  // false: not registered, for the tree does not change
 };
 
-// Made and filled through OpenVDB's own registry and virtual functions: a tree made here would compile all of its
-// class again, ten seconds for each.
+// Makes and fills the tree through OpenVDB's registry and virtual functions. To construct the tree here would compile
+// its whole class again, ten seconds for each class.
 template <typename Tree>
 class LoadedTree final : public LeafTree {
  public:

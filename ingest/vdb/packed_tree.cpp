@@ -35,7 +35,7 @@ class StoredPackedTree final : public LeafTree {
   }
   std::uint64_t bytes_read() const override { return file_->bytes_read(); }
 
-  // The region of a voxel; null outside the regions.
+  // Returns the region of a voxel; null outside the regions.
   const PackedRegion* region_of(const Index3& voxel) const {
     const Index3 position = floor_div(voxel, kLowerDim) - header_.regions.first;
     if (!Box{{0, 0, 0}, header_.regions.count}.contains(position)) return nullptr;
@@ -81,7 +81,7 @@ class PackedBlocks final : public LeafReader {
   }
 
  private:
-  // False where the block has no stream.
+  // Decodes the block; returns false if the block has no stream.
   bool decode(const PackedRegion& region, const Index3& block, std::span<float, kLeafVoxels> values) {
     if (region_ != &region) {
       head_ = tree_.read_head(region);
@@ -105,16 +105,16 @@ class PackedBlocks final : public LeafReader {
 
   void hold_group(std::uint64_t at, std::uint64_t bytes, std::uint64_t from) {
     if (group_at_ == at && group_.size() == bytes) return;
-    group_at_ = 0;  // where reading fails
+    group_at_ = 0;  // in case reading fails
     group_.resize(bytes);
     tree_.read(at, group_, from);
     group_at_ = at;
   }
 
   const StoredPackedTree& tree_;
-  const PackedRegion* region_ = nullptr;  // the last one
-  NvdbNodes::Node head_;                  // of its chunk
-  std::vector<std::byte> group_;          // the last one
+  const PackedRegion* region_ = nullptr;  // the last used region
+  NvdbNodes::Node head_;                  // of the region's chunk
+  std::vector<std::byte> group_;          // the last used group
   std::uint64_t group_at_ = 0;            // in the file; 0: none
 };
 

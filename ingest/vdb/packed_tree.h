@@ -1,5 +1,5 @@
-// The packed grid of a NanoVDB file as a tree of blocks. Read by pread and not by a mapping, as nvdb_leaf_tree.h: a
-// file that is cut or rewritten meanwhile is an error, not a signal.
+// Reads the packed grid of a NanoVDB file as a tree of blocks. Uses pread and not a mapping, as nvdb_leaf_tree.h
+// does, so that a file that is cut or rewritten during the reading gives an error and not a signal.
 #pragma once
 
 #include <memory>
@@ -10,8 +10,8 @@
 
 namespace weir {
 
-/// `grid`, which is packed, is a view of what `file` held when it was opened, and is looked at during this call only;
-/// `cached` tells that its pages are in memory already.
+/// Returns the tree of `grid`, which is packed. `grid` is a view of the content of `file` when it was opened, and is
+/// used during this call only. `cached` says that its pages are in memory already.
 std::unique_ptr<LeafTree> make_packed_tree(std::unique_ptr<InputFile> file, const NvdbGrid& grid, bool cached);
 
 }  // namespace weir

@@ -8,15 +8,15 @@ namespace weir {
 namespace {
 
 constexpr std::uint64_t kMagic = 0x56444220;  ///< " BDV" and four zeros
-constexpr std::uint32_t kOldest = 222;        ///< masks of active values came with it
+constexpr std::uint32_t kOldest = 222;        ///< the first version with masks of active values
 constexpr std::uint32_t kNewest = 224;
 constexpr std::size_t kUuidBytes = 36;
 constexpr std::uint32_t kMaxGrids = 4096;  ///< so that a hostile file's list stays small
 constexpr std::string_view kHalfSuffix = "_HalfFloat";
-/// In the file's names, before the number that tells several grids of one name apart.
+/// In stored names, the separator before the number that tells apart several grids of one name.
 constexpr char kNumberSeparator = '\x1e';
 
-/// Reads a map of named values; keeps the one text that is wanted.
+/// Reads a map of named values; keeps only the text called `wanted`.
 std::string read_metadata(VdbReader& reader, std::string_view wanted) {
   std::string kept;
   for (auto count = reader.get<std::uint32_t>(); count > 0; --count) {
@@ -45,8 +45,8 @@ void set_scale(const Vector3& scale, VdbGrid& grid) {
   grid.linear = true;
 }
 
-// Maps.h: each map writes its parameters, and some what follows from them. Nothing behind the map but the tree is
-// wanted, so that an unknown one ends the reading.
+// Maps.h: each map writes its parameters, and some maps also write derived values. After the map only the tree
+// follows, which is not needed here, so an unknown map ends the reading.
 void read_map(VdbReader& reader, VdbGrid& grid) {
   grid.map = reader.text();
   constexpr std::uint64_t kFromScale = 4 * 3 * sizeof(double);  // voxel size, inverse, its square and half of it
@@ -61,7 +61,7 @@ void read_map(VdbReader& reader, VdbGrid& grid) {
     set_scale(read_vector(reader), grid);
     reader.skip(kFromScale);
   } else if (grid.map == "AffineMap" || grid.map == "UnitaryMap") {
-    // Row vectors: world = index * M, so that row a is the step along axis a and row 3 the translation.
+    // Row vectors: world = index * M, so row a is the step along axis a and row 3 is the translation.
     for (std::size_t row = 0; row < 4; ++row) {
       (row < 3 ? grid.steps[row] : grid.first) = read_vector(reader);
       reader.get<double>();

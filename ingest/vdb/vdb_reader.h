@@ -1,5 +1,5 @@
-// Reads the little-endian fields of a .vdb file in order, never beyond its end,
-// and words what is wrong in it. Used by the vdb_* parsers only.
+// Reads the little-endian fields of a .vdb file in order, never beyond its end, and words the errors. Only the vdb_*
+// parsers use it.
 #pragma once
 
 #include <bit>
@@ -17,7 +17,7 @@ static_assert(std::endian::native == std::endian::little, "fields are loaded as 
 
 class VdbReader {
  public:
-  /// Names and words of a header; nothing that people write is longer.
+  /// The longest name or word of a header. People write no longer ones.
   static constexpr std::uint32_t kMaxTextBytes = 4096;
 
   /// `in` stands at the first of `size` bytes and, like `path`, outlives the object.
@@ -47,7 +47,7 @@ class VdbReader {
     read(&value, sizeof value);
     return value;
   }
-  /// Four bytes of length and as many characters.
+  /// Reads a text: four bytes of length, then the characters.
   std::string text() {
     const auto bytes = get<std::uint32_t>();
     if (bytes > kMaxTextBytes) fail("a name of ", bytes, " bytes; the file is damaged");

@@ -22,10 +22,11 @@
 namespace weir {
 namespace {
 
-/// What a small conversion takes besides the tree; a larger one says itself what it lacks.
+/// The memory of a small conversion besides the tree. A larger conversion reports its own lack of memory.
 constexpr std::uint64_t kConversionBytes = std::uint64_t{64} << 20U;
 
-// The grid whose tree an instance shares, itself where it has its own; null where that is missing.
+// Returns the grid with the tree that an instance shares, or the grid itself if it has its own tree; null if the
+// shared grid is missing.
 const VdbGrid* tree_owner(const VdbHeader& header, const VdbGrid& grid) {
   if (grid.parent.empty()) return &grid;
   const auto found = std::find_if(header.grids.begin(), header.grids.end(), [&](const VdbGrid& other) {
@@ -84,7 +85,7 @@ std::string compression_text(std::uint32_t flags) {
 
 const OpenVdbLibrary& library_for(const std::string& path) { return openvdb_library(path + ": is an OpenVDB file"); }
 
-// A level set of integers is none, and vectors have no class.
+// A grid of integers is never a level set, and vectors have no class.
 GridClass class_of(const VdbGrid& grid, const VdbType& type) {
   const GridClass called = type.components > 1 ? GridClass::unknown : grid_class_called(grid.grid_class);
   return called == GridClass::level_set && !type.real ? GridClass::unknown : called;

@@ -10,7 +10,8 @@ namespace {
 
 constexpr std::uint64_t kLeafMaskBytes = 64;
 constexpr std::uint64_t kOriginBytes = 12;
-/// Each is a block of 4096^3 voxels; far more than any grid has, few enough to be kept.
+/// The most root entries. Each entry is a block of 4096^3 voxels. No real grid has nearly as many, and they fit in
+/// memory.
 constexpr std::uint64_t kMaxRootEntries = std::uint64_t{1} << 18U;
 
 /// A bit for each entry of a node of Side^3, z fastest.
@@ -143,8 +144,8 @@ class TreeWalk {
     }
   }
 
-  // Compression.h, readCompressedValues: a byte says how the inactive values are to be restored, then come up to two
-  // of them, a mask that selects between two, and the rest.
+  // Compression.h, readCompressedValues: a byte says how to restore the inactive values. Then come up to two inactive
+  // values, a mask that selects between them, and the remaining values.
   template <typename NodeMask>
   void values(const NodeMask& active) {
     enum : std::uint8_t { one_inactive = 2, mask_only = 3, mask_and_one = 4, mask_and_two = 5, all_values = 6 };
@@ -159,8 +160,8 @@ class TreeWalk {
     packed(count * stored_bytes_);
   }
 
-  // Compression.h, readData: plain, or a length and as many compressed bytes; a length that is not positive says that
-  // its magnitude follows uncompressed, and OpenVDB reads that before it compares.
+  // Compression.h, readData: plain bytes, or a length and as many compressed bytes. If the length is not positive,
+  // its magnitude in uncompressed bytes follows; OpenVDB reads them before it compares sizes.
   void packed(std::uint64_t bytes) {
     if ((grid_.compression & (kVdbZip | kVdbBlosc)) == 0) return reader_.skip(bytes);
     const auto length = reader_.get<std::int64_t>();

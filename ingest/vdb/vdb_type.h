@@ -9,7 +9,7 @@
 
 namespace weir {
 
-/// What a leaf holds behind its mask of active voxels.
+/// The content of a leaf after its mask of active voxels.
 enum class VdbLeaf {
   values,   ///< 512 values, perhaps compressed
   boolean,  ///< one bit a voxel
@@ -25,7 +25,7 @@ struct VdbType {
   std::int64_t components = 1;  ///< 3 of vectors
 };
 
-/// The type of trees called `name`; null where weir does not read them.
+/// Returns the type of the trees called `name`; null if weir does not read them.
 const VdbType* vdb_type(std::string_view name);
 
 }  // namespace weir

@@ -21,9 +21,9 @@ namespace weir {
 namespace {
 
 constexpr std::int64_t kPieceVoxels = 65536;
-/// Chunks of more voxels are read in pieces, again and again.
+/// A chunk with more voxels than this is read in pieces, and so is read several times.
 constexpr std::int64_t kLargestChunk = std::int64_t{1} << 22;
-/// What a piece takes for each voxel: a sum of squares, a component, and whether it is missing.
+/// The bytes of a piece for each voxel: a sum of squares, a component, and a flag for missing values.
 constexpr std::uint64_t kMagnitudeVoxelBytes = sizeof(double) + sizeof(float) + 1;
 
 std::string named(const SourceInfo& info) { return in_quotes(info.dataset); }
@@ -41,7 +41,7 @@ void check_same_voxels(const SourceInfo& a, const SourceInfo& b) {
                   ", not the same ones; take the components to the same grid, or convert them one by one"));
 }
 
-// Axes whose positions are no spacing, and the time.
+// Throws if the components have different irregular coordinates or different times.
 void check_same_places(const SourceInfo& a, const SourceInfo& b) {
   for (std::size_t i = 0; i < 3; ++i) {
     if (a.details.axes.at(i).coordinates == b.details.axes.at(i).coordinates) continue;
@@ -64,7 +64,7 @@ void check_same_units(const SourceInfo& a, const SourceInfo& b) {
                                     ", so that no length is made of them; convert them one by one"));
 }
 
-// Of all the files that the components lie in, each once.
+// Adds the files that the components lie in, each once.
 void add_files(const SourceInfo& other, SourceInfo& info) {
   for (const FileState& file : other.files) {
     const auto same = [&](const FileState& known) { return known.path == file.path; };
@@ -94,14 +94,15 @@ class Piece {
   explicit Piece(std::size_t voxels) : sums_(voxels), component_(voxels), missing_(std::make_unique<bool[]>(voxels)) {}
 
   std::span<float> component() { return component_; }
-  /// What component() holds. `marks_missing`: of a voxel without a value it is missing_value().
+  /// Adds the squares of the values in component(). If `marks_missing` is set, missing_value() marks a voxel without
+  /// a value.
   void add(bool marks_missing) {
     for (std::size_t i = 0; i < sums_.size(); ++i) {
       sums_[i] += squared_part(static_cast<double>(component_[i]));
       missing_[i] = missing_[i] || (marks_missing && is_missing(component_[i]));
     }
   }
-  /// Into component().
+  /// Writes the lengths into component().
   ConversionLoss take_lengths() {
     return weir::take_lengths(sums_, std::span<const bool>(missing_.get(), sums_.size()), component_);
   }
@@ -112,7 +113,8 @@ class Piece {
   std::unique_ptr<bool[]> missing_;
 };
 
-/// What lengths lose where their components lost something: bounds, since nothing tells which voxels those were.
+/// The losses of the lengths, from the losses of their components. They are bounds, because the affected voxels are
+/// unknown.
 class LengthLoss {
  public:
   explicit LengthLoss(std::uint64_t voxels) : voxels_(voxels) {}
@@ -189,7 +191,7 @@ class MagnitudeSource final : public VolumeSource {
   bool by_chunks() const { return access_.chunk != Index3{0, 0, 0} && volume(access_.chunk) <= kLargestChunk; }
   std::int64_t piece_voxels() const { return by_chunks() ? volume(access_.chunk) : kPieceVoxels + info_.extent.x; }
 
-  // The parts of `box` in each chunk, or whole rows of it.
+  // Returns the parts of `box` in each chunk, or whole rows of the box.
   std::vector<Box> pieces_of(const Box& box) const {
     const Index3 e = box.extent();
     Index3 size = access_.chunk;
@@ -216,7 +218,7 @@ class MagnitudeSource final : public VolumeSource {
     Piece piece(static_cast<std::size_t>(box.voxels()));
     LengthLoss loss(static_cast<std::uint64_t>(box.voxels()));
     for (const auto& component : components_) {
-      // What this thread waits for within must not be another piece, whose memory nobody has counted.
+      // While this thread waits inside, it must not start another piece: that piece's memory is not counted.
       tbb::this_task_arena::isolate([&] {
         loss.add_component(alone ? component->read_alone(box, piece.component())
                                  : component->read(box, piece.component()));

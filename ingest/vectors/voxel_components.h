@@ -1,4 +1,4 @@
-// Arrays and grids of vectors and tensors, several numbers a voxel: --component chooses among them.
+// Arrays and grids of vectors and tensors, with several numbers a voxel: --component chooses among them.
 #pragma once
 
 #include <algorithm>
@@ -12,17 +12,17 @@
 
 namespace weir {
 
-/// Why an array of so many numbers a voxel cannot be converted; empty where it can.
+/// Returns why an array with `components` numbers a voxel cannot be converted; empty if it can.
 std::string components_obstacle(std::int64_t components);
 
-/// `choice` among the `components` numbers of each voxel. Throws Error(usage), beginning with `where`, where one must
-/// be made, or does not fit.
+/// Returns the components that `choice` selects among the `components` numbers of each voxel. Throws Error(usage),
+/// beginning with `where`, if a choice is needed and missing, or does not fit.
 VoxelComponents choose_components(std::int64_t components, const std::optional<ComponentChoice>& choice,
                                   const std::string& where);
 
-/// What choose_volume chooses among: `arrays`, each with a name, an obstacle and a number of components. Where no name
-/// is wanted and arrays of both kinds can be converted, --component asks for one of vectors, its absence for one of
-/// scalars.
+/// Returns the choices for choose_volume() from `arrays`, each with a name, an obstacle and a number of components.
+/// If `wanted` is empty and some array of the requested kind can be converted, arrays of the other kind are no
+/// choice: with --component the requested kind is vectors, without it scalars.
 template <typename Array>
 std::vector<NamedVolume> volumes_of_kind(const std::vector<Array>& arrays, const std::string& wanted,
                                          const std::optional<ComponentChoice>& choice) {

@@ -39,7 +39,7 @@ void EncodedBytes::read(std::span<std::byte> into) {
   }
 }
 
-// Four digits are three bytes; one or two '=' at the end stand for bytes that are not there.
+// Four digits are three bytes; one or two '=' at the end stand for absent bytes.
 bool EncodedBytes::decode_group() {
   std::uint32_t bits = 0;
   unsigned digits = 0;

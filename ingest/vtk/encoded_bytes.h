@@ -1,4 +1,4 @@
-// The bytes that VTK XML files keep as base64 text, or as they are.
+// Reads the bytes that VTK XML files keep as base64 text or as raw bytes.
 #pragma once
 
 #include <array>
@@ -11,15 +11,15 @@
 
 namespace weir {
 
-/// Reads and decodes from a place in a file on. Several base64 texts behind each other, each padded, are one: VTK
-/// encodes sizes and data apart, other writers together.
+/// Reads and decodes a range of a file. Several padded base64 texts, one after the other, count as one: VTK encodes
+/// sizes and data separately, other writers encode them together.
 class EncodedBytes {
  public:
-  /// `where` begins the messages: path and array.
+  /// Messages begin with `where`: path and array.
   EncodedBytes(InputFile& file, std::uint64_t begin, std::uint64_t end, bool base64, std::string where)
       : text_(file, begin, end), base64_(base64), where_(std::move(where)) {}
 
-  /// Fills `into`. Throws Error(input) where the text ends before or has another character than base64's.
+  /// Fills `into`. Throws Error(input) if the text ends too early or has a character that is not base64.
   void read(std::span<std::byte> into);
 
  private:

@@ -1,4 +1,4 @@
-// A range of a file's bytes, one after the other.
+// Reads a range of a file's bytes in order.
 #pragma once
 
 #include <cstddef>
@@ -16,9 +16,9 @@ class FileText {
   /// Bytes [begin, end) of `file`, which outlives the object.
   FileText(InputFile& file, std::uint64_t begin, std::uint64_t end);
 
-  /// The next bytes, valid until the next call; empty at the end. Throws as InputFile's reads.
+  /// Returns the next bytes, valid until the next call; empty at the end. Throws the errors of InputFile's reads.
   std::string_view next_piece();
-  /// The next byte, -1 at the end.
+  /// Returns the next byte, or -1 at the end.
   int next() {
     if (at_ == piece_.size()) {
       piece_ = next_piece();

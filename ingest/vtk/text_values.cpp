@@ -23,7 +23,7 @@ class Words {
  public:
   explicit Words(FileText& text) : text_(text) {}
 
-  /// The next word, cut after kLongestNumber characters; empty at the end.
+  /// Returns the next word, cut after kLongestNumber characters; empty at the end.
   std::string_view next() {
     int c = text_.next();
     while (is_space(c)) c = text_.next();
@@ -32,7 +32,7 @@ class Words {
     cut_ = c >= 0 && !is_space(c);
     return {word_.data(), length};
   }
-  /// Whether the last word was cut.
+  /// Returns whether the last word was cut.
   bool cut() const { return cut_; }
 
  private:
@@ -47,7 +47,7 @@ bool parse(std::string_view word, T& value) {
   const char* const end = word.data() + word.size();
   auto result = std::from_chars(word.data(), end, value);
   if constexpr (std::is_same_v<T, float>) {
-    // Smaller or larger than any float: as the double that it is, rounded to 0 or infinity.
+    // A number outside the range of float is read as double and rounded to 0 or infinity.
     if (double wide = 0; result.ec == std::errc::result_out_of_range) {
       result = std::from_chars(word.data(), end, wide);
       value = static_cast<float>(wide);
@@ -60,12 +60,12 @@ bool parse_fraction(std::string_view word, std::uint8_t& value) {
   float fraction = 0;
   if (!parse(word, fraction)) return false;
   const double shifted = 255.0 * fraction + 0.5;
-  if (!(shifted >= 0 && shifted < 256)) return false;  // NaN neither
+  if (!(shifted >= 0 && shifted < 256)) return false;  // refuses NaN too
   value = static_cast<std::uint8_t>(shifted);
   return true;
 }
 
-/// `parse_word`: puts what a word says into a T; false where it is none. `kind`: what each word must be.
+/// `parse_word` parses a word into a T and returns false if the word is no T. `kind` says what each word must be.
 template <typename T, typename ParseWord>
 void spool_words(Words& words, std::uint64_t count, SpoolFile& spool, const std::string& where,
                  const ParseWord& parse_word, std::string_view kind) {

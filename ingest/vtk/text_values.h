@@ -1,4 +1,4 @@
-// Numbers written as text, as VTK's files in ASCII have them.
+// Reads numbers that are written as text, as in VTK's ASCII files.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,15 @@
 namespace weir {
 
 /// Reads `count` numbers that white space separates and writes them to `spool` as values of `type` in this machine's
-/// byte order; floating-point types take nan and inf too. Where `all`, nothing else may follow. Throws Error(input),
-/// beginning with `where`, naming the position of a word that is no number of that type or is longer than 400
-/// characters, or where there are too few.
+/// byte order. Floating-point types accept nan and inf too. If `all` is set, nothing else may follow. Throws
+/// Error(input), beginning with `where`, if a word is no number of that type or is longer than 400 characters (naming
+/// its position), or if there are too few words.
 void spool_text_values(FileText& text, std::uint64_t count, ScalarType type, bool all, SpoolFile& spool,
                        const std::string& where);
 
-/// Reads `count` numbers from 0 to 1 and writes 0 to 255 for them, as vtkDataReader::ReadCoScalars reads COLOR_SCALARS:
-/// each as float32, times 255, plus 0.5, cut to an integer. Throws as spool_text_values, also for other numbers.
+/// Reads `count` numbers from 0 to 1 and writes values from 0 to 255, as vtkDataReader::ReadCoScalars reads
+/// COLOR_SCALARS: each number as float32, times 255, plus 0.5, cut to an integer. Throws like spool_text_values(),
+/// and also for other numbers.
 void spool_text_fractions(FileText& text, std::uint64_t count, SpoolFile& spool, const std::string& where);
 
 }  // namespace weir

@@ -1,4 +1,4 @@
-// An array of a VTK image, whatever the format of the file, and the volume that it is.
+// An array of a VTK image in any of VTK's file formats, and the volume that it becomes.
 #pragma once
 
 #include <algorithm>
@@ -21,13 +21,13 @@
 namespace weir {
 
 struct VtkArray {
-  std::string name;  ///< "PointData/a" and "CellData/a" where points and cells have an array "a"
+  std::string name;  ///< "PointData/a" and "CellData/a" if points and cells have an array "a"
   bool cells = false;
   ScalarType type = ScalarType::float32;
   std::string type_name;                            ///< as written
-  std::string obstacle;                             ///< why it cannot be converted; empty where it can
+  std::string obstacle;                             ///< why the array cannot be converted; empty if it can
   std::int64_t components = 1;                      ///< numbers a voxel, side by side
-  std::optional<std::array<double, 2>> range = {};  ///< least and largest value, where the file says them
+  std::optional<std::array<double, 2>> range = {};  ///< least and largest value, if the file says them
 };
 
 struct VtkVolume {
@@ -37,13 +37,13 @@ struct VtkVolume {
   std::string where;        ///< what messages begin with
 };
 
-/// `array` of `file`, which has no obstacle, as `options` ask for it. `format` is SourceInfo::format. Throws Error
-/// where the image has no place, the components asked for are not there, or the values are too many.
+/// Returns the volume of `array` of `file` that `options` ask for. `array` has no obstacle. `format` is
+/// SourceInfo::format. Throws Error if the image has no valid position, the requested components do not exist, or
+/// there are too many values.
 VtkVolume vtk_volume(const InputFile& file, const char* format, const VtkImage& image, const VtkArray& array,
                      const SourceOptions& options);
 
-/// Says to options.notice which of `arrays` cannot be converted, where `taken` is one that options.dataset does not
-/// name.
+/// Reports to options.notice which of `arrays` cannot be converted, if options.dataset does not name `taken`.
 template <typename Array>
 void say_vtk_left_out(const std::string& path, const std::vector<Array>& arrays, const Array& taken,
                       const SourceOptions& options) {
@@ -55,10 +55,10 @@ void say_vtk_left_out(const std::string& path, const std::vector<Array>& arrays,
   options.notice(left_out_notice(path, taken.name, left_out));
 }
 
-/// "PointData/a" or "CellData/a".
+/// Returns "PointData/a" or "CellData/a".
 std::string full_vtk_name(const std::string& name, bool cells);
 
-/// Gives arrays that points and cells both have their full names. The names that these had.
+/// Gives their full names to arrays with a name that occurs for both points and cells. Returns the short names.
 template <typename Array>
 std::set<std::string> tell_equal_names_apart(std::vector<Array>& arrays) {
   std::array<std::set<std::string>, 2> names;  // of points, of cells

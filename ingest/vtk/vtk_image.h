@@ -20,14 +20,14 @@ struct VtkImage {
   std::array<double, 9> direction{1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< row-major; column a is the direction of axis a
 };
 
-/// Values per axis: points, or the cells between them (one where there is one point).
+/// Returns the values per axis: points, or the cells between them (one cell on an axis with one point).
 Index3 vtk_extent(const VtkImage& image, bool cells);
 
-/// Sets extent, index_origin, spacing and origin; a cell's value lies in its middle, half a step from its lowest point
-/// along each axis of several points. Throws Error(input), beginning with `info.path`, where numbers are not finite or
-/// a spacing is 0.
+/// Sets extent, index_origin, spacing and origin. A cell's value lies in its middle: half a step from its lowest
+/// point along each axis of several points. Throws Error(input), beginning with `info.path`, if a number is not
+/// finite or a spacing is 0.
 void place_vtk_image(const VtkImage& image, bool cells, SourceInfo& info);
-/// The same as attributes of a listing.
+/// Describes the extent and position as attributes of a listing.
 void describe_vtk_image(const VtkImage& image, bool cells, const std::string& path, DatasetInfo& info);
 
 }  // namespace weir

@@ -20,17 +20,17 @@
 namespace weir {
 namespace {
 
-/// So that the list of a hostile file stays small.
+/// Keeps the list of arrays of a hostile file small.
 constexpr std::size_t kMaxArrays = 4096;
 constexpr std::uint64_t kMaxComponents = 1024;
 
 struct LegacyType {
   std::string_view name;
-  std::optional<ScalarType> scalar;  ///< nothing where weir does not read it
-  std::uint64_t bits;                ///< of a value; 0: of text, of which each value has its own length
+  std::optional<ScalarType> scalar;  ///< nullopt if weir does not read the type
+  std::uint64_t bits;                ///< bits of a value; 0 for text, because each text has its own length
 };
 
-// As a 64-bit Linux writes them; vtkIdType is written as int (vtkDataWriter, WriteArray).
+// Type sizes as a 64-bit Linux writes them. vtkIdType is written as int (vtkDataWriter, WriteArray).
 constexpr std::array<LegacyType, 14> kLegacyTypes{{{"unsigned_char", ScalarType::uint8, 8},
                                                    {"char", ScalarType::int8, 8},
                                                    {"signed_char", ScalarType::int8, 8},
@@ -74,7 +74,7 @@ class LegacyParser {
   }
 
  private:
-  // The words of the next line that has any, the first in lower case, for VTK does not mind.
+  // Reads the words of the next line that has any. The first word is put in lower case because VTK ignores its case.
   bool next_line() {
     while (const auto line = text_.line()) {
       words_.clear();
@@ -181,7 +181,7 @@ class LegacyParser {
     }
   }
 
-  // Before POINT_DATA these arrays are of the data set, of any length: of these the time alone is read.
+  // Before POINT_DATA these arrays belong to the data set and have any length. Of them, only the time is read.
   void read_field() {
     const std::uint64_t arrays = count(2);
     for (std::uint64_t i = 0; i < arrays; ++i) {
@@ -209,7 +209,7 @@ class LegacyParser {
     }
   }
 
-  // The time of a step, one number. What is no number is no time.
+  // Reads the time of a step: one number. Anything else is not taken as a time.
   void read_time(ScalarType type) {
     std::array<std::byte, sizeof(double)> buffer{};
     const auto bytes = std::span(buffer).first(scalar_bytes(type));
@@ -276,7 +276,7 @@ class LegacyParser {
     }
   }
 
-  // vtkDataWriter::EncodeString: what is no plain character is written as %20.
+  // vtkDataWriter::EncodeString writes special characters as %20.
   static std::string decoded(std::string_view name) {
     std::string text;
     for (std::size_t i = 0; i < name.size(); ++i) {

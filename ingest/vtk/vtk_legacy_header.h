@@ -1,4 +1,4 @@
-// What a legacy VTK file says before and between its values:
+// Parses the text of a legacy VTK file before and between its values:
 // https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html, "Simple Legacy Formats".
 #pragma once
 
@@ -27,10 +27,10 @@ struct VtkLegacyHeader {
   std::optional<double> time;  ///< TimeValue of the field data, finite
 };
 
-/// Reads structured points from `in`, which stands at the first of `size` bytes, to its end; values are skipped, those
-/// in text by their words. Throws Error(input), beginning with `path`, naming position, line or value, for other data
-/// sets, what is no such file and what reaches beyond its end. Of an array that weir does not read, that is in its
-/// `obstacle`.
+/// Reads structured points from `in`, which stands at the first of `size` bytes, to its end. Skips values; skips text
+/// values word by word. Throws Error(input), beginning with `path` and naming position, line or value, for other data
+/// sets, for files that are no legacy VTK file, and for data beyond the file's end. An array that weir does not read
+/// gets an `obstacle`.
 VtkLegacyHeader parse_vtk_legacy_header(std::istream& in, std::uint64_t size, const std::string& path);
 
 }  // namespace weir

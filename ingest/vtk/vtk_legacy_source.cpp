@@ -21,7 +21,7 @@ VtkLegacyHeader read_legacy_header(InputFile& file) {
   return parse_vtk_legacy_header(stream, file.size(), file.path());
 }
 
-// `bytes`: of all values.
+// `bytes` is the size of all values.
 std::unique_ptr<InputFile> spool_text(InputFile& file, const VtkLegacyArray& array, std::uint64_t bytes,
                                       const SourceOptions& options, const std::string& where) {
   const auto files = make_posix_file_system();

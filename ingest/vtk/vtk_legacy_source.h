@@ -1,4 +1,4 @@
-// Legacy VTK structured points, .vtk.
+// Opens legacy VTK structured points (.vtk).
 #pragma once
 
 #include <array>
@@ -15,16 +15,16 @@
 
 namespace weir {
 
-/// Of the names of its files, in lower case.
+/// Endings of the file names, in lower case.
 inline constexpr std::array<std::string_view, 1> kVtkLegacyEndings{".vtk"};
 
-/// By its first line or the name.
+/// Recognises a file by its first line or its name.
 bool recognises_vtk_legacy(std::string_view path, std::span<const std::byte> head);
 
-/// The array options.dataset of the points or the cells, or the only one that can be converted, ghost types and the
-/// like aside. Binary values are read where they lie, text is decoded here, once, into a spool file. Throws
-/// Error(usage) where several can be converted and none is named; Error(input) for what parse_vtk_legacy_header refuses
-/// and words that are no numbers; what SpoolFile throws.
+/// Opens the array `options.dataset` of the points or the cells, or the only array that can be converted, ghost types
+/// and similar marks aside. Binary values are read in place. This call decodes text values once into a spool file.
+/// Throws Error(usage) if several arrays can be converted and none is named, Error(input) for files that
+/// parse_vtk_legacy_header() refuses and for words that are no numbers, and the errors of SpoolFile.
 std::unique_ptr<VolumeSource> open_vtk_legacy(const std::string& path, const SourceOptions& options);
 std::vector<DatasetInfo> list_vtk_legacy(const std::string& path, const SourceOptions& options);
 

@@ -1,5 +1,4 @@
-// A legacy VTK file as its parser reads it: lines, and between them values that
-// are bytes or words.
+// A legacy VTK file as its parser reads it: lines, and values between them as bytes or words.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +13,7 @@ namespace weir {
 
 class VtkLegacyText {
  public:
-  /// No line that people or VTK write is longer.
+  /// The longest line. Neither people nor VTK write longer ones.
   static constexpr std::size_t kMaxLineBytes = 4096;
 
   /// `in` stands at the first of `size` bytes and outlives the object.
@@ -24,23 +23,23 @@ class VtkLegacyText {
   const std::string& path() const { return path_; }
   std::uint64_t position() const { return position_; }  ///< of the next byte
 
-  /// The next line without its end, LF or CRLF; valid until the next call. nullopt at the end of the file.
+  /// Returns the next line without its end, LF or CRLF; valid until the next call. nullopt at the end of the file.
   std::optional<std::string_view> line();
-  /// The first word of the last line; empty where that has none.
+  /// Returns the first word of the last line; empty if the line has none.
   std::string first_word() const;
-  /// Skips lines up to an empty one, and that.
+  /// Skips lines up to and including an empty line.
   void skip_paragraph();
   void skip_bytes(std::uint64_t count);
   void skip_words(std::uint64_t count);
-  /// Skips lines of any length, empty ones too. Throws as skip_words.
+  /// Skips lines of any length, empty lines too. Throws like skip_words().
   void skip_lines(std::uint64_t count);
-  /// Skips binary strings, each behind its length: the first byte's upper two bits say of how many big-endian bytes
-  /// that is, 3 of one, 2 of two, 1 of four, 0 of eight, and all other bits are the length (vtkDataWriter::WriteArray).
-  /// Throws as skip_words and skip_bytes.
+  /// Skips binary strings, each after its length. The first byte's upper two bits give the number of big-endian bytes
+  /// of the length: 3 for one byte, 2 for two, 1 for four, 0 for eight. All other bits are the length
+  /// (vtkDataWriter::WriteArray). Throws like skip_words() and skip_bytes().
   void skip_strings(std::uint64_t count);
-  /// The next bytes. Throws as skip_bytes.
+  /// Reads the next bytes. Throws like skip_bytes().
   void read_bytes(std::span<std::byte> into);
-  /// The next word, of which kMaxLineBytes are kept. Throws as skip_words.
+  /// Returns the next word, at most its first kMaxLineBytes. Throws like skip_words().
   std::string word();
 
   /// Throws Error(input): "PATH: before byte N: WHAT".

@@ -12,15 +12,15 @@ namespace {
 
 struct MarkKind {
   std::string_view name;
-  double unmarked;           ///< of a point or cell like all others
-  std::string_view meaning;  ///< of another number
+  double unmarked;           ///< value of an ordinary point or cell
+  std::string_view meaning;  ///< what any other value means
 };
 // vtkDataSetAttributes::GhostArrayName, its name before VTK 6.3, and vtkProbeFilter's mask.
 constexpr std::array<MarkKind, 3> kMarkKinds{{{"vtkGhostType", 0, "hidden or duplicate"},
                                               {"vtkGhostLevels", 0, "duplicate"},
                                               {"vtkValidPointMask", 1, "without data"}}};
 
-/// Null where an array of that name is a field.
+/// Returns the kind of marks called `name`; null if an array of that name is a field.
 const MarkKind* mark_kind(std::string_view name) {
   for (const std::string_view folder : {"PointData/", "CellData/"}) {
     if (name.starts_with(folder)) name.remove_prefix(folder.size());

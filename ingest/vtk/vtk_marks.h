@@ -1,4 +1,4 @@
-// Arrays of VTK files that say which points or cells count, and are no fields: ghost types, masks of valid points.
+// Arrays of VTK files that say which points or cells count and are no fields: ghost types, masks of valid points.
 #pragma once
 
 #include <string>
@@ -12,14 +12,15 @@
 
 namespace weir {
 
-/// Why such a one is no volume where --dataset names none.
+/// The reason why an array of marks is no volume unless --dataset names it.
 inline constexpr const char* kMarkObstacle = "it marks points or cells, and is converted only where it is named";
 
-/// Whether an array called so is such a one, by the names that VTK gives them.
+/// Returns whether an array called `name` holds marks, by the names that VTK gives such arrays.
 bool marks_places(std::string_view name);
 inline bool marks_places(const VtkArray& array) { return marks_places(array.name); }
 
-/// What choose_volume chooses among, as volumes_of_kind says; arrays of marks only where options.dataset names one.
+/// Returns the choices for choose_volume(), as volumes_of_kind() gives them. Arrays of marks are choices only if
+/// options.dataset is given.
 template <typename Array>
 std::vector<NamedVolume> vtk_volumes(std::vector<Array> arrays, const SourceOptions& options) {
   for (Array& array : arrays) {
@@ -29,11 +30,11 @@ std::vector<NamedVolume> vtk_volumes(std::vector<Array> arrays, const SourceOpti
   return volumes_of_kind(arrays, options.dataset, options.component);
 }
 
-/// That an array of `marks`, of the same points or cells as `field`, is not applied to it; empty where `field` is of
-/// marks itself, and where the file says that none is marked.
+/// Returns a note that an array of `marks`, on the same points or cells as `field`, is not applied to `field`. Empty
+/// if `field` itself holds marks, or if the file says that no point or cell is marked.
 std::string marks_note(const VtkArray& field, const std::vector<VtkArray>& marks);
 
-/// The note for `field`, one of `arrays`.
+/// Returns marks_note() for `field`, one of `arrays`.
 template <typename Array>
 std::string marks_note_of(const Array& field, const std::vector<Array>& arrays) {
   return marks_note(field, std::vector<VtkArray>(arrays.begin(), arrays.end()));

@@ -23,7 +23,7 @@ constexpr std::size_t kCopyBytes = std::size_t{256} << 10U;
 /// Share of the memory ceiling that the list of compressed blocks may take.
 constexpr std::uint64_t kBlockListShare = 8;
 
-/// One of the sizes before the data, in the file's byte order.
+/// Reads one of the sizes before the data, in the file's byte order.
 std::uint64_t read_size(EncodedBytes& encoded, const VtkXmlHeader& header) {
   std::array<std::byte, 8> bytes{};
   const auto stored = std::span(bytes).first(header.word_bytes);
@@ -51,8 +51,8 @@ void copy_values(EncodedBytes& encoded, std::uint64_t bytes, const ByteSink& sin
   }
 }
 
-/// Compressed blocks: their number, their size unpacked, that of the last where it is smaller (else 0), and the
-/// compressed size of each.
+/// The compressed blocks: their number, their unpacked size, the unpacked size of the last block if it is smaller
+/// (otherwise 0), and the compressed size of each.
 struct BlockList {
   std::uint64_t block_bytes = 0;
   std::uint64_t last_bytes = 0;
@@ -65,7 +65,7 @@ BlockList read_block_list(EncodedBytes& encoded, const VtkXmlHeader& header, std
   BlockList list;
   list.block_bytes = read_size(encoded, header);
   list.last_bytes = read_size(encoded, header);
-  // All of them but the last are full; compared without a product that could overflow.
+  // All blocks but the last are full. The comparison avoids a product that could overflow.
   const std::uint64_t full = list.last_bytes == 0 ? count : count - 1;
   if (list.last_bytes == 0) list.last_bytes = list.block_bytes;
   if (count == 0 || list.block_bytes == 0 || list.last_bytes > list.block_bytes || full > bytes / list.block_bytes ||
@@ -79,7 +79,7 @@ BlockList read_block_list(EncodedBytes& encoded, const VtkXmlHeader& header, std
                         option("memory", (count * kBlockListShare * sizeof(std::uint64_t) >> 20U) + 1),
                         "MiB or write larger blocks"));
   }
-  // Not reserved: what is not in the file shall not cost memory.
+  // The vector is not reserved, so that a false count in the file costs no memory.
   for (std::uint64_t i = 0; i < count; ++i) list.packed_bytes.push_back(read_size(encoded, header));
   return list;
 }
@@ -107,8 +107,9 @@ void inflate_blocks(EncodedBytes& encoded, const BlockList& list, const ByteSink
   }
 }
 
-// Before room is asked for: a few bytes must not reserve a disk. No encoding makes more of a byte: one character and
-// a separator for a value as text, deflate's 1032 to 1 (zlib, "Technical Details").
+// Runs before space is allocated, so that a few bytes cannot reserve a disk. No encoding expands a byte further than
+// these limits: text needs one character and a separator for a value, and deflate reaches 1032 to 1 (zlib, "Technical
+// Details").
 void check_plausible(std::uint64_t available, const VtkXmlHeader& header, const VtkXmlArray& array, std::uint64_t bytes,
                      const std::string& where) {
   constexpr std::uint64_t kMaxInflation = 1032;

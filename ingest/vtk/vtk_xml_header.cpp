@@ -102,10 +102,10 @@ class XmlParser {
     }
   }
 
-  /// First and last index along x, y, z.
+  /// Returns the first and last index along x, y, z.
   std::array<std::int64_t, 6> extent_of(const pugi::xml_node& node, const char* attribute) const {
     const auto numbers = parse_ints(node.attribute(attribute).value());
-    // Beyond 32 bits nothing can be, and sums stay within 64.
+    // Valid indices fit 32 bits, so sums of them fit 64.
     constexpr std::int64_t kMost = std::int64_t{1} << 31U;
     const auto small = [](std::int64_t v) { return v >= -kMost && v < kMost; };
     if (!numbers || numbers->size() != 6 || !std::all_of(numbers->begin(), numbers->end(), small)) {
@@ -143,7 +143,7 @@ class XmlParser {
     }
   }
 
-  /// vtkXMLWriter writes the time of a step so; an array of another length is something else.
+  /// Reads the time of a step as vtkXMLWriter writes it. An array of another length is something else.
   void read_time(const pugi::xml_node& fields) {
     const pugi::xml_node node = fields.find_child_by_attribute("DataArray", "Name", "TimeValue");
     if (!node || std::string_view(node.attribute("NumberOfTuples").as_string("1")) != "1") return;
@@ -192,7 +192,7 @@ class XmlParser {
     }
     if (format != "ascii" && format != "binary") wrong(node, "format", "ascii, binary or appended");
     array.format = format == "ascii" ? VtkXmlArray::Format::ascii : VtkXmlArray::Format::binary;
-    // What VtkXmlSkeleton puts in place of a text.
+    // VtkXmlSkeleton puts this range in place of a text.
     const auto range = parse_ints(node.child_value());
     if (!range || range->size() != 2 || range->front() < 0 || range->back() < range->front()) {
       if (array.obstacle.empty()) array.obstacle = "it holds no data";

@@ -1,4 +1,4 @@
-// What a VTK XML image file (.vti) says about itself:
+// Parses the description in a VTK XML image file (.vti):
 // https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html.
 #pragma once
 
@@ -31,12 +31,12 @@ struct VtkXmlHeader {
   VtkImage image;
   std::vector<VtkXmlArray> arrays;
   std::optional<VtkXmlArray> time;  ///< TimeValue of the field data, one number
-  std::string scalars;              ///< name of the array that the file marks as its scalars; empty where none
+  std::string scalars;              ///< name of the array that the file marks as its scalars; empty if none
 };
 
-/// Reads the markup of one piece of image data. Pure. Throws Error(input), beginning with `path`, naming element and
-/// value, for what is no such file or describes what weir does not read: other kinds of data, several pieces, other
-/// compressors. Of an array that weir does not read, that is in its `obstacle`.
+/// Reads the markup of one piece of image data. Pure. Throws Error(input), beginning with `path` and naming element
+/// and value, if the file is no such file or describes data that weir does not read: other kinds of data, several
+/// pieces, other compressors. An array that weir does not read gets an `obstacle`.
 VtkXmlHeader parse_vtk_xml_header(const VtkXmlSkeleton& skeleton, const std::string& path);
 
 }  // namespace weir

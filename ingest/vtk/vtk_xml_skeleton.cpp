@@ -11,7 +11,7 @@ namespace weir {
 bool VtkXmlSkeleton::push(std::string_view bytes) {
   while (!bytes.empty() && state_ != State::ended) {
     if (state_ == State::text) {
-      // Text may be long and is not looked at: up to the next tag at once.
+      // Text may be long and is not examined: skips to the next tag at once.
       const std::size_t length = std::min(bytes.find('<'), bytes.size());
       for (std::size_t i = 0; i < length && !has_text_; ++i) has_text_ = !is_space(bytes[i]);
       position_ += length;
@@ -50,7 +50,7 @@ void VtkXmlSkeleton::take(char c) {
       if (c == quote_) state_ = State::tag;
       break;
     case State::comment:
-      // The last two characters before this one tell the end.
+      // If the two characters before this one are "--", the comment ends here.
       if (c == '>' && tag_.ends_with("--")) {
         tag_.clear();
         end_tag();

@@ -1,5 +1,5 @@
-// The markup of a VTK XML file without its data, which may be gigabytes of text
-// between two tags, or bytes that are no XML at all.
+// The markup of a VTK XML file without its data. The data may be gigabytes of text between two tags, or raw bytes
+// that are not XML.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,8 @@
 
 namespace weir {
 
-/// Takes a file's bytes from its beginning and keeps the tags; the text between two is replaced by where it lies in
-/// the file, "BEGIN END" in bytes. Ends where the appended data begin. Holds up to kMaxBytes.
+/// Takes a file's bytes from its beginning and keeps the tags. The text between two tags is replaced by its position
+/// in the file, "BEGIN END" in bytes. Ends where the appended data begin. Holds up to kMaxBytes.
 class VtkXmlSkeleton {
  public:
   static constexpr std::size_t kMaxBytes = std::size_t{1} << 20U;
@@ -19,13 +19,13 @@ class VtkXmlSkeleton {
 
   explicit VtkXmlSkeleton(std::string path) : path_(std::move(path)) {}
 
-  /// Takes the next bytes of the file; false where no more are wanted. Throws Error(input) for declarations, which no
-  /// VTK writer makes, and where markup is longer or deeper than these limits.
+  /// Takes the next bytes of the file; returns false if no more are wanted. Throws Error(input) for declarations,
+  /// which no VTK writer makes, and if markup is longer or deeper than the limits above.
   bool push(std::string_view bytes);
 
-  /// The XML so far, appended data closed; whether it is whole is for a parser to say.
+  /// Returns the XML so far, with the appended data element closed. A parser must check whether the XML is complete.
   std::string xml() const;
-  /// Where the appended data begin, behind their underscore.
+  /// The file offset of the appended data, after their underscore.
   std::optional<std::uint64_t> appended() const { return appended_; }
 
  private:

@@ -1,4 +1,4 @@
-// VTK XML image data, .vti.
+// Opens VTK XML image data (.vti).
 #pragma once
 
 #include <array>
@@ -15,17 +15,17 @@
 
 namespace weir {
 
-/// Of the names of its files, in lower case.
+/// Endings of the file names, in lower case.
 inline constexpr std::array<std::string_view, 1> kVtkXmlEndings{".vti"};
 
-/// By the name, or where the file begins with VTK's own element.
+/// Recognises a file by its name, or if it begins with VTK's own element.
 bool recognises_vtk_xml(std::string_view path, std::span<const std::byte> head);
 
-/// The array options.dataset of the points or the cells; else, ghost types and the like aside, the only one that can be
-/// converted, else the one that the file marks as its scalars. Raw appended values without compression are read where
-/// they lie; all others are decoded here, once, into a spool file. Throws Error(usage) where several can be converted
-/// and none is named or marked; Error(input) for what parse_vtk_xml_header refuses and where data and header do not
-/// agree, and what SpoolFile throws.
+/// Opens the array `options.dataset` of the points or the cells. Without a name, and leaving ghost types and similar
+/// marks aside, opens the only array that can be converted, otherwise the array that the file marks as its scalars.
+/// Raw appended values without compression are read in place. This call decodes all others once into a spool file.
+/// Throws Error(usage) if several arrays can be converted and none is named or marked, Error(input) for files that
+/// parse_vtk_xml_header() refuses and if data and header disagree, and the errors of SpoolFile.
 std::unique_ptr<VolumeSource> open_vtk_xml(const std::string& path, const SourceOptions& options);
 std::vector<DatasetInfo> list_vtk_xml(const std::string& path, const SourceOptions& options);
 

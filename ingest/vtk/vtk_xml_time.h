@@ -10,8 +10,8 @@
 
 namespace weir {
 
-/// The time of `file`, whose units VTK does not say; nullopt where it has none. One that cannot be read is said to
-/// options.notice. Throws Error(io) where the device fails.
+/// Returns the time of `file`, without units because VTK states none; nullopt if the file has no time. A time that
+/// cannot be read is reported to options.notice. Throws Error(io) if the device fails.
 std::optional<TimePoint> vtk_xml_time(InputFile& file, const VtkXmlHeader& header, const SourceOptions& options);
 
 }  // namespace weir

@@ -23,18 +23,18 @@ namespace {
 constexpr std::size_t kMostArraysShown = 8;  // in a message
 constexpr std::size_t kAxesOfSpace = 3;
 
-/// The key of the finest level of the image that `node`, a group, is.
+/// Returns the key of the finest level if the group `node` is an image; nullopt otherwise.
 std::optional<std::string> finest_level(const ZarrNode& node) {
   const std::vector<Multiscale> images = multiscales_in(node.attributes);
   if (images.empty()) return std::nullopt;
   return joined_key(node.key, images.front().levels.front().path);
 }
 
-/// What groups say of the arrays in them: those of the store, or, where that is one array, those around it. One thread
-/// at a time.
+/// The context that groups give to the arrays in them: the groups of the store, or, if the store is a single array,
+/// the groups around it. For one thread at a time.
 class Surroundings {
  public:
-  /// `store` outlives it.
+  /// `store` must outlive this object.
   Surroundings(ZarrStore& store, const std::string& path)
       : outer_(outer_store(store, path)),
         levels_(outer_.store ? *outer_.store : store),
@@ -151,7 +151,7 @@ DatasetInfo describe_array(ZarrStore& store, const ZarrNode& node, Surroundings&
   return info;
 }
 
-/// All arrays and what is listed of them, in one order.
+/// All arrays and their descriptions, in the same order.
 struct ListedArrays {
   std::vector<ZarrNode> nodes;
   std::vector<DatasetInfo> infos;

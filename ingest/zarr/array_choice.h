@@ -1,4 +1,4 @@
-// Which array of a Zarr hierarchy becomes the volume.
+// Chooses the array of a Zarr hierarchy that becomes the volume.
 #pragma once
 
 #include <string>
@@ -13,22 +13,22 @@
 
 namespace weir {
 
-/// An array and what is known of it.
+/// An array, its metadata, and their meaning as a volume.
 struct ChosenArray {
   ZarrNode node;
   ZarrArray array;
   ArrayMeaning meaning;
 };
 
-/// options.dataset, a key or, where that is an image of several scales, its finest level. Empty: the finest level of
-/// the image that the root is, or the only array that is a volume, levels other than the finest aside; with
-/// options.component the only one of vectors, where there are some. Throws Error(usage),
-/// with the commands, where there are several; arrays that cannot be converted are said to options.notice; Error(input)
-/// where there is none of that name or none is a volume.
+/// Returns the array options.dataset, a key; if the key names an image of several scales, its finest level. If
+/// options.dataset is empty, returns the finest level of the root's image, or else the only array that is a volume;
+/// levels other than the finest do not count. With options.component, only arrays of vectors count, if there are any.
+/// Reports arrays that cannot be converted to options.notice. Throws Error(usage), with the commands, if there are
+/// several volumes, and Error(input) if no array has the name or none is a volume.
 ChosenArray choose_array(ZarrStore& store, const std::string& path, const SourceOptions& options);
 
-/// What `weir inspect` lists of all arrays. Damaged metadata are the obstacle of their array. Throws Error(input) where
-/// there is none.
+/// Returns what `weir inspect` lists of all arrays. If an array's metadata are damaged, the error becomes its
+/// obstacle. Throws Error(input) if there is no array.
 std::vector<DatasetInfo> list_arrays(ZarrStore& store, const std::string& path);
 
 }  // namespace weir

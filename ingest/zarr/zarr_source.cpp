@@ -21,7 +21,7 @@
 namespace weir {
 namespace {
 
-/// Memory of open shards, of keys and of metadata, in bytes.
+/// Memory for open shards, keys and metadata, in bytes.
 constexpr std::uint64_t kZarrOwnBytes = std::uint64_t{2} << 20U;
 
 ScratchSize scratch_of(const ZarrArray& array, const VoxelParts& parts) {
@@ -115,7 +115,7 @@ class ZarrSource final : public VolumeSource {
   ChunkBoxes boxes_;
 };
 
-// A volume over time is made for who says how far apart its planes are to be.
+// A volume with time as an axis is allowed only if the user gives --spacing, the distance of its planes.
 void check_obstacle(const ArrayMeaning& meaning, const SourceOptions& options, const std::string& where) {
   if (meaning.obstacle.empty() || (meaning.over_time && options.spacing)) return;
   if (!meaning.over_time) throw input_error(where, meaning.obstacle);

@@ -1,4 +1,5 @@
-// Zarr hierarchies of version 2 and 3: directories or zip files with arrays in chunks, images of OME-Zarr among them.
+// Reads Zarr hierarchies, version 2 and 3: directories or zip files with chunked arrays, including images of
+// OME-Zarr.
 #pragma once
 
 #include <cstddef>
@@ -14,14 +15,14 @@
 
 namespace weir {
 
-/// A directory that holds zarr.json, .zgroup or .zarray, such a file itself, and a zip file, by its first bytes,
-/// `head`; and what only looks so, by a name (.zip, .ozx).
+/// Returns whether `path` looks like Zarr: a directory that holds zarr.json, .zgroup or .zarray, one of these files
+/// itself, a file that begins as a zip file (`head` is its first bytes), or a name that ends with .zip or .ozx.
 bool recognises_zarr(std::string_view path, std::span<const std::byte> head);
 
-/// The array options.dataset, or the only one; of an image of several scales the finest. Its last three axes are z, y,
-/// x, options.index is the position on those before. Chunks that are not stored read as the fill value, unless
-/// options.missing_chunks refuses them. Throws Error(usage) where several arrays can be converted and none is named,
-/// with the commands, and what reading metadata and looking at chunks throws.
+/// Opens the array options.dataset, or the only array; of an image with several scales, the finest. The array's last
+/// three axes are z, y, x; options.index is the position on the axes before them. Chunks that are not stored read as
+/// the fill value, unless options.missing_chunks refuses them. Throws Error(usage), with the commands, if several
+/// arrays can be converted and none is named. Also throws the errors of reading metadata and of scanning chunks.
 std::unique_ptr<VolumeSource> open_zarr(const std::string& path, const SourceOptions& options);
 std::vector<DatasetInfo> list_zarr(const std::string& path, const SourceOptions& options);
 

@@ -1,4 +1,4 @@
-// weir cancel: has a running `weir watch` give jobs up.
+// weir cancel: tells a running `weir watch` to cancel jobs.
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -20,7 +20,7 @@ struct CancelArguments {
   bool json = false;
 };
 
-// A done job is asked for its thumbnail only.
+// For a job that is done, only its thumbnail is cancelled.
 std::string cancelled_text(const ServiceClient::Json& job) {
   return cat("job ", job.at("id").get<std::int64_t>(),
              job.at("state") == "done" ? " is done, and goes without a thumbnail: " : " is cancelled: ",

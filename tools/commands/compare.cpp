@@ -52,10 +52,10 @@
 namespace weir {
 namespace {
 
-/// Leaves of the mapped file between two releases, stacks, the blocks' own waste.
+/// Memory for pages of the mapped file between two releases, stacks and the blocks' overhead.
 constexpr std::uint64_t kCompareBytes = std::uint64_t{56} << 20U;
 constexpr std::uint64_t kLeastBlockBytes = std::uint64_t{1} << 20U;
-/// Larger blocks are no faster.
+/// Larger blocks are not faster.
 constexpr std::uint64_t kMostBlockBytes = std::uint64_t{256} << 20U;
 
 struct CompareArguments {
@@ -66,19 +66,19 @@ struct CompareArguments {
   std::string trace;
   bool json = false;
   bool derived = false;
-  std::string spectrum;             ///< a file; empty: not asked for
-  std::vector<std::string> vector;  ///< source and file of the second and the third component; empty: not asked for
+  std::string spectrum;             ///< output file; empty: not asked for
+  std::vector<std::string> vector;  ///< source and file of the second and third component; empty: not asked for
 
-  /// Whether the length of a voxel counts.
+  /// Returns whether the size of a voxel matters for what is asked.
   bool asks_for_lengths() const { return derived || !spectrum.empty() || !vector.empty(); }
 };
 
-/// Of the source two blocks are held at a time. For derived errors and spectra also one of decoded values, and each
-/// with what is around it may be twice as large; each thread counts errors in a histogram, or transforms a block.
+/// Two blocks of the source are held at a time. Derived errors and spectra also hold a block of decoded values; each
+/// block with its surroundings may be twice as large. Each thread counts errors in a histogram, or transforms a block.
 constexpr std::uint64_t kHistogramBytes = std::uint64_t{600} << 10U;
 constexpr std::uint64_t kBlocks = 2;
 constexpr std::uint64_t kBlocksOfDerived = 6;
-/// And two for each other component.
+/// With --vector: two more for each other component.
 constexpr std::uint64_t kBlocksOfVector = 14;
 
 std::uint64_t block_bytes(std::uint64_t memory, std::uint64_t source_bytes, std::uint64_t blocks) {
@@ -90,14 +90,14 @@ std::uint64_t block_bytes(std::uint64_t memory, std::uint64_t source_bytes, std:
   return std::min((memory - fixed) / blocks, kMostBlockBytes);
 }
 
-/// A file, and the source as the file's sidecar and the options say it was read.
+/// A file, and its source as the file's sidecar and the options say it was read.
 struct ComparedPair {
   NvdbFile file;
   std::unique_ptr<VolumeSource> source;
 };
 
-/// `source` with the voxel size of `file`, where no option gave another: lengths are then those of the conversion,
-/// whether or not the source names any, and with or without a sidecar.
+/// Returns `source` with the voxel size of `file`, unless an option gave a voxel size. Lengths are then those of the
+/// conversion, whether or not the source names any, with or without a sidecar.
 std::unique_ptr<VolumeSource> with_voxel_size(std::unique_ptr<VolumeSource> source, const NvdbFile& file,
                                               const SourceOptions& options) {
   SourceOptions place;
@@ -113,7 +113,7 @@ ComparedPair open_pair(const std::string& input, const std::string& volume, cons
     throw input_error(volume, "is no NanoVDB file; give the source first, then the .nvdb file made of it");
   }
   NvdbFile file(volume);
-  file.mapping().release_pages();  // what its validation looked at
+  file.mapping().release_pages();  // pages that the validation read
   SourceOptions options = command_request(arguments.options).source;
   const InputRecord record = read_input_record(file);
   if (!record.unusable.empty()) spdlog::warn("{}", record.unusable);
@@ -131,7 +131,7 @@ ComparedPair open_pair(const std::string& input, const std::string& volume, cons
   return {std::move(file), std::move(source)};
 }
 
-/// That of INPUT and OUT.nvdb, and behind it those of --vector.
+/// Opens the pair of INPUT and OUT.nvdb, then the pairs of --vector.
 std::vector<ComparedPair> open_pairs(const CompareArguments& a) {
   std::vector<ComparedPair> pairs;
   pairs.push_back(open_pair(a.input, a.volume, a));
@@ -150,7 +150,7 @@ std::uint64_t block_bytes(const CompareArguments& arguments, const ConversionOpt
   return block_bytes(run.memory, others, pairs.size() > 1 ? kBlocksOfVector : each > 0 ? kBlocksOfDerived : kBlocks);
 }
 
-/// What is asked for besides the comparison.
+/// The optional results besides the comparison.
 struct Besides {
   std::optional<DerivedErrors> derived;
   std::optional<PowerSpectrum> spectrum;
@@ -175,7 +175,7 @@ nlohmann::ordered_json to_json(const CompareArguments& arguments, const Comparis
   report["nonfinite_decoded"] = c.nonfinite_decoded;
   report["different"] = c.different;
   report["nonfinite_different"] = c.nonfinite_different;
-  report["missing"] = c.missing + c.loss.unmarked;  // left out of the error, or compared as data: the sidecar's count
+  report["missing"] = c.missing + c.loss.unmarked;  // like the sidecar's count
   report["zeros"] = c.zeros;
   report["zeros_lost"] = c.zeros_lost;
   report["conversion_loss"] = loss_json(c.loss);
@@ -245,10 +245,10 @@ void warn_of_loss(const std::string& input, const ConversionLoss& loss) {
   }
 }
 
-// The passes over one volume and its source, or over the three of a vector field.
+// The passes over one volume and its source, or over the three components of a vector field.
 class ComparePasses {
  public:
-  // `pairs` and `trace` outlive it.
+  // `pairs` and `trace` must outlive the object.
   ComparePasses(const CompareArguments& arguments, const std::vector<ComparedPair>& pairs, std::uint64_t block_bytes,
                 Trace* trace)
       : arguments_(arguments), pairs_(pairs), progress_(arguments.progress) {
@@ -301,7 +301,7 @@ class ComparePasses {
   CompareOptions options_;
 };
 
-// Of all files that are compared, and of their sidecars.
+// Returns the paths of all compared files and of their sidecars.
 std::vector<std::string> input_paths(const CompareArguments& arguments) {
   std::vector<std::string> paths{arguments.input, arguments.volume, find_sidecar(arguments.volume)};
   for (const std::string& path : arguments.vector) {

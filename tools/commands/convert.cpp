@@ -1,4 +1,4 @@
-// weir convert: volumes into NanoVDB files of exactly the asked size.
+// weir convert: converts volumes to NanoVDB files of exactly the requested size.
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
@@ -50,11 +50,11 @@ namespace {
 struct ConvertArguments {
   std::vector<std::string> inputs;
   std::string output;
-  GivenOptions options;  ///< of input, method and run
+  GivenOptions options;  ///< options of input, method and run
   ProgressOptions progress;
-  std::string within;  ///< a directory; empty: not asked for
+  std::string within;  ///< directory that inputs must lie in; empty: not asked for
   std::string trace;
-  std::string bandwidth;  ///< a size, per second
+  std::string bandwidth;  ///< bytes per second, as a size
   bool skip_done = false;
   bool again = false;
   bool brief_names = false;
@@ -63,7 +63,7 @@ struct ConvertArguments {
   bool dry_run = false;
 };
 
-// Bytes per second; none: no limit.
+// Returns bytes per second; nullopt: no limit.
 std::optional<std::uint64_t> parse_bandwidth(const std::string& text) {
   if (text.empty()) return std::nullopt;
   const auto bytes = parse_bytes(text);
@@ -73,8 +73,7 @@ std::optional<std::uint64_t> parse_bandwidth(const std::string& text) {
   return bytes;
 }
 
-// A header may name any file that this process may read. Whoever lets others choose the inputs keeps them to a
-// directory; to others it is said.
+// Refuses files outside --within, because a header may name any file; without --within, logs them.
 void check_files(const SourceInfo& info, const std::string& within) {
   if (info.files.empty()) return;
   if (const auto outside = within.empty() ? std::nullopt : file_outside(info.files, within)) {
@@ -92,7 +91,7 @@ void check_files(const SourceInfo& info, const std::string& within) {
   }
 }
 
-// A kill may come between the end of a conversion and the removal of what it was made from.
+// Removes leftovers, because a kill may come between the end of a conversion and the removal of its working files.
 void tidy_up(const std::string& output) {
   try {
     if (discard_all_beside(*make_posix_file_system(), output)) {
@@ -103,7 +102,8 @@ void tidy_up(const std::string& output) {
   }
 }
 
-// The record of `options.output` where it is done; else makes room for it, if what stands there is weir's own.
+// Returns the record of `options.output` if the conversion is done; otherwise makes room for it, if weir's own file
+// stands there.
 std::optional<Sidecar> skip_or_replace(const SourceInfo& info, const ConvertArguments& a, ConversionOptions& options) {
   FinishedOutput found = find_output(info, options);
   switch (found.state) {
@@ -133,11 +133,11 @@ std::optional<Sidecar> skip_or_replace(const SourceInfo& info, const ConvertArgu
   throw Error(ErrorKind::internal, "unknown state of an output");
 }
 
-// The default gives a small volume more than its rate where it needs it.
+// Warns if files differ in size: the default budget gives a small volume more than its rate if needed.
 void say_sizes(std::span<const SeriesStep> steps, std::span<const std::string> outputs, std::span<const Sidecar> made,
                const Budget& budget) {
   if (budget.kind != Budget::Kind::automatic) return;
-  std::map<std::string, std::size_t> first;  // of each series
+  std::map<std::string, std::size_t> first;  // first step of each series
   for (std::size_t i = 0; i < steps.size(); ++i) {
     const std::size_t one = first.emplace(steps[i].series, i).first->second;
     if (made[i].file.bytes == made[one].file.bytes) continue;
@@ -147,7 +147,7 @@ void say_sizes(std::span<const SeriesStep> steps, std::span<const std::string> o
   }
 }
 
-// Of the scene: what a table misses counts as hidden, and its bytes are saved.
+// Warns of the scene's opacity: values that the table misses count as hidden, and their bytes are saved.
 void say_opacity(const ConversionOptions& options) {
   if (!options.scene) return;
   if (const std::string line = opacity_warning(options.scene->scene); !line.empty()) {
@@ -159,7 +159,7 @@ std::unique_ptr<VolumeSource> open_step(const SeriesStep& step, const SourceOpti
   return open_source(step.path, options_of_step(options, step));
 }
 
-// What the steps of one call have in common.
+// The data that all steps of one call share.
 struct SeriesWork {
   const ConvertArguments& arguments;
   SeriesExtents& extents;
@@ -176,7 +176,7 @@ std::unique_ptr<VolumeSource> open_checked(const SeriesStep& step, const SourceO
   return source;
 }
 
-// Calls action(source, files), which keep to the bandwidth.
+// Calls action(source, files); both keep to the bandwidth limit.
 template <typename Action>
 void with_bandwidth(std::unique_ptr<VolumeSource> source, const SeriesWork& work, const Action& action) {
   const std::unique_ptr<FileSystem> unlimited = make_posix_file_system({log_notice});
@@ -210,7 +210,7 @@ Sidecar convert_step(const SeriesStep& step, const SourceOptions& source_options
   if (a.count_values) options.source_values = file_values(step.path, source_options);
   Progress progress(a.progress);
   ConversionControl control = control_of(work, progress);
-  if (a.progress.descriptor >= 0) {  // whoever reads it may wait for room
+  if (a.progress.descriptor >= 0) {  // the reader may first have to make room
     control.planned = [&](std::uint64_t bytes) { announce(a.progress, nlohmann::json{{"planned", bytes}}.dump()); };
   }
   Sidecar sidecar;
@@ -223,7 +223,7 @@ Sidecar convert_step(const SeriesStep& step, const SourceOptions& source_options
   return sidecar;
 }
 
-// --dry-run: says on stdout, or in what it returns, what convert_step would come to.
+// For --dry-run: prints or returns the forecast of convert_step.
 nlohmann::ordered_json forecast_step(const SeriesStep& step, const SourceOptions& source_options,
                                      ConversionOptions options, const SeriesWork& work) {
   const ConvertArguments& a = work.arguments;
@@ -243,10 +243,10 @@ nlohmann::ordered_json forecast_step(const SeriesStep& step, const SourceOptions
   return json;
 }
 
-// What the steps of one call have come to.
+// The results of the steps of one call.
 struct StepResults {
   std::vector<Sidecar> sidecars;
-  std::vector<nlohmann::ordered_json> forecasts;  // of --dry-run, which makes no sidecars
+  std::vector<nlohmann::ordered_json> forecasts;  // with --dry-run, which makes no sidecars
 };
 
 StepResults convert_steps(std::span<const SeriesStep> steps, std::span<const std::string> outputs,
@@ -264,7 +264,7 @@ StepResults convert_steps(std::span<const SeriesStep> steps, std::span<const std
     try {
       results.sidecars.push_back(convert_step(steps[i], source_options, options, work));
     } catch (const std::exception&) {
-      if (steps.size() > 1) {  // by its output: several may be of one file
+      if (steps.size() > 1) {  // named by its output, because several volumes may come from one file
         spdlog::warn("{} of {} volumes were converted, and none from {} on; --skip-done leaves out what is done", i,
                      steps.size(), outputs[i]);
       }

@@ -1,4 +1,4 @@
-// weir export: a NanoVDB file as an OpenVDB file, for programs that read no other.
+// weir export: writes a NanoVDB file as an OpenVDB file, for programs that read only OpenVDB.
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
@@ -37,7 +37,7 @@
 namespace weir {
 namespace {
 
-/// A batch of leaves, mapped, decoded and compressed; the output's buffer; stacks.
+/// Memory for a batch of leaves (mapped, decoded and compressed), the output's buffer and stacks.
 constexpr std::uint64_t kExportBytes = std::uint64_t{24} << 20U;
 
 struct ExportArguments {
@@ -55,7 +55,7 @@ std::uint32_t compression_flags(const std::string& name) {
   return name == "blosc" ? kVdbBlosc : name == "zip" ? kVdbZip : 0;
 }
 
-// The nodes above the leaves are looked at all together when the file is opened.
+// Throws if the memory is too small. Opening the file reads all nodes above the leaves at once.
 void require_memory(const NvdbGrid& grid, std::uint64_t memory) {
   const auto [leaves, lower, upper] = grid.node_counts();
   const std::uint64_t needed =
@@ -65,7 +65,7 @@ void require_memory(const NvdbGrid& grid, std::uint64_t memory) {
               cat("--memory ", format_bytes(memory), " is too small; give at least ", (needed >> 20U) + 1, "MiB"));
 }
 
-// Of this very volume; none where there is no sidecar, or a damaged one, or that of another volume.
+// Returns the sidecar of this volume; nullopt if it is missing, damaged or of another volume.
 std::optional<Sidecar> sidecar_of(const NvdbFile& file) {
   const std::string path = find_sidecar(file.path());
   if (!is_there(path)) return std::nullopt;
@@ -139,7 +139,7 @@ void export_volume(const ExportArguments& arguments) {
   if (const auto id = file_id(arguments.volume)) require_not_input({&*id, 1}, arguments.output);
   refuse_foreign_file(arguments.volume);
   const NvdbFile file(arguments.volume);
-  file.mapping().release_pages();  // what its validation looked at
+  file.mapping().release_pages();  // pages that the validation read
   require_memory(file.grid(), run.memory);
   warn_of_other_grids(file);
 
@@ -160,7 +160,7 @@ void export_volume(const ExportArguments& arguments) {
 
   const OpenVdbLibrary& library = openvdb_library(arguments.output + ": is to be an OpenVDB file");
   const std::unique_ptr<FileSystem> files = make_posix_file_system();
-  PartialFile output(*files, arguments.output, arguments.overwrite);  // refuses a name before all is read
+  PartialFile output(*files, arguments.output, arguments.overwrite);  // refuses a bad name before everything is read
   if (sidecar) {
     const auto started = [&](std::uint64_t bytes) { progress.start("check", bytes); };
     refuse_damaged(arguments.volume, *sidecar, {{}, started, advance});

@@ -1,4 +1,4 @@
-// weir flip: how different two pictures look.
+// weir flip: measures how different two pictures look.
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <initializer_list>
@@ -78,7 +78,7 @@ void print_text(const FlipSummary& summary) {
   line("max                      ", summary.max);
 }
 
-// The map of `errors`, with the scale that its colours have where it is asked for.
+// Draws the map of `errors`, with a colour bar if asked for.
 Picture draw_map(const FlipArguments& arguments, std::span<const float> errors, const Image& reference) {
   Picture map;
   map.image = flip_picture(errors, reference.width, reference.height);

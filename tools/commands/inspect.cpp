@@ -1,6 +1,5 @@
-// weir inspect: what a NanoVDB file holds and what its sidecar says about it, or
-// what an input holds. Decodes no block unless the histogram has to be counted (no
-// sidecar); of a packed file it looks at all directories.
+// weir inspect: shows what a NanoVDB file holds and what its sidecar says, or what an input holds. Decodes no block
+// unless the histogram has to be counted (no sidecar); for a packed file it reads all directories.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
@@ -58,10 +57,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// They choose a part or a component of a volume; all are listed.
+/// Options that choose a part or a component of a volume; the listing shows all.
 constexpr std::array<std::string_view, 5> kNotListed{"index", "component", "magnitude", "roi", "ghost"};
 
-constexpr std::size_t kBins = 256;  // of a histogram counted here
+constexpr std::size_t kBins = 256;  // bins of a histogram that is counted here
 
 struct InspectArguments {
   std::vector<std::string> paths;
@@ -74,16 +73,16 @@ struct InspectArguments {
 struct Inspection {
   const NvdbGrid& grid;
   std::optional<Sidecar> sidecar;
-  bool sidecar_matches = false;          ///< size, head checksum and digest (is_of.h) are the volume's
-  std::optional<Error> sidecar_error{};  ///< why that which is there cannot be read; none: it can, or there is none
+  bool sidecar_matches = false;          ///< size, head checksum and digest match the volume's (is_of.h)
+  std::optional<Error> sidecar_error{};  ///< why an existing sidecar cannot be read; nullopt: readable or missing
   Sidecar::Histogram histogram;
-  std::optional<PackedCensus> packed;  ///< where the grid is packed
-  MinMax values{};                     ///< least and largest; NaN where none is finite
+  std::optional<PackedCensus> packed;  ///< only for a packed grid
+  MinMax values{};                     ///< least and largest value; NaN if none is finite
 };
 
 std::string shown_text(const Index3& i) { return cat(i.x, " x ", i.y, " x ", i.z); }
 std::string shown_text(const std::array<double, 3>& v) { return cat(v[0], ", ", v[1], ", ", v[2]); }
-// With the digits that tell the ends apart.
+// Returns the range with enough digits to tell its ends apart.
 std::string range_text(const std::array<double, 2>& range) {
   if (std::isnan(range[0]) && std::isnan(range[1])) return "none finite";
   const std::string low = short_number(range[0]);
@@ -98,7 +97,7 @@ const char* checksum_state(const NvdbGrid& grid) {
   return grid.head_checksum() == computed_head_checksum(grid) ? "ok" : "wrong";
 }
 
-// As the root says, or where its writer left that out, of all blocks.
+// Returns the range in the root, or if its writer left that out, the range of all blocks.
 MinMax range_of_values(const NvdbGrid& grid) {
   const MinMax stored{grid.value_min(), grid.value_max()};
   if (!std::isnan(stored.min) || !std::isnan(stored.max)) return stored;
@@ -123,7 +122,7 @@ Inspection look_at(const NvdbFile& file, const ProgressOptions& progress) {
     try {
       result.sidecar = read_sidecar(path);
       result.sidecar_matches = is_of(*result.sidecar, file);
-    } catch (const Error& error) {  // the volume may be sound all the same
+    } catch (const Error& error) {  // the volume may still be sound
       result.sidecar_error = error;
     }
   }
@@ -141,7 +140,7 @@ HistogramLabels labels_of(const NvdbFile& file, const Inspection& found) {
   return {printable(title), values.empty() ? "value" : printable(values)};
 }
 
-// Names and units are a foreign file's.
+// Prints a line. Names and units come from a foreign file, so control characters are escaped.
 void line(const char* key, const std::string& value) { std::cout << cat(key, one_line(value), '\n'); }
 
 void print_grid(const NvdbFile& file, const MinMax& values) {
@@ -171,7 +170,7 @@ void print_grid(const NvdbFile& file, const MinMax& values) {
 
 std::string certificate_text(const Sidecar& s, const Sidecar::CertifiedError& error) {
   if (error.lossless) {
-    // So that it is seen: float32 rounds all values to some digit.
+    // Rounding is mentioned only if it is visible: float32 rounds every value to some digit.
     const double seen = 1e-4 * (s.value_range[1] - s.value_range[0]);
     const bool rounded = s.conversion_loss.overflow > 0 || s.conversion_loss.max_abs_error > seen;
     return cat(lossless_text(s), lossless_everywhere(s) ? ": every voxel" : ": each of them", " as in the source",
@@ -196,7 +195,7 @@ void print_sidecar(const Sidecar& s) {
   line("selection   ", cat(s.selection.leaves_kept, " of ", s.selection.leaves_total, " leaves by ", s.selection.metric,
                            ", brick ", s.selection.brick, ", fill ", s.selection.fill, "; bits 1:", bits[0],
                            " 2:", bits[1], " 4:", bits[2], " 8:", bits[3], " 16:", bits[4], " 32:", bits[5]));
-  const double share = s.background.share;  // 0 where it was given, and not counted
+  const double share = s.background.share;  // 0 if the background was given and not counted
   line("background  ", cat(short_number(static_cast<double>(s.background.value)), ", ", s.background.method,
                            share > 0 ? cat(", ", short_number(100 * share), " % of the voxels") : std::string()));
   if (const std::string text = rounded_text(s.conversion_loss); !text.empty()) line("rounded     ", text);
@@ -268,18 +267,18 @@ Json to_json(const NvdbFile& file, const Inspection& found) {
       {"sidecar", found.sidecar ? Json::parse(to_json_text(*found.sidecar)) : Json()}};
 }
 
-/// What came of one file.
+/// The result for one file.
 struct Inspected {
   Json report{};                   ///< with --json
-  std::optional<Error> problem{};  ///< what is wrong beside a volume that could be read; none: nothing
+  std::optional<Error> problem{};  ///< a fault besides a volume that could be read; nullopt: none
 };
 
-// A damaged .nvdb without its magic is still no raw file.
+// Returns whether `path` is taken as a grid. A damaged .nvdb without its magic is still no raw file.
 bool is_grid(const std::string& path, const SourceOptions& options) {
   return !options.stack && (path.ends_with(".nvdb") || is_nanovdb(path));
 }
 
-/// Prints what is found, `apart` after an empty line, or returns it as JSON. `options` are those of arguments.source.
+/// Prints the result, after an empty line if `apart`, or returns it as JSON. `options` are those of arguments.source.
 Inspected inspect(const std::string& path, const InspectArguments& arguments, const SourceOptions& options,
                   bool apart) {
   if (!is_grid(path, options)) {
@@ -289,7 +288,7 @@ Inspected inspect(const std::string& path, const InspectArguments& arguments, co
     InputListing listing = list_input(path, options);
     if (!options.dataset.empty() && !options.stack) keep_named(listing, options.dataset);
     GivenOptions besides = arguments.source;
-    if (!options.stack) besides.erase("dataset");  // each command has that of its volume
+    if (!options.stack) besides.erase("dataset");  // each command names its own dataset
     listing.words = input_words(besides);
     if (arguments.json) return {to_json(listing)};
     if (apart) std::cout << '\n';

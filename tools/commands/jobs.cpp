@@ -1,4 +1,4 @@
-// weir jobs: what a running `weir watch` knows of its sources.
+// weir jobs: lists what a running `weir watch` knows of its sources.
 #include <CLI/CLI.hpp>
 #include <ctime>
 #include <iostream>
@@ -26,7 +26,8 @@ struct JobsArguments {
   bool json = false;
 };
 
-// A watch without jobs is one of the status; one that the configuration names no more may have some.
+// Throws if there is no watch `label`. A watch without jobs appears in the status; a watch that was removed from the
+// configuration may still have jobs.
 void require_watch(const ServiceClient& client, const std::string& label) {
   const std::string any = cat("/api/jobs?limit=1&watch=", percent_encode(label));
   const auto has_some = [](const ServiceClient::Json& page) { return page.at("total").get<std::uint64_t>() > 0; };

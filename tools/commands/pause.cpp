@@ -1,4 +1,4 @@
-// weir pause: has a running `weir watch` start no more jobs.
+// weir pause: tells a running `weir watch` to start no more jobs.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>

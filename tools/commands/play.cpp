@@ -1,4 +1,4 @@
-// weir play: a series of NanoVDB files as frames, PNG files or raw RGB for an encoder.
+// weir play: renders a series of NanoVDB files as frames, PNG files or raw RGB for an encoder.
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 #include <CLI/CLI.hpp>
@@ -73,7 +73,7 @@ void write_stdout(std::span<const std::uint8_t> bytes) {
   }
 }
 
-// A frame must not replace what it, or another one, is made from.
+// Refuses a frame that would replace one of the inputs of any frame.
 void refuse_inputs(const PlayArguments& arguments, const PictureRequest& request,
                    std::span<const std::string> volumes) {
   std::vector<std::string> inputs = picture_inputs(arguments.picture, request);
@@ -84,7 +84,7 @@ void refuse_inputs(const PlayArguments& arguments, const PictureRequest& request
   }
 }
 
-// Where frames go. The directory is tried before the work.
+// Returns the writer of the frames. The directory is tried before the work.
 FrameWriter open_output(const PlayArguments& arguments, FileSystem& files, std::size_t frames) {
   if (!arguments.raw.empty()) {
     return [](std::size_t, const Picture& picture) { write_stdout(encode_rgb24(picture.image, picture.tone)); };
@@ -98,7 +98,7 @@ FrameWriter open_output(const PlayArguments& arguments, FileSystem& files, std::
   };
 }
 
-// One look for all steps: transfer function, background and framing must not follow the single step.
+// Fixes one look for all steps: transfer function, background and framing must not change from step to step.
 void fix_look(PictureRequest& request, std::span<const std::string> files) {
   const SeriesSummary series = summarise_series(files);
   if (series.range) {
@@ -120,7 +120,7 @@ void fix_look(PictureRequest& request, std::span<const std::string> files) {
   request.scene.camera.framing = Framing::volume;
 }
 
-// The colours are the same in all frames, and so is the bar beside them.
+// Returns the colour bar, which is the same for all frames because the colours are.
 std::optional<Image> bar_of_series(const PictureRequest& request, const std::string& first) {
   if (!request.colorbar) return std::nullopt;
   if (!request.scene.volume.range) {
@@ -171,7 +171,7 @@ void play_series(const PlayArguments& arguments) {
   PictureRequest request = read_picture_request(arguments.picture);
   request.sampling.cancel = &interrupt_flag();
   const std::vector<std::string> volumes = expand_volumes(arguments.inputs);
-  if (volumes.size() > 1) request.backend.memory.volumes = 2;  // play() holds as many
+  if (volumes.size() > 1) request.backend.memory.volumes = 2;  // play() holds two volumes
   const std::unique_ptr<Backend> backend = make_backend(request.backend, warn);
   const std::unique_ptr<FileSystem> files = make_posix_file_system();
   std::optional<ResultDirectory> directory;
@@ -190,7 +190,7 @@ void play_series(const PlayArguments& arguments) {
   Progress progress(arguments.progress);
   progress.start(cat("play, ", render_mode_name(request.scene.mode)), request.pixel_samples() * volumes.size(),
                  ProgressUnit::samples);
-  std::uint64_t before = 0;  // samples of the frames before this one, whose count starts at 0 again
+  std::uint64_t before = 0;  // samples of the previous frames; each frame counts from 0
   std::uint64_t last = 0;
   request.sampling.progress = [&](std::uint64_t done) {
     if (done < last) before += request.pixel_samples();

@@ -1,4 +1,4 @@
-// weir render: a picture of a NanoVDB file, or of the source it would be made from.
+// weir render: draws a picture of a NanoVDB file, or of the source it would be made from.
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
@@ -57,8 +57,8 @@ struct RenderArguments {
 
 struct LoadedInput {
   std::unique_ptr<LoadedVolume> volume;
-  std::string title;            ///< what its values are
-  std::optional<MinMax> range;  ///< of its finite values, where it is known
+  std::string title;            ///< what the values are
+  std::optional<MinMax> range;  ///< range of the finite values, if known
 };
 
 LoadedInput load_file(Backend& backend, const RenderArguments& arguments) {
@@ -94,13 +94,13 @@ LoadedInput load_dense(Backend& backend, const RenderArguments& arguments, std::
   return {std::move(volume), quantity_title(source->info()), range};
 }
 
-// Null where nothing was looked up in a cache.
+// Returns the counts; null if nothing was looked up in a cache.
 nlohmann::json to_json(const CacheCounts& counts) {
   if (counts.lookups == 0) return nullptr;
   return {{"lookups", counts.lookups}, {"decoded", counts.decoded}, {"evicted", counts.evicted}};
 }
 
-// Gives a scene without a range that of the values, where it is known, and warns of what cannot be seen in it.
+// Gives a scene without a range the range of the values, if known. Warns of values that the scene cannot show.
 void fit_scene(Scene& scene, const std::optional<MinMax>& range, const GivenOptions& given) {
   if (range) {
     if (const std::string line = surface_warning(scene, *range); !line.empty()) spdlog::warn("{}", line);
@@ -109,15 +109,15 @@ void fit_scene(Scene& scene, const std::optional<MinMax>& range, const GivenOpti
   if (const std::string line = opacity_warning(scene); !line.empty()) spdlog::warn("{}: {}", given.at("scene"), line);
 }
 
-// What a report tells of a picture besides the picture itself.
+// The figures of a report besides the picture's own.
 struct RenderFigures {
   std::string_view backend;
   const LoadSummary& loaded;
   double load_s;
-  std::uint64_t bytes;  // of the image file
+  std::uint64_t bytes;  // bytes of the image file
 };
 
-// Prints it on stdout with --json, else says the most of it in the log.
+// Prints the report on stdout with --json, otherwise logs most of it.
 void write_report(const RenderArguments& arguments, const PictureRequest& request, const Picture& picture,
                   const RenderFigures& figures) {
   if (!arguments.json) {

@@ -1,4 +1,4 @@
-// weir resume: has a paused `weir watch` start jobs again.
+// weir resume: tells a paused `weir watch` to start jobs again.
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <memory>
@@ -18,7 +18,7 @@ struct ResumeArguments {
   bool json = false;
 };
 
-// Full disks hold jobs, too: all, or those that write to them.
+// Full disks also hold jobs: all jobs, or those that write to these disks.
 std::string resume_text(const ServiceClient::Json& status) {
   const std::string held = printable(status.at("reason").get<std::string>());
   if (status.at("state") == "paused" && !held.empty()) return cat("resumed, but nothing starts yet: ", held, '\n');

@@ -1,4 +1,4 @@
-// weir retry: has a running `weir watch` try jobs again.
+// weir retry: tells a running `weir watch` to try jobs again.
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <memory>

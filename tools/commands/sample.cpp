@@ -1,4 +1,4 @@
-// weir sample: a synthetic volume as a raw file.
+// weir sample: writes a synthetic volume as a raw file.
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
@@ -34,9 +34,9 @@
 namespace weir {
 namespace {
 
-/// Program, libraries, stacks and lattices: what is resident besides the slabs.
+/// Memory besides the slabs: program, libraries, stacks and lattices.
 constexpr std::uint64_t kFixedBytes = std::uint64_t{40} << 20U;
-/// Larger slabs are no faster and keep the writer waiting at the end.
+/// Larger slabs are not faster and keep the writer waiting at the end.
 constexpr std::uint64_t kMostSlabBytes = std::uint64_t{96} << 20U;
 
 struct SampleArguments {
@@ -49,7 +49,7 @@ struct SampleArguments {
   ProgressOptions progress;
 };
 
-/// What the file will be, after options and name agreed.
+/// The layout of the file, after options and name were reconciled.
 struct Shape {
   Index3 extent;
   ScalarType type = ScalarType::float32;
@@ -61,7 +61,7 @@ Error contradiction(const std::string& path, const Message& given, const std::st
                                     "; drop the option or choose another name")};
 }
 
-// A name of the pattern NAME_XxYxZ_TYPE.raw is believed by whoever reads the file.
+// Returns the layout. A name of the pattern NAME_XxYxZ_TYPE.raw must be true, because readers believe it.
 Shape resolve_shape(const SampleArguments& arguments, const SourceOptions& options) {
   const std::string& path = arguments.output;
   if (path == "-") {
@@ -95,14 +95,15 @@ Shape resolve_shape(const SampleArguments& arguments, const SourceOptions& optio
   return {shape.extent, *name->type, name->big_endian};
 }
 
-/// Voxels of a slab: two of floats, and two of packed bytes where the floats are not written themselves.
+/// Returns the voxels of a slab. Two slabs of floats are held, and two of packed bytes unless the floats themselves
+/// are written.
 std::int64_t slab_voxels(std::uint64_t memory, const ValuePacker& packer, ScalarType type) {
   const std::uint64_t voxel_bytes = 4 + (packer.is_identity() ? 0 : scalar_bytes(type));
   const std::uint64_t slab_bytes = std::min((memory - kFixedBytes) / 2, kMostSlabBytes);
   return static_cast<std::int64_t>(slab_bytes / voxel_bytes);
 }
 
-/// Makes slab after slab; one is written while the next is made.
+/// Makes slab after slab; a slab is written while the next slab is made.
 class SlabWriter {
  public:
   SlabWriter(VolumeSource& source, const ValuePacker& packer, ScalarType type, File& file)
@@ -129,7 +130,7 @@ class SlabWriter {
     finish();
     writing_ = std::async(std::launch::async, [this, offset, bytes] { file_.write_at(offset, bytes); });
   }
-  /// Waits for the last write and rethrows what it threw.
+  /// Waits for the last write and rethrows its exception.
   void finish() {
     if (writing_.valid()) writing_.get();
   }
@@ -210,7 +211,7 @@ std::string kind_list() {
   return text;
 }
 
-// The parser takes what is out of range for a number that is in it.
+// Checks the seed here, because the parser accepts a number that is out of range.
 std::string is_seed(const std::string& text) {
   std::uint64_t seed = 0;
   const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), seed);

@@ -1,4 +1,4 @@
-// weir status: how a running `weir watch` is.
+// weir status: shows the state of a running `weir watch`.
 #include <CLI/CLI.hpp>
 #include <ctime>
 #include <iostream>

@@ -1,4 +1,4 @@
-// weir sweep: error, size and time against rate, with the paper's method and ZFP beside ours.
+// weir sweep: measures error, size and time against rate for weir's methods, the paper's method and ZFP.
 #include <oneapi/tbb/global_control.h>
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
@@ -58,7 +58,7 @@ struct SweepArguments {
 
 std::string volume_name(const SweepMethod& method, double rate) { return cat(method.name, "_rate", rate, ".nvdb"); }
 
-// What would be refused after minutes of work is refused before it.
+// Checks all outputs before the work, so that no refusal comes after minutes of work.
 void check_outputs(const ResultDirectory& directory, std::span<const SweepMethod> methods,
                    std::span<const double> rates, const SweepArguments& a) {
   std::vector<std::string> paths;
@@ -120,7 +120,7 @@ class Sweep {
   }
 
  private:
-  // The remedies are options of weir convert.
+  // Removes remedies from a note, because they name options of weir convert.
   static std::string without_remedy(std::string note) {
     for (const char* const remedy : {"; ask for --size", ", which --at-most leaves out"}) {
       note.resize(std::min(note.find(remedy), note.size()));
@@ -130,18 +130,18 @@ class Sweep {
 
   void run_conversion(const SweepMethod& method, ConversionControl& control, SweepRow& row) {
     ConversionOptions options = conversion_of(method, arguments_.options);
-    // What is not kept has a name of its own: it takes the place of nothing that an earlier sweep kept.
+    // A volume that is not kept gets its own name, so that it replaces nothing that an earlier sweep kept.
     const std::string name = volume_name(method, row.rate);
     options.output = directory_ / (arguments_.keep ? name : cat(".unkept_", name));
     options.overwrite = arguments_.overwrite || !arguments_.keep;
     options.budget = {Budget::Kind::rate, row.rate, 0};
     options.memory = run_.memory;
-    options.resume = Resume::off;  // what is interrupted is not kept, but for the rows of the report
+    options.resume = Resume::off;  // an interrupted volume is not kept; only the rows of the report are
     options.threads = run_.threads;
     options.provenance = {WEIR_VERSION, build_commit(), given_};
     options.provenance.options.insert(method.options.begin(), method.options.end());
     options.provenance.options["rate"] = cat(row.rate);
-    // What a conversion says of its file belongs to the row; of the source, and of the disk, it is said once.
+    // A conversion's notice about its file belongs to the row. A notice about the source or the disk is logged once.
     const std::string own = options.output + ": ";
     const auto is_own = [&own](const std::string& line) { return line.compare(0, own.size(), own) == 0; };
     control.notice = [&](const Message& message) {
@@ -228,7 +228,8 @@ void write_text(FileSystem& files, const std::string& path, const std::string& t
 constexpr std::array kCharts{std::pair{"psnr_bits", SweepAxis::bits_per_voxel},
                              std::pair{"psnr_seconds", SweepAxis::seconds}};
 
-/// Without a driver for charts, those of an earlier sweep go: they are not of this one.
+/// Draws the charts. Without a driver for charts, the charts of an earlier sweep are removed, because they do not
+/// match this sweep.
 void draw_charts(FileSystem& files, const ResultDirectory& directory, const SweepReport& report, bool can_draw) {
   for (const auto& [name, axis] : kCharts) {
     for (const char* ending : {".png", ".svg"}) {
@@ -242,7 +243,7 @@ void draw_charts(FileSystem& files, const ResultDirectory& directory, const Swee
   }
 }
 
-// Of volumes that were to be kept, those that are done stay.
+// Returns the error of an interrupted sweep. With --keep, finished volumes stay.
 Error interrupted_sweep(const SweepReport& report, const SweepArguments& a) {
   const auto volumes =
       std::ranges::count_if(report.rows, [](const SweepRow& row) { return row.result && row.result->leaves_kept; });
@@ -252,7 +253,8 @@ Error interrupted_sweep(const SweepReport& report, const SweepArguments& a) {
               " kept in ", a.output, "; choose another directory with -o or pass --overwrite to begin anew")};
 }
 
-// Without the driver for charts, which is said with its remedy, all else is done.
+// Returns whether charts can be drawn. If the driver is missing, a warning names the remedy and the rest of the sweep
+// is done.
 bool can_draw_charts(const std::string& output) {
   try {
     load_driver("plot", output + ": no charts are drawn");

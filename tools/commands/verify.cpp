@@ -1,5 +1,5 @@
-// weir verify: everything a volume and its sidecar say about each other and
-// themselves, checked. Exit 0 only if all holds.
+// weir verify: checks what a volume and its sidecar say about themselves and each other. Exits with 0 only if all
+// checks pass.
 #include <CLI/CLI.hpp>
 #include <array>
 #include <cstdio>
@@ -52,7 +52,7 @@ std::vector<VolumeCheck> verify(const std::string& path, const VerifyArguments& 
   return checks;
 }
 
-// An error of a reader says already where and what was expected.
+// Returns the text of a failed check. A reader's error already says where it is and what was expected.
 std::string failure_text(const std::string& path, const VolumeCheck& check) {
   if (check.expected.empty()) return cat(check.name, ": ", check.found);
   return cat(path, ": ", check.name, ": found ", check.found, ", expected ", check.expected);
@@ -67,8 +67,8 @@ Json to_json(const std::string& path, bool ok, const std::vector<VolumeCheck>& c
   return report;
 }
 
-// What holds of one volume; what does not goes to stderr, and raises `status` from 0 to its exit code. A file that
-// cannot be read may be sound.
+// Verifies one volume and returns its checks. Failures go to stderr and raise `status` from 0 to their exit code. An
+// unreadable file is not called damaged, because it may be sound.
 Json verify_one(const CLI::App& app, const std::string& path, const VerifyArguments& arguments, int& status) {
   const auto raise = [&](ErrorKind kind) { status = status == 0 ? static_cast<int>(kind) : status; };
   std::error_code why;

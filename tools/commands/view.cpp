@@ -1,4 +1,4 @@
-// weir view: a page that shows a NanoVDB file, or a series, and turns it.
+// weir view: serves a page that shows a NanoVDB file or a series.
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
@@ -53,8 +53,8 @@ struct ViewArguments {
 constexpr std::uint64_t kMostViewers = 256;
 constexpr std::int64_t kLeastViewPixels = 10'000;
 
-// What a forecast may take is asked for, or as much as pictures may; whoever starts it for a page counts on its memory,
-// and asks for what there is.
+// Sets the resources of a forecast: the memory that was asked for, otherwise as much as pictures may use. A program
+// that starts weir view (`for_program`) plans its memory, so it gets no forecasts unless it names a size.
 void set_forecasts(const ViewArguments& arguments, ViewSettings& settings) {
   const auto given = [&](const char* key) {
     const auto found = arguments.backend.find(key);
@@ -77,7 +77,7 @@ void set_forecasts(const ViewArguments& arguments, ViewSettings& settings) {
   settings.forecast = memory != std::uint64_t{0};
   if (memory) settings.forecast_options.push_back(cat("--memory=", *memory));
   if (given("backend") == "cpu") settings.forecast_options.emplace_back("--backend=cpu");
-  // No --threads: it takes as many as its memory holds, where a number that is asked for may not fit.
+  // No --threads: a forecast takes as many threads as its memory allows; a fixed number might not fit.
   if (!arguments.work_dir.empty()) settings.forecast_options.push_back(cat("--work-dir=", arguments.work_dir));
   if (!arguments.forecast_bandwidth.empty()) {
     if (parse_bytes(arguments.forecast_bandwidth).value_or(0) == 0) {
@@ -121,7 +121,7 @@ ViewSettings settings_of(const ViewArguments& arguments) {
   return settings;
 }
 
-// A browser as the desktop has it; where there is none, the address is on stdout all the same.
+// Opens the desktop's browser. Without a browser, the address is still on stdout.
 std::unique_ptr<WorkerProcess> open_browser(boost::asio::io_context& io, const std::string& address) {
   return std::make_unique<WorkerProcess>(
       io, WorkerCommand{"/usr/bin/xdg-open", {"xdg-open", address}, 0, IoClass::none}, [](std::string_view) {},
@@ -130,13 +130,13 @@ std::unique_ptr<WorkerProcess> open_browser(boost::asio::io_context& io, const s
       });
 }
 
-// Conversions of inputs that are no NanoVDB files. They go with the object.
+// Temporary conversions of inputs that are no NanoVDB files; removed with the object.
 struct OpenedSources {
   std::optional<SourcePreview> shown;
   std::optional<SourcePreview> compared;
 };
 
-// Converts those of INPUT and --against that are sources, and refuses options that go with other inputs.
+// Converts INPUT and --against if they are sources, and refuses options that go with other inputs.
 void open_sources(const ViewArguments& arguments, const BackendChoice& choice, ViewSettings& settings,
                   OpenedSources& sources) {
   if (is_source(arguments.input)) {
@@ -164,14 +164,14 @@ void open_sources(const ViewArguments& arguments, const BackendChoice& choice, V
 void tell_address(const ProgressOptions& progress, const ListenAddress& address, const std::string& url,
                   const std::string& token) {
   std::printf("%s\n", url.c_str());
-  finish_stdout();  // nobody finds a page whose address could not be told
+  finish_stdout();  // a page is useless if its address was not printed
   nlohmann::ordered_json told{{"address", address.text()}};
   if (!token.empty()) told["token"] = token;
   announce(progress, told.dump());
 }
 
 void view(const ViewArguments& arguments) {
-  // The conversions of previews and forecasts, which need it, may come much later.
+  // Checked now, because the conversions for previews and forecasts may come much later.
   if (!arguments.work_dir.empty()) check_work_directory(*make_posix_file_system(), arguments.work_dir);
   ViewSettings settings = settings_of(arguments);
   BackendChoice choice = read_backend_choice(arguments.backend);
@@ -179,7 +179,7 @@ void view(const ViewArguments& arguments) {
   open_sources(arguments, choice, settings, sources);
   ViewedFiles files = find_viewed_files({sources.shown ? sources.shown->file() : arguments.input, arguments.series},
                                         sources.compared ? sources.compared->file() : arguments.against);
-  if (sources.shown || sources.compared) {  // whose file has another name each time
+  if (sources.shown || sources.compared) {  // the preview's file has a new name each time
     files.key = viewed_key({arguments.input, arguments.series}, arguments.against);
   }
   choice.memory.volumes = volumes_held(files);
@@ -191,7 +191,7 @@ void view(const ViewArguments& arguments) {
 
   boost::asio::io_context io;
   const StopSignals signals(io, [&] { io.stop(); });
-  // What cannot be read at all ends the command, and not a person's patience.
+  // Unreadable files end the command here, before the page is served.
   for (const std::string& fault : begin_with_readable(files)) {
     spdlog::warn("{}; the page begins with {}", fault, files.steps.front());
   }

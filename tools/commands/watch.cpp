@@ -1,4 +1,4 @@
-// weir watch: the daemon in the foreground, or what it would do.
+// weir watch: runs the daemon in the foreground, or shows what it would do.
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdio>
@@ -27,12 +27,12 @@ void watch_directories(const CLI::App& command, const WatchArguments& a) {
     if (level->count() > 0) config.service.log_level = level->as<std::string>();
     return config;
   };
-  if (!a.check) std::signal(SIGHUP, SIG_IGN);  // until the service takes it for a reload: it reads all anew anyway
+  if (!a.check) std::signal(SIGHUP, SIG_IGN);  // until the service handles it as a reload
   const DaemonConfig config = load();
   if (a.check) std::fputs(describe_config(config).c_str(), stdout);
   check_access(config);
   if (a.check) return;
-  // The very program that runs now converts, also where another has been installed in its place since.
+  // The running program also converts, even if another version has been installed in its place since.
   Service service(load, "/proc/self/exe", WEIR_VERSION);
   if (interrupt_flag()) throw Error(ErrorKind::interrupted, "interrupted before it was ready");
   service.run();

@@ -8,13 +8,13 @@
 namespace weir {
 namespace {
 
-/// What follows the placeholder in an option's type, one for each check of its value, the last one first: "{a,b,c}",
-/// "INT in [0 - 9]".
+/// Returns the texts that follow the placeholder in an option's type, one for each check of its value, the last check
+/// first: "{a,b,c}", "INT in [0 - 9]".
 std::vector<std::string> checks_of(CLI::Option& option) {
   std::vector<std::string> checks;
   try {
     for (int i = 0;; ++i) checks.push_back(option.get_validator(i)->get_description());
-  } catch (const CLI::OptionNotFound&) {  // the parser's way to say that there are no more
+  } catch (const CLI::OptionNotFound&) {  // CLI11 throws this when there are no more checks
   }
   std::reverse(checks.begin(), checks.end());
   return checks;

@@ -1,5 +1,5 @@
-// What a command line accepts, read from its parser: man pages and shell completion are written from it, so that they
-// cannot say anything else.
+// Describes what a command line accepts, read from its parser. Man pages and shell completion are written from this
+// description, so that they always agree with the parser.
 #pragma once
 
 #include <string>
@@ -12,12 +12,12 @@ class App;
 namespace weir {
 
 struct OptionDescription {
-  std::vector<std::string> names;    ///< with their dashes, the short one first; of a positional its bare name
-  std::string argument;              ///< what stands for the value, "SIZE" or "auto|on|off"; empty: a flag
-  std::vector<std::string> choices;  ///< all values there are; empty: any
+  std::vector<std::string> names;    ///< with their dashes, the short name first; a positional has its bare name
+  std::string argument;              ///< placeholder of the value, "SIZE" or "auto|on|off"; empty: a flag
+  std::vector<std::string> choices;  ///< all possible values; empty: any
   std::string text;
-  std::string default_value;  ///< empty: none, or the text says it
-  std::string group;          ///< the heading it stands under, "Options" where none was given
+  std::string default_value;  ///< empty: no default, or the text names it
+  std::string group;          ///< its heading, "Options" by default
   bool positional = false;
   bool required = false;
   bool repeated = false;  ///< takes more than one value
@@ -30,7 +30,7 @@ struct CommandDescription {
   std::vector<OptionDescription> options;
 };
 
-/// Of `app` itself and each of its subcommands that is not hidden (in group ""), in their order.
+/// Returns the descriptions of `app` itself and of each subcommand that is not hidden (in group ""), in their order.
 std::vector<CommandDescription> describe_commands(CLI::App& app);
 
 }  // namespace weir

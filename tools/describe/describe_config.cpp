@@ -46,7 +46,7 @@ void describe(std::ostream& out, const ServiceConfig& service) {
   say(out, "log", cat(service.log_file.empty() ? "stderr" : service.log_file, ", level ", service.log_level));
 }
 
-// What will be used, as far as that can be known now.
+// Returns the watch method that will be used, as far as it is known now.
 std::string watch_method(const WatchConfig& watch) {
   const std::string poll = cat("polling every ", watch.poll_interval_s, " s");
   if (watch.watch == WatchMethod::poll) return poll;
@@ -59,7 +59,7 @@ std::string watch_method(const WatchConfig& watch) {
   }
 }
 
-// What a watch without patterns takes.
+// Returns what a watch without include patterns takes.
 std::string default_include(const WatchConfig& watch) {
   return cat("names of known formats; ", watch.takes_any_raw() ? "any .raw" : ".raw only as NAME_XxYxZ_TYPE.raw",
              "; .nvdb only if named");

@@ -1,4 +1,4 @@
-// What a configuration of the daemon asks for, defaults included, for people.
+// Describes a daemon's configuration, defaults included, for people.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace weir {
 
-/// A paragraph for the service and one for each watch; every line ends with a newline.
+/// Returns a paragraph for the service and one for each watch; every line ends with a newline.
 std::string describe_config(const DaemonConfig& config);
 
 }  // namespace weir

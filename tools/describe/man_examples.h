@@ -7,12 +7,12 @@
 namespace weir {
 
 struct ManExample {
-  std::string_view command;  ///< "convert"; "weir": of the command itself
+  std::string_view command;  ///< "convert", or "weir" for the command itself
   std::string_view text;     ///< what it does, half a sentence
-  std::string_view line;     ///< as it is typed
+  std::string_view line;     ///< the line to type
 };
 
-/// All of them, those of one command together.
+/// Returns all examples; the examples of one command are adjacent.
 std::span<const ManExample> man_examples();
 
 }  // namespace weir

@@ -9,7 +9,7 @@
 namespace weir {
 namespace {
 
-/// "weir convert", as it is typed.
+/// Returns the name as it is typed, "weir convert".
 std::string typed_name(const CommandDescription& command) {
   return command.name == "weir" ? command.name : "weir " + command.name;
 }
@@ -50,7 +50,7 @@ std::string entry(const OptionDescription& option) {
   return cat(".TP\n", tag, '\n', text.empty() ? "\\&" : text, '\n');
 }
 
-// Positionals, options, and the groups options were put in, each under a heading of its own.
+// Returns positionals, options and the named groups of options, each under its own heading.
 std::string options_of(const CommandDescription& command) {
   std::vector<std::string> groups;
   const auto heading = [](const OptionDescription& option) { return option.positional ? "Arguments" : option.group; };

@@ -1,4 +1,4 @@
-// The manual of a command, for man(1).
+// Writes the manual page of a command, for man(1).
 #pragma once
 
 #include <string>
@@ -8,10 +8,11 @@
 
 namespace weir {
 
-/// "weir" or "weir-convert": the page is this and ".1".
+/// Returns "weir" or "weir-convert"; the page's file is this name and ".1".
 std::string man_page_name(const CommandDescription& command);
 
-/// The page of `command` in the language of man(7), one of `all`, of which the first is weir itself.
+/// Returns the page of `command` in the language of man(7). `command` is one of `all`; the first of `all` is weir
+/// itself.
 std::string man_page(const CommandDescription& command, const std::vector<CommandDescription>& all,
                      const std::string& version);
 

@@ -1,15 +1,15 @@
-// Text in the language of man(7).
+// Formats text in the language of man(7).
 #pragma once
 
 #include <string>
 
 namespace weir {
 
-/// Text as man(7) takes it: no character of it is a request, dashes can be searched for and copied.
+/// Returns `text` escaped for man(7): no character is taken as a request, and dashes can be searched for and copied.
 std::string man_escaped(const std::string& text);
-/// Escaped, in bold.
+/// Returns `text` escaped and in bold.
 std::string man_bold(const std::string& text);
-/// Escaped, in italics.
+/// Returns `text` escaped and in italics.
 std::string man_italic(const std::string& text);
 
 }  // namespace weir

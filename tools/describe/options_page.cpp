@@ -7,7 +7,7 @@
 namespace weir {
 namespace {
 
-/// Inside a cell of a table.
+/// Returns `text` escaped for a table cell.
 std::string cell(std::string_view text) {
   std::string escaped;
   for (const char c : text) escaped += c == '|' ? "\\|" : std::string(1, c);

@@ -1,11 +1,11 @@
-// docs/options.md: the options of a conversion in the names of every front end.
+// Writes docs/options.md: the options of a conversion, by their names in every front end.
 #pragma once
 
 #include <string>
 
 namespace weir {
 
-/// Markdown, made from the tables of compressor/options.
+/// Returns the page in Markdown, made from the tables of compressor/options.
 std::string options_page();
 
 }  // namespace weir

@@ -13,14 +13,14 @@ std::string joined(const std::vector<std::string>& words, const std::string& sep
   return result;
 }
 
-/// In single quotes, as all three shells read them.
+/// Returns `text` in single quotes, as all three shells read them.
 std::string quoted(const std::string& text, const std::string& quote_inside) {
   std::string result = "'";
   for (const char c : text) result += c == '\'' ? quote_inside : std::string(1, c);
   return result + "'";
 }
 
-/// `text` with a backslash before each of `special`.
+/// Returns `text` with a backslash before each character of `special`.
 std::string guarded(const std::string& text, const std::string& special) {
   std::string result;
   for (const char c : text) {
@@ -42,7 +42,7 @@ std::string option_names(const CommandDescription& command) {
   return joined(names, " ");
 }
 
-/// The values of the first positional that has a list.
+/// Returns the values of the first positional that has a list.
 std::vector<std::string> positional_choices(const CommandDescription& command) {
   for (const OptionDescription& option : command.options) {
     if (option.positional && !option.choices.empty()) return option.choices;
@@ -55,7 +55,7 @@ std::string bash_case(const CommandDescription& command, const std::string& labe
   for (const OptionDescription& option : command.options) {
     if (option.positional || option.argument.empty()) continue;
     values += cat("        ", joined(option.names, "|"), ")");
-    // Without a list: no words, so that the shell completes file names.
+    // Without a list no words are given, so that the shell completes file names.
     values += option.choices.empty() ? " return ;;\n" : cat(" words='", joined(option.choices, " "), "' ;;\n");
   }
   std::string text =

@@ -1,4 +1,4 @@
-// Scripts that let a shell complete a command line.
+// Writes scripts with which a shell completes a command line.
 #pragma once
 
 #include <string>
@@ -8,9 +8,10 @@
 
 namespace weir {
 
-/// For bash 4 and later: subcommands, options and the values of those that have a list; else file names.
+/// Returns a script for bash 4 and later. It completes subcommands, options and the values of options that have a
+/// list, otherwise file names.
 std::string bash_completion(const std::vector<CommandDescription>& commands);
-/// For zsh and fish: the same, with what each option does.
+/// Return the same for zsh and fish, with a description of each option.
 std::string zsh_completion(const std::vector<CommandDescription>& commands);
 std::string fish_completion(const std::vector<CommandDescription>& commands);
 

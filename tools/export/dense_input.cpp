@@ -19,9 +19,9 @@
 namespace weir {
 namespace {
 
-/// Macrocells, pictures, stacks and libraries.
+/// Memory for macrocells, pictures, stacks and libraries.
 constexpr std::uint64_t kDenseBytes = std::uint64_t{128} << 20U;
-/// Values read in one call, so that an interrupt does not wait for all of them.
+/// Bytes of values read in one call, small enough that an interrupt does not wait for the whole volume.
 constexpr std::int64_t kReadBytes = std::int64_t{64} << 20U;
 
 void check_memory(const VolumeSource& source, std::optional<std::uint64_t> ceiling) {
@@ -37,7 +37,7 @@ void check_memory(const VolumeSource& source, std::optional<std::uint64_t> ceili
                                     left, "; show a part with --roi, or convert it and render the file"));
 }
 
-// Layers of z, whose voxels follow each other in memory, in whole chunks where the source has them.
+// Reads `source` in layers of z, which are contiguous in memory; in whole chunks if the source has chunks.
 void read_layers(VolumeSource& source, const StreamOptions& options, float* values) {
   const Box domain = source.info().domain();
   const Index3 extent = domain.extent();
@@ -58,7 +58,7 @@ void read_layers(VolumeSource& source, const StreamOptions& options, float* valu
   }
 }
 
-// What was read, as a source again: for the survey that finds the background.
+// The values in memory as a source, for the survey that finds the background.
 class MemorySource final : public VolumeSource {
  public:
   MemorySource(SourceInfo info, const float* values) : info_(std::move(info)), values_(values) {}
@@ -110,7 +110,7 @@ std::shared_ptr<const DenseVolume> read_dense(VolumeSource& source, const Stream
   check_memory(source, ceiling);
   const SourceInfo& info = source.info();
   const std::int64_t count = info.domain().voxels();
-  // For overwrite: pages are touched when they are read into.
+  // Not initialised, so that pages are first touched when values are read into them.
   auto values = std::make_unique_for_overwrite<float[]>(static_cast<std::size_t>(count));
   read_layers(source, options, values.get());
   const float background = find_background(info, values.get());

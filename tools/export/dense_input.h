@@ -1,4 +1,4 @@
-// A source read into memory as a whole, as `weir render --volume dense` shows it.
+// Reads a whole source into memory, for `weir render --volume dense`.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +11,10 @@
 
 namespace weir {
 
-/// Reads all of `source`. The background is the one that `weir convert` finds, so that the same scene shows the same;
-/// voxels that the source declares missing become the background, as in a converted file. `options`.progress counts
-/// the voxels of one pass. Throws Error(usage) with both figures where the system has not enough memory left or the
-/// ceiling is lower, and as VolumeSource::read.
+/// Reads all of `source`. The background is the one that `weir convert` finds, so that the same scene looks the same.
+/// Voxels that the source declares missing become the background, as in a converted file. `options`.progress counts
+/// the voxels of one pass. Throws Error(usage) with both figures if the system has too little memory left or `ceiling`
+/// is lower; also throws as VolumeSource::read.
 std::shared_ptr<const DenseVolume> read_dense(VolumeSource& source, const StreamOptions& options,
                                               std::optional<std::uint64_t> ceiling = std::nullopt);
 

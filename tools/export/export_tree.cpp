@@ -5,7 +5,7 @@
 namespace weir {
 namespace {
 
-// The nodes as they lie in the file.
+// Reads the nodes that the file stores.
 class StoredExportTree final : public ExportTree {
  public:
   explicit StoredExportTree(const NvdbGrid& grid) : grid_(grid) {}

@@ -1,4 +1,4 @@
-// A grid as the tree of nodes that an OpenVDB file stores: that of the file, or, where the grid is packed, one made of
+// A grid as the tree of nodes that an OpenVDB file stores: the file's own tree, or for a packed grid a tree made from
 // the packed data.
 #pragma once
 
@@ -18,7 +18,7 @@ namespace weir {
 template <std::size_t Bits>
 using NodeMask = std::array<std::uint64_t, Bits / 64>;
 
-/// Where a node is: in the file, or by its lowest voxel.
+/// Identifies a node: by its address in the file, or by its lowest voxel.
 struct ExportNode {
   const std::byte* at = nullptr;
   Index3 origin;
@@ -29,7 +29,7 @@ template <std::size_t Entries>
 struct InternalNode {
   NodeMask<Entries> children{};
   NodeMask<Entries> active{};
-  std::vector<float> values = std::vector<float>(Entries);  ///< of tiles; those of children mean nothing
+  std::vector<float> values = std::vector<float>(Entries);  ///< values of tiles; entries with a child have no meaning
 };
 using UpperNode = InternalNode<nvdb::kUpper.entries>;
 using LowerNode = InternalNode<nvdb::kLower.entries>;
@@ -39,29 +39,29 @@ struct ExportRoot {
   Index3 origin;
   bool child = false;
   ExportNode upper;
-  bool active = false;  ///< of a tile
-  float value = 0;      ///< of a tile
+  bool active = false;  ///< of a tile only
+  float value = 0;      ///< of a tile only
 };
 
-/// All calls but the constructor's are thread-safe. They throw Error(input) for damaged leaves and packed data.
+/// Thread-safe except for the constructor. All calls throw Error(input) for damaged leaves and packed data.
 class ExportTree {
  public:
   virtual ~ExportTree() = default;
   virtual std::vector<ExportRoot> roots() const = 0;
   virtual void read_upper(const ExportNode& upper, UpperNode& node) const = 0;
   virtual void read_lower(const ExportNode& lower, LowerNode& node) const = 0;
-  /// The child at an entry of a node whose mask says there is one.
+  /// Returns the child at `entry` of a node; the node's mask must have a child there.
   virtual ExportNode lower_of(const ExportNode& upper, std::size_t entry) const = 0;
   virtual ExportNode leaf_of(const ExportNode& lower, std::size_t entry) const = 0;
-  /// Of the active voxels, x<<6 | y<<3 | z.
+  /// Returns the mask of active voxels, bit x<<6 | y<<3 | z.
   virtual NodeMask<kLeafVoxels> leaf_mask(const ExportNode& leaf) const = 0;
-  /// All 512, in that order.
+  /// Reads all 512 values, index x<<6 | y<<3 | z.
   virtual void read_leaf(const ExportNode& leaf, std::span<float, 512> values) const = 0;
-  /// At most so many, for the progress.
+  /// Returns an upper bound of the number of leaves, for progress.
   virtual std::uint64_t leaves() const = 0;
 };
 
-/// Of a grid that is not packed, which must outlive the tree.
+/// Makes the tree of `grid`, which is not packed and must outlive the tree.
 std::unique_ptr<ExportTree> make_stored_export_tree(const NvdbGrid& grid);
 
 }  // namespace weir

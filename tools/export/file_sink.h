@@ -1,5 +1,5 @@
-// An output file as a standard stream, written from some offset on in order, with
-// a digest of what was written: for libraries and writers that know only std::ostream.
+// An output file as a std::ostream, written in order from an offset on, with a digest of the written bytes. For
+// libraries and writers that only know std::ostream.
 #pragma once
 
 #include <cstddef>
@@ -21,7 +21,7 @@ class FileSinkbuf final : public std::streambuf {
 
   std::uint64_t position() const { return flushed_ + buffer_.size(); }
   void flush();
-  /// Combined from pieces of kBufferBytes, of all that was flushed.
+  /// Returns the digest of all flushed bytes, combined from pieces of kBufferBytes.
   Digest digest() const { return digest_.digest(); }
 
  protected:
@@ -43,9 +43,9 @@ class FileSink final : public std::ostream {
     exceptions(badbit | failbit);
   }
 
-  /// Offset in the file of what is written next.
+  /// Returns the offset in the file of the next byte to be written.
   std::uint64_t position() const { return buffer_.position(); }
-  /// Writes the rest; returns the digest of everything.
+  /// Writes the buffered rest and returns the digest of everything.
   Digest finish() {
     buffer_.flush();
     return buffer_.digest();

@@ -9,7 +9,8 @@ namespace {
 
 Box box_of_edge(const Index3& origin, std::int64_t dim) { return {origin, origin + Index3{dim, dim, dim}}; }
 
-// Lowest voxel of an entry of a node at `origin` with `side` entries of `dim` voxels to an edge.
+// Returns the lowest voxel of an entry of a node at `origin`. The node has `side` entries of `dim` voxels along an
+// edge.
 Index3 entry_origin(const Index3& origin, std::size_t entry, std::int64_t dim, std::int64_t side) {
   const auto e = static_cast<std::int64_t>(entry);
   return origin + Index3{e / (side * side), e / side % side, e % side} * dim;
@@ -56,7 +57,7 @@ class PackedExportTree final : public ExportTree {
       for (unsigned position = 0; position < node.values.size(); ++position) add_block(position, false);
       return;
     }
-    // Positions in a region are in the order of the entries.
+    // Positions in a region have the order of the entries.
     packed_.for_each_stream(
         region, [&](unsigned position, const PackedStream& stream) { add_block(position, stream.data != nullptr); });
   }
@@ -98,7 +99,7 @@ class PackedExportTree final : public ExportTree {
     std::ranges::fill(node.values, grid_.background());
   }
 
-  // A tile where one value is all there is in the box, which lies in the domain.
+  // Adds a tile if the box lies in the domain and has a single value, otherwise a child.
   template <std::size_t Entries>
   void add(InternalNode<Entries>& node, std::size_t entry, const Box& box, bool coded, float value) const {
     if (coded || !domain_.contains(box)) return set_bit(node.children, entry);

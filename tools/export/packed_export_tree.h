@@ -1,4 +1,4 @@
-// The tree of a packed grid's blocks, see export_tree.h.
+// The export tree (export_tree.h) of a packed grid's blocks.
 #pragma once
 
 #include <memory>
@@ -7,8 +7,9 @@
 
 namespace weir {
 
-/// `grid`, which is packed, must outlive the tree. There is a leaf for each block that has a stream or overhangs the
-/// domain, and tiles of 8^3 and 128^3 voxels for the others; voxels outside the domain are inactive and background.
+/// Makes the tree of `grid`, which must be packed and outlive the tree. Each block that has a stream or overhangs the
+/// domain becomes a leaf; the others become tiles of 8^3 and 128^3 voxels. Voxels outside the domain are inactive and
+/// have the background value.
 std::unique_ptr<ExportTree> make_packed_export_tree(const NvdbGrid& grid);
 
 }  // namespace weir

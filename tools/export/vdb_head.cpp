@@ -12,7 +12,7 @@ namespace weir {
 namespace {
 
 constexpr std::uint64_t kMagic = 0x56444220;
-constexpr std::uint32_t kFileVersion = 224;  ///< of OpenVDB 5 (2017) to 10
+constexpr std::uint32_t kFileVersion = 224;  ///< written by OpenVDB 5 (2017) to 10
 constexpr std::uint32_t kLibraryMajor = 10;
 constexpr std::uint32_t kLibraryMinor = 0;
 
@@ -70,7 +70,7 @@ double determinant(const std::array<double, 9>& m) {
   return m[0] * (m[4] * m[8] - m[5] * m[7]) - m[1] * (m[3] * m[8] - m[5] * m[6]) + m[2] * (m[3] * m[7] - m[4] * m[6]);
 }
 
-// Maps.h: scale, voxel size, inverse, its square, half of the inverse.
+// Writes the fields in the order of OpenVDB's Maps.h: scale, voxel size, inverse, its square, half of the inverse.
 void put_transform(Bytes& out, const std::array<double, 9>& m, const std::array<double, 3>& translation) {
   if (diagonal(m)) {
     const std::array<double, 3> scale{m[0], m[4], m[8]};
@@ -93,7 +93,7 @@ void put_transform(Bytes& out, const std::array<double, 9>& m, const std::array<
   out.put(1.0);
 }
 
-// 8-4-4-4-12 hexadecimal digits.
+// Returns the digest as 8-4-4-4-12 hexadecimal digits.
 std::string uuid(const Digest& content) {
   const std::string digits = content.hex();
   return cat(digits.substr(0, 8), '-', digits.substr(8, 4), '-', digits.substr(12, 4), '-', digits.substr(16, 4), '-',
@@ -108,13 +108,13 @@ std::string vdb_head_bytes(const VdbHead& head) {
   out.put(kFileVersion);
   out.put(kLibraryMajor);
   out.put(kLibraryMinor);
-  out.put(std::uint8_t{1});  // the grids' offsets are there
+  out.put(std::uint8_t{1});  // grid offsets are present
   out.raw(uuid(head.content));
   put_metadata(out, {{"creator", head.creator}});
-  out.put(std::uint32_t{1});  // grid
+  out.put(std::uint32_t{1});  // number of grids
   out.text(head.name);
   out.text(head.half ? "Tree_float_5_4_3_HalfFloat" : "Tree_float_5_4_3");
-  out.text({});  // no instance of another
+  out.text({});  // not an instance of another grid
   out.put(static_cast<std::uint64_t>(out.size() + 3 * sizeof(std::uint64_t)));
   out.put(head.leaves_begin);
   out.put(head.end);

@@ -1,6 +1,5 @@
-// What a .vdb file of one float grid has before the grid's tree: magic, versions,
-// metadata, the places of its parts, transform. Counterpart of
-// ingest/vdb/vdb_header.h, which reads it.
+// Writes the part of a .vdb file of one float grid that precedes the tree: magic, versions, metadata, offsets of its
+// parts, transform. ingest/vdb/vdb_header.h reads it.
 #pragma once
 
 #include <array>
@@ -13,7 +12,7 @@
 
 namespace weir {
 
-/// Names and values in OpenVDB's types string, double, int64, bool and vec3i.
+/// Metadata names and values, in OpenVDB's types string, double, int64, bool and vec3i.
 using VdbMetadata =
     std::map<std::string, std::variant<std::string, double, std::int64_t, bool, std::array<std::int32_t, 3>>>;
 
@@ -26,16 +25,16 @@ struct VdbHead {
   std::array<double, 9> matrix{};  ///< row-major: world = matrix * index + translation
   std::array<double, 3> translation{};
 
-  Digest content;                  ///< the file's UUID is made of it, so that equal files have equal ones
+  Digest content;                  ///< the file's UUID is made of this digest, so that equal files have equal UUIDs
   std::uint64_t leaves_begin = 0;  ///< offset in the file of the leaves' values
   std::uint64_t end = 0;           ///< bytes of the file
 };
 
-/// The bytes, which the tree follows at once. Their number does not depend on content, offsets, or the values of
-/// metadata that are no strings.
+/// Returns the bytes of the head, which the tree follows at once. Their number does not depend on `content`, the
+/// offsets, or metadata values that are not strings.
 std::string vdb_head_bytes(const VdbHead& head);
 
-/// Why no OpenVDB can read a grid of this transform; empty where it can.
+/// Returns why OpenVDB cannot read a grid of this transform; empty if it can.
 std::string vdb_transform_obstacle(const std::array<double, 9>& matrix, const std::array<double, 3>& translation);
 
 }  // namespace weir

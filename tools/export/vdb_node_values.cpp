@@ -15,12 +15,12 @@ const OpenVdbLibrary& library() {
   return loaded;
 }
 
-/// The kinds that are written of those that Compression.h knows.
+/// The kinds of Compression.h that this writer uses.
 enum Kind : std::uint8_t { inactive_background = 0, one_inactive = 2, mask_and_two = 5, all_values = 6 };
 
 struct Inactive {
   Kind kind = inactive_background;
-  std::array<std::uint32_t, 2> bits{};  ///< of the values there are
+  std::array<std::uint32_t, 2> bits{};  ///< bits of the inactive values, as many as `kind` has
 };
 
 template <typename T>
@@ -33,7 +33,7 @@ void put_all(std::ostream& out, const std::vector<T>& values) {
   out.write(reinterpret_cast<const char*>(values.data()), static_cast<std::streamsize>(values.size() * sizeof(T)));
 }
 
-// Calls `visit` with the position of each set bit of `word`, the 64 of them beginning at `first`.
+// Calls `visit` with the position of each set bit of `word`; bit 0 has position `first`.
 template <typename Visit>
 void for_each_bit(std::uint64_t word, std::size_t first, const Visit& visit) {
   for (; word != 0; word &= word - 1) visit(first + static_cast<std::size_t>(std::countr_zero(word)));
@@ -101,7 +101,7 @@ void write_vdb_values(std::ostream& out, std::span<const float> values, std::spa
     }
   }
   if (!storage.half) return put_packed(out, kept, storage.compression);
-  if (kept.empty()) return;  // not even a length
+  if (kept.empty()) return;  // without values, not even a length is written
   std::vector<std::uint16_t> halves;
   halves.reserve(kept.size());
   for (const float value : kept) halves.push_back(library().half_of(value));

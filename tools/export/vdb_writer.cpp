@@ -24,8 +24,8 @@
 namespace weir {
 namespace {
 
-constexpr std::size_t kLeavesAtOnce = 2048;  ///< leaves between two looks at progress: some 4 MiB
-constexpr std::size_t kChunk = 64;           ///< leaves of one task
+constexpr std::size_t kLeavesAtOnce = 2048;  ///< leaves between two progress reports: some 4 MiB
+constexpr std::size_t kChunk = 64;           ///< leaves in one task
 
 template <typename MaskType>
 std::uint64_t count(const MaskType& mask) {
@@ -34,7 +34,7 @@ std::uint64_t count(const MaskType& mask) {
   return bits;
 }
 
-// Calls `visit` with each entry of `children` that is set, in order.
+// Calls `visit` with each set entry of `children`, in order.
 template <typename MaskType, typename Visit>
 void for_each_set(const MaskType& children, const Visit& visit) {
   for (std::size_t w = 0; w < children.size(); ++w) {
@@ -58,7 +58,7 @@ class Writer {
         options_(options),
         file_(file) {
     entries_ = tree_->roots();
-    // Of OpenVDB's map, in whose order the leaves' values are looked for.
+    // The order of OpenVDB's root map, in which readers expect the leaves' values.
     std::sort(entries_.begin(), entries_.end(), [](const ExportRoot& a, const ExportRoot& b) {
       return std::tie(a.origin.x, a.origin.y, a.origin.z) < std::tie(b.origin.x, b.origin.y, b.origin.z);
     });
@@ -121,7 +121,7 @@ class Writer {
     return head;
   }
 
-  // What the file holds of `value`; keeps the largest difference in `worst`.
+  // Returns `value` as the file stores it; keeps the largest difference in `worst`.
   float stored(float value, double& worst) const {
     if (!options_.half) return value;
     const float rounded = rounded_to_half(value);
@@ -162,7 +162,7 @@ class Writer {
     internal(out, upper_, kLowerDim);
     for_each_set(upper_.children, [&](std::size_t u) {
       lower_topology(out, tree_->lower_of(upper, u));
-      // One without leaves is 33 KiB of pages too.
+      // A lower node takes 33 KiB of pages even without leaves.
       if (written_.topology.nodes[1] % (kLeavesAtOnce / 16) == 0) report(0.1, written_.topology.nodes[0], 0);
     });
   }
@@ -185,7 +185,7 @@ class Writer {
 
   static std::uint64_t cube(std::int64_t dim) { return static_cast<std::uint64_t>(dim * dim * dim); }
 
-  // The masks and tiles of an upper or lower node whose entries have an edge of `dim` voxels.
+  // Writes the masks and tiles of an upper or lower node whose entries have an edge of `dim` voxels.
   template <std::size_t Entries>
   void internal(std::ostream& out, InternalNode<Entries>& node, std::int64_t dim) {
     for (std::size_t i = 0; i < Entries; ++i) {
@@ -248,7 +248,7 @@ class Writer {
     write_vdb_values(out, values, active, kNoChildren, storage_);
   }
 
-  // `leaves` of all are done in a pass that has `share` of the work and begins at `from`.
+  // Reports that `leaves` of all leaves are done in a pass that begins at `from` and makes up `share` of the work.
   void report(double share, std::uint64_t leaves, double from) const {
     const auto all = static_cast<double>(std::max<std::uint64_t>(tree_->leaves(), 1));
     if (options_.progress) options_.progress(from + share * static_cast<double>(leaves) / all);
@@ -261,7 +261,7 @@ class Writer {
   const VdbWriterOptions& options_;
   File& file_;
   std::vector<ExportRoot> entries_;
-  UpperNode upper_;  // the last one read
+  UpperNode upper_;  // the upper node read last
   LowerNode lower_;
   VdbStorage storage_;
   VdbWritten written_;

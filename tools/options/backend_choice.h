@@ -1,4 +1,4 @@
-// Which back end a picture is made with: --backend, --devices, --threads, --memory and --device-memory.
+// The options that choose what renders a picture: --backend, --devices, --threads, --memory and --device-memory.
 #pragma once
 
 #include <cstdint>
@@ -14,21 +14,21 @@
 namespace weir {
 
 struct BackendChoice {
-  std::string name;          ///< "auto": CUDA where there is a device, else the CPU; "cuda", "cpu"
-  std::vector<int> devices;  ///< of CUDA
-  int threads = 0;           ///< of the CPU; 0: all of the machine's
-  VoxelMemory memory = {};   ///< of the CPU; how many volumes are held, of both
-  std::optional<std::uint64_t> device_memory = std::nullopt;  ///< of each CUDA device, bytes
+  std::string name;          ///< "cuda", "cpu", or "auto": CUDA if there is a device, otherwise the CPU
+  std::vector<int> devices;  ///< CUDA device numbers
+  int threads = 0;           ///< CPU threads; 0: all of the machine's
+  VoxelMemory memory = {};   ///< memory of the CPU back end; `volumes` and `levels` are for both back ends
+  std::optional<std::uint64_t> device_memory = std::nullopt;  ///< bytes on each CUDA device
 };
 
-/// `notice` is called with a warning where the choice is of devices and the CPU draws. Throws Error(usage) for "cuda"
-/// where this build or this machine has none.
+/// Makes the back end that `choice` names. Calls `notice` with a warning if `choice` sets devices or device memory but
+/// the CPU draws. Throws Error(usage) for "cuda" if this build or this machine has no CUDA.
 std::unique_ptr<Backend> make_backend(const BackendChoice& choice, const std::function<void(const Message&)>& notice);
 
-/// Such a notice as a warning in the log.
+/// Logs `notice`, from make_backend(), as a warning.
 void warn(const Message& notice);
 
-/// Voxels along the edge of the macrocells that the back end takes where Backend::load is asked for none.
+/// Returns the edge in voxels of the macrocells that `backend` uses when Backend::load is given no edge.
 std::int64_t own_macrocell(const Backend& backend);
 
 }  // namespace weir

@@ -11,7 +11,7 @@
 namespace weir {
 namespace {
 
-// Whether `text` says that a file which `command` was given, by a relative name, is not there.
+// Returns whether `text` says that a file which `command` was given by a relative name does not exist.
 bool misses_a_file(const CLI::App& command, std::string_view text) {
   if (!text.ends_with(": " + std::generic_category().message(ENOENT))) return false;
   const auto begins_with_path = [&](const std::string& path) {

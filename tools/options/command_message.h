@@ -1,4 +1,4 @@
-// An error in the words of the command that it ended.
+// The text that a command prints for the error that ended it.
 #pragma once
 
 #include <string>
@@ -11,8 +11,9 @@ class App;
 
 namespace weir {
 
-/// One line: error.what(), but that its remedy of a full disk names only options that the command has which `app`
-/// parsed; and with the remedy of an input that is not there, where its name is relative.
+/// Returns one line, based on error.what(), for the command that `app` parsed. For a full disk, the suggested remedy
+/// names only options that this command has. For a missing input with a relative name, a hint to check the current
+/// directory is added.
 std::string command_message(const CLI::App& app, const Error& error);
 
 }  // namespace weir

@@ -1,4 +1,4 @@
-// Names and values that are empty, as an unset variable leaves them: `-o "$OUT"`, `--output=$OUT`.
+// Refuses empty names and values, such as an unset shell variable leaves them: `-o "$OUT"`, `--output=$OUT`.
 #pragma once
 
 #include <string>
@@ -10,13 +10,13 @@ class App;
 
 namespace weir {
 
-/// Has every subcommand of `app` that is there by now refuse an empty argument and an empty --output: Error(usage), at
-/// the parse.
+/// Makes every subcommand that `app` has at this time refuse an empty argument and an empty --output. Parsing then
+/// throws Error(usage).
 void refuse_empty_names(CLI::App& app);
 
-/// Throws Error(usage) for an option with "=" and nothing behind it, for which the parser takes the next word, and for
-/// "-o=NAME", for which it takes "=NAME". `words` are those of the command line; options that no command has are left
-/// to the parser.
+/// Throws Error(usage) for an option that ends with "=" (the parser would take the next word as its value) and for
+/// "-o=NAME" (the parser would read "=NAME"). `words` are the words of the command line. Options that no command has
+/// are left to the parser.
 void refuse_empty_values(const CLI::App& app, const std::vector<std::string>& words);
 
 }  // namespace weir

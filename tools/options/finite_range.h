@@ -1,4 +1,4 @@
-// The range of a file's finite values where its root names none that is finite, as where infinities were kept.
+// The range of a file's finite values. The root of a file that kept infinities has no finite range.
 #pragma once
 
 #include <optional>
@@ -8,9 +8,11 @@
 
 namespace weir {
 
-/// As the file's root says, else as certified_range; none where neither has one.
+/// Returns the range in the file's root if that is finite, otherwise certified_range(). An unreadable sidecar counts
+/// as none.
 std::optional<MinMax> known_range(const NvdbFile& file);
-/// As the certificate that belongs to the file says; none where it has none. Throws as own_sidecar.
+/// Returns the range in the sidecar that belongs to the file; nullopt if there is no such sidecar or the range is not
+/// finite. Throws as own_sidecar.
 std::optional<MinMax> certified_range(const NvdbFile& file);
 
 }  // namespace weir

@@ -10,7 +10,7 @@
 namespace weir {
 namespace {
 
-// They say how a command reports, or whether it runs at all.
+// Options that are not recorded: they say how a command reports, or whether it runs at all.
 constexpr std::array<std::string_view, 14> kSilent{"dry-run",   "help",          "json",      "progress", "progress-fd",
                                                    "log-level", "quiet",         "skip-done", "again",    "brief-names",
                                                    "resume",    "save-interval", "trace",     "backend"};

@@ -1,4 +1,4 @@
-// What a command line said, for the sidecar's weir.options.
+// The options of a command line, as the sidecar's weir.options records them.
 #pragma once
 
 #include <map>
@@ -12,10 +12,10 @@ class App;
 
 namespace weir {
 
-/// Every option of `command` that was given and has a say in what is written, by its long name; a flag is "true".
-/// Of those in a table, `read` counts, which is what was made of them.
+/// Returns every option of `command` that was given and affects what is written, by its long name; a flag is "true".
+/// Options of an option table are taken from `read`, which holds their parsed text.
 std::map<std::string, std::string> given_options(const CLI::App& command, const GivenOptions& read);
-/// The same of options that were given otherwise.
+/// Returns the options of `given` that affect what is written.
 std::map<std::string, std::string> recorded_options(const GivenOptions& given);
 
 }  // namespace weir

@@ -1,4 +1,4 @@
-// `weir help COMMAND`, for who expects that.
+// Accepts `weir help COMMAND` besides `weir COMMAND --help`.
 #pragma once
 
 #include <string>
@@ -10,8 +10,9 @@ class App;
 
 namespace weir {
 
-/// `words` of a command line, without the program's name, where "help" comes first: "help" is "--help", "help convert"
-/// is "convert --help", and "help covnert" is "covnert", which is answered with what may have been meant. Others stay.
+/// Rewrites the words of a command line (without the program's name) that begin with "help": "help" becomes "--help",
+/// and "help convert" becomes "convert --help". "help covnert" becomes "covnert", so that the parser suggests a
+/// command. Other words are returned unchanged.
 std::vector<std::string> with_help_option(const CLI::App& app, std::vector<std::string> words);
 
 }  // namespace weir

@@ -1,4 +1,4 @@
-// From what main was given to a parsed command.
+// Parses the command line that main was given.
 #pragma once
 
 namespace CLI {
@@ -7,8 +7,8 @@ class App;
 
 namespace weir {
 
-/// Parses the words of main by `app`, which has all its subcommands: "help COMMAND" too. Throws CLI::ParseError, and
-/// Error(usage) for names and values that are empty and where no command is given.
+/// Parses `argv` with `app`, which already has all its subcommands; accepts "help COMMAND" too. Throws
+/// CLI::ParseError, and Error(usage) for an empty name or value or if no command is given.
 void parse_command_line(CLI::App& app, int argc, char** argv);
 
 }  // namespace weir

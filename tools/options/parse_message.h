@@ -1,5 +1,5 @@
-// What is said of a command line that does not parse: the word that is wrong, the one that may have been meant, and the
-// help that applies.
+// The message for a command line that does not parse: the wrong word, the word that may have been meant, and the help
+// that applies.
 #pragma once
 
 #include <string>
@@ -11,8 +11,8 @@ class ParseError;
 
 namespace weir {
 
-/// One line of what `error` says of the command line that `app` parsed: "no command \"covnert\"; did you mean convert?
-/// see weir --help".
+/// Returns one line that explains `error` of the command line that `app` parsed: "no command \"covnert\"; did you mean
+/// convert? see weir --help".
 std::string parse_message(const CLI::App& app, const CLI::ParseError& error);
 
 }  // namespace weir

@@ -11,7 +11,7 @@
 namespace weir {
 namespace {
 
-// "a", "a or b", "a, b or c" of "a,b,c".
+// Returns "a", "a or b", "a, b or c" for "a", "a,b", "a,b,c".
 std::string alternatives(const std::string& list) {
   const std::vector<std::string> words = split(list, ',');
   std::string text;
@@ -21,7 +21,8 @@ std::string alternatives(const std::string& list) {
   return text;
 }
 
-// What stands before and behind a word, of any length: a regular expression goes as deep as the text is long.
+// The text before and behind a word. A regular expression would recurse as deep as the text is long, so plain searches
+// are used.
 struct Around {
   std::string before;
   std::string behind;
@@ -38,7 +39,7 @@ std::optional<Around> around_last(const std::string& text, std::string_view word
   return around(text, text.rfind(word), word);
 }
 
-// What stands between the two, where the text begins and ends with them.
+// Returns the text between `begin` and `end` if `text` begins and ends with them.
 std::optional<std::string> between(const std::string& text, std::string_view begin, std::string_view end) {
   if (text.size() < begin.size() + end.size() || !text.starts_with(begin) || !text.ends_with(end)) return std::nullopt;
   return text.substr(begin.size(), text.size() - begin.size() - end.size());
@@ -54,7 +55,7 @@ bool is_number(const std::string& text) {
 
 using ValuesOf = std::function<std::string(const std::string& option)>;
 
-// "At Most 1 required but received 2"
+// Rewords a fault such as "At Most 1 required but received 2".
 std::optional<std::string> count_wording(const std::string& option, const std::string& fault,
                                          const ValuesOf& values_of) {
   const auto numbers = around_first(fault, " required but received ");
@@ -70,7 +71,7 @@ std::optional<std::string> count_wording(const std::string& option, const std::s
              values.empty() ? "" : ": ", values);
 }
 
-// What the parser says behind "OPTION: ".
+// Rewords `fault`, the text that CLI11 prints behind "OPTION: ".
 std::optional<std::string> value_wording(const std::string& option, const std::string& fault) {
   if (const auto value = between(fault, "1 required ", " missing")) return cat(option, " needs a value, ", *value);
   if (const auto path = between(fault, "Directory does not exist: ", "")) {
@@ -82,7 +83,7 @@ std::optional<std::string> value_wording(const std::string& option, const std::s
   if (const auto parts = around_last(fault, " not in range "); parts && parts->before.starts_with("Value ")) {
     const std::string value = parts->before.substr(std::string_view("Value ").size());
     if (const auto ends = around_first(parts->behind, " to ")) {
-      constexpr std::size_t kLongNumber = 100;  // digits: the largest double, where there is no end
+      constexpr std::size_t kLongNumber = 100;  // digits: a range without an upper end prints the largest double
       const bool endless = ends->behind.size() > kLongNumber;
       return cat(option, " is \"", value, "\", it must be a number from ", endless ? "0 on" : parts->behind);
     }

@@ -1,4 +1,4 @@
-// What the parser of command lines, CLI11, says of a wrong value, in weir's words.
+// Rewords CLI11's messages about wrong values.
 #pragma once
 
 #include <functional>
@@ -6,9 +6,10 @@
 
 namespace weir {
 
-/// "--spp: 1 required N missing" as "--spp needs a value, N"; "--volume: both not in {file,dense}" as "--volume is
-/// "both", it must be file or dense". One line; a text of any other form stays. `values_of` names the values that an
-/// option takes, "V V.nvdb W W.nvdb"; without it they are only counted.
+/// Returns CLI11's message `text` reworded, on one line: "--spp: 1 required N missing" becomes "--spp needs a value,
+/// N"; "--volume: both not in {file,dense}" becomes "--volume is "both", it must be file or dense". Text of any other
+/// form is returned unchanged. `values_of` names the values that an option takes, "V V.nvdb W W.nvdb"; without
+/// `values_of` they are only counted.
 std::string parser_wording(const std::string& text,
                            const std::function<std::string(const std::string& option)>& values_of = {});
 

@@ -17,7 +17,7 @@ namespace weir {
 namespace {
 
 constexpr std::int64_t kMaxEdge = 32768;       // pixels
-constexpr std::int64_t kMaxPixels = 1 << 28;   // 3 GiB of picture
+constexpr std::int64_t kMaxPixels = 1 << 28;   // a picture of 3 GiB
 constexpr std::int64_t kMaxSamples = 1 << 20;  // the mean is a sum of floats
 constexpr std::int64_t kMaxThreads = 4096;
 constexpr std::int64_t kMaxDevices = 64;
@@ -47,7 +47,7 @@ void read_size(const OptionRow& row, const std::string& text, Request& request) 
   request.options.height = static_cast<std::int32_t>(*height);
 }
 
-// AZIMUTH,ELEVATION[,ZOOM]; everything else about a camera is in a scene.
+// Reads AZIMUTH,ELEVATION[,ZOOM]. Every other camera setting comes from a scene file.
 void read_camera(const OptionRow& row, const std::string& text, Request& request) {
   const std::vector<std::string> parts = split(text, ',');
   std::vector<double> numbers;
@@ -140,7 +140,7 @@ void read_lod(const OptionRow& row, const std::string& text, Request& request) {
   request.backend.memory.levels = true;
 }
 
-// After `lod`, whose row comes first.
+// Needs `lod` to be read before; the row of `lod` comes first in the table.
 void read_lod_scattered(const OptionRow& row, const std::string& text, Request& request) {
   const std::optional<double> levels = parse_double(text);
   if (!levels || !(*levels >= 0 && *levels <= kMostBias)) {
@@ -159,10 +159,11 @@ std::uint64_t read_bytes(const OptionRow& row, const std::string& text) {
   return *bytes;
 }
 
-// Enough that a default picture is clean; the other modes only have edges to smooth.
+// Returns the default samples per pixel. Path tracing needs many for a clean picture; the other modes only smooth
+// edges.
 std::uint32_t default_samples(RenderMode mode) { return mode == RenderMode::path ? 64 : 4; }
 
-// The scene is the first, so that the options after it change it.
+// The scene comes first, so that the options after it override it.
 constexpr ReadableOption<Request> kPictureOptions[] = {
     {{.key = "scene", .argument = "SCENE.toml", .help = "camera, transfer function, medium, light"},
      [](const OptionRow&, const std::string& text, Request& r) {

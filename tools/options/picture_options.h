@@ -1,4 +1,4 @@
-// What a picture looks like, as options: the same for every command that renders.
+// The options that say how a picture looks, the same for every command that renders.
 #pragma once
 
 #include <cstdint>
@@ -17,36 +17,37 @@ class App;
 namespace weir {
 
 /// Adds --scene, --mode, --backend, --devices, --size, --spp, --seed, --filter, --colormap, --colorbar, --range,
-/// --iso, --camera, --threads and --memory; what is given goes to `given`, which must live as long as the command.
+/// --iso, --camera, --threads, --memory and the other picture options. Their text is stored in `given`, which must
+/// live as long as the command.
 void add_picture_options(CLI::App& command, GivenOptions& given);
 
-/// Of these, --backend, --devices, --threads, --memory and --device-memory alone.
+/// Adds only --backend, --devices, --threads, --memory and --device-memory.
 void add_backend_options(CLI::App& command, GivenOptions& given);
 
-/// What those mean. Throws Error(usage) as read_picture_request.
+/// Returns the back end that the options of add_backend_options() choose. Throws Error(usage) as read_picture_request.
 BackendChoice read_backend_choice(const GivenOptions& given);
 
-/// What all of them mean.
+/// The parsed values of all picture options.
 struct PictureRequest {
   Scene scene;
-  RenderOptions options;  ///< with the scene's environment, loaded
+  RenderOptions options;  ///< includes the scene's environment, loaded
   SampleOptions sampling;
   BackendChoice backend{"auto", {0}, 0};
-  bool colorbar = false;  ///< beside the picture: tools/plot/color_bar.h
+  bool colorbar = false;  ///< draws a colour bar beside the picture: tools/plot/color_bar.h
 
   std::uint64_t pixel_samples() const {
     return static_cast<std::uint64_t>(options.width) * static_cast<std::uint64_t>(options.height) * sampling.samples;
   }
 };
 
-/// "trilinear", "stochastic" or "nearest", as --filter says it.
+/// Returns "trilinear", "stochastic" or "nearest", as --filter spells it.
 std::string filter_name(Filter filter);
 
-/// The scene file first, the command line over it. Throws Error(usage) naming option, text and form where one cannot be
-/// read, and as load_scene and load_environment.
+/// Reads the scene file, then applies the other options over it. Throws Error(usage), naming option, text and expected
+/// form, if an option cannot be read; also throws as load_scene and load_environment.
 PictureRequest read_picture_request(const GivenOptions& options);
 
-/// The files that a picture is made from besides its volume: a scene, and the environment that this names.
+/// Returns the files that a picture needs besides its volume: the scene, and the environment that the scene names.
 std::vector<std::string> picture_inputs(const GivenOptions& given, const PictureRequest& request);
 
 }  // namespace weir

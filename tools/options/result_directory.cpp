@@ -14,7 +14,7 @@ std::string without_last_slashes(std::string path) {
   return path;
 }
 
-// Those that are not there: `path` first.
+// Returns `path` and its parents that do not exist, `path` first.
 std::vector<std::string> missing_levels(FileSystem& files, std::filesystem::path path) {
   std::vector<std::string> levels;
   while (!path.empty() && !files.exists(path.string())) {
@@ -53,7 +53,7 @@ void ResultDirectory::remove_empty() noexcept {
       files_.remove_directory(made_.back());
       made_.pop_back();
     }
-  } catch (const Error&) {  // not empty: the usual end
+  } catch (const Error&) {  // not empty: the usual case
   }
 }
 

@@ -1,4 +1,4 @@
-// The directory that a command's results go to.
+// The directory that a command writes its results to.
 #pragma once
 
 #include <string>
@@ -8,11 +8,12 @@
 
 namespace weir {
 
-/// Made where it is missing, with those above it; what was made is removed again where nothing came to lie in it.
+/// Creates a missing directory and its missing parents. If nothing was put into them, the created directories are
+/// removed again.
 class ResultDirectory {
  public:
-  /// Throws Error(usage) where `path`, or what is above it, is something else than a directory, Error(io) where it
-  /// cannot be made. `files` must outlive the object.
+  /// Throws Error(usage) if `path` or a parent exists and is not a directory, Error(io) if it cannot be created.
+  /// `files` must outlive the object.
   ResultDirectory(FileSystem& files, const std::string& path);
   ~ResultDirectory();
   ResultDirectory(const ResultDirectory&) = delete;
@@ -26,7 +27,7 @@ class ResultDirectory {
 
   FileSystem& files_;
   std::string path_;
-  std::vector<std::string> made_;  ///< the upper ones first
+  std::vector<std::string> made_;  ///< created directories, parents first
 };
 
 }  // namespace weir

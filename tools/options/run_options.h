@@ -1,5 +1,4 @@
-// How a command may use the machine: the same options for every command that
-// streams a volume.
+// The options that limit how a command uses the machine, the same for every command that streams a volume.
 #pragma once
 
 #include <oneapi/tbb/global_control.h>
@@ -16,12 +15,12 @@ class App;
 
 namespace weir {
 
-/// Adds --memory and --threads, which go to `given`, --progress and --progress-fd; both must live as long as the
-/// command.
+/// Adds --memory and --threads, stored in `given`, and --progress and --progress-fd, stored in `progress`. Both must
+/// live as long as the command.
 void add_run_options(CLI::App& command, GivenOptions& given, ProgressOptions& progress);
 
-/// Keeps TBB to `asked` threads while it lives, 0: to the machine's, and to fewer where no more can be started, with a
-/// warning. Throws Error(io) where none can.
+/// Limits TBB to `asked` threads while the result lives; 0: as many as the machine has. If the system allows fewer,
+/// the limit is lower and a warning is logged. Throws Error(io) if no thread can be started.
 std::unique_ptr<tbb::global_control> limit_threads(std::size_t asked);
 
 }  // namespace weir

@@ -43,7 +43,7 @@ void SeriesExtents::check_all(std::span<const SeriesStep> steps,
                               const std::function<std::unique_ptr<VolumeSource>(const SeriesStep&)>& open) {
   if (!by_extent_ || steps.size() < 2) return;
   for (const SeriesStep& step : steps) {
-    // Others may be unpacked as they are opened: their turn is soon enough.
+    // Sources of other formats may have to be unpacked when they are opened, so they are checked in their turn.
     const std::string_view format = is_there(step.path) ? format_of(step.path).name : "";
     if (format == "raw" || format == "hdf5") check(step, open(step)->info());
   }

@@ -1,4 +1,4 @@
-// What is refused of several volumes that are converted in one call.
+// Checks that refuse wrong inputs and outputs when several volumes are converted in one call.
 #pragma once
 
 #include <functional>
@@ -13,21 +13,23 @@
 
 namespace weir {
 
-/// What would be refused after minutes of work, before it: of several outputs one that exists too, unless `may_exist`.
-/// Throws Error(usage) as check_output does, and where an output is another step's input.
+/// Checks the outputs before the work starts, so that no error comes after minutes of work. If there are several
+/// outputs, none may exist, unless `may_exist`. Throws Error(usage) as check_output does, and if an output is another
+/// step's input.
 void check_outputs(std::span<const SeriesStep> steps, std::span<const std::string> outputs, bool may_exist);
 
-/// A player has two buffers of one size for all steps of a series (SeriesStep::series). Volumes of different series, as
-/// the datasets of '*', may differ; and so may all where no budget was asked for.
+/// Checks that all steps of one series (SeriesStep::series) have the same extent, because a player has two buffers of
+/// one size. Volumes of different series, such as the datasets of '*', may differ. Nothing is checked unless the
+/// budget is a rate.
 class SeriesExtents {
  public:
   explicit SeriesExtents(const Budget& budget) : by_extent_(budget.kind == Budget::Kind::rate) {}
 
-  /// Throws Error(input) where the budget is a rate, which gives `info`, the source of `step`, another size of file
-  /// than the first one of its series had.
+  /// Throws Error(input) if the budget is a rate and `info`, the source of `step`, has another extent (so another file
+  /// size) than the first step of its series.
   void check(const SeriesStep& step, const SourceInfo& info);
 
-  /// The same of all `steps`, before any of them is converted, where `open`ing their files takes no work.
+  /// Checks all `steps` before any is converted, if `open`ing their files takes no work.
   void check_all(std::span<const SeriesStep> steps,
                  const std::function<std::unique_ptr<VolumeSource>(const SeriesStep&)>& open);
 
@@ -38,7 +40,7 @@ class SeriesExtents {
   };
 
   bool by_extent_;
-  std::map<std::string, First> first_;  ///< of each series
+  std::map<std::string, First> first_;  ///< the first step of each series
 };
 
 }  // namespace weir

@@ -12,15 +12,15 @@
 namespace weir {
 namespace {
 
-// How each file of Trace begins. One that was killed before its first write is empty.
+// The first bytes of each file that Trace writes. A trace is empty if weir was killed before its first write.
 constexpr std::string_view kTraceStart = "[\n{\"name\":\"thread_name\",\"ph\":\"M\"";
 
-// Nothing, a trace of weir, or a device or pipe, which loses nothing.
+// Returns whether `path` is missing, empty, a trace of weir, or a device or pipe, which loses nothing.
 bool may_be_replaced(const std::string& path) {
   std::error_code failure;
   if (!std::filesystem::is_regular_file(path, failure)) return true;
   if (std::filesystem::file_size(path, failure) == 0) return true;
-  std::ifstream file(path, std::ios::binary);  // where it cannot be read, nobody knows that it is a trace
+  std::ifstream file(path, std::ios::binary);  // an unreadable file is not known to be a trace
   std::string start(kTraceStart.size(), '\0');
   file.read(start.data(), static_cast<std::streamsize>(start.size()));
   start.resize(static_cast<std::size_t>(file.gcount()));

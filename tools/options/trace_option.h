@@ -1,4 +1,4 @@
-// The option --trace of the commands that go through a volume.
+// The option --trace of the commands that read a whole volume.
 #pragma once
 
 #include <memory>
@@ -16,8 +16,9 @@ namespace weir {
 /// Adds --trace FILE, stored in `path`, which must live as long as the command.
 void add_trace_option(CLI::App& command, std::string& path);
 
-/// Null where `path` is empty; a trace that is there is replaced. Throws Error(usage) where it is one of `others`, the
-/// files that the command is about, or any other file that is no trace.
+/// Opens the trace `path`, or returns null if `path` is empty. An existing trace is replaced. Throws Error(usage) if
+/// `path` is one of `others` (the files that the command reads or writes) or any existing file that is not a trace;
+/// Error(io) if its directory does not exist.
 std::unique_ptr<Trace> open_trace(const std::string& path, std::span<const std::string> others);
 
 }  // namespace weir

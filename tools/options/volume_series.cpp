@@ -30,8 +30,9 @@ struct VolumeHead {
   std::array<double, 9> matrix;
 };
 
-// Reads a few pages, however many nodes there are: of a series of thousands nobody waits for more. Those of the head
-// are brought into the page cache first: where they are missed in the mapping, the system reads megabytes around them.
+// Reads a few pages of the file, however many nodes it has, so that a series of thousands of files is read quickly.
+// The first two pages are read into the page cache before the mapping is used: on a page fault, the system would read
+// megabytes around them.
 VolumeHead read_head(const std::string& path) {
   const FileMapping file(path, ".nvdb");
   std::array<std::byte, 2 * nvdb::kPage> head;
@@ -49,13 +50,14 @@ VolumeHead read_head(const std::string& path) {
   return result;
 }
 
-// Of a file whose head names no finite range. Cells that the file does not have would be made of all of its voxels.
+// Returns the finite range of a file when its head names none: from the sidecar or from stored macrocells. Macrocells
+// are not computed here, because that would read all voxels.
 std::optional<MinMax> range_beside_head(const std::string& path) {
   try {
     const NvdbFile file(path);
     if (const auto range = certified_range(file)) return range;
     if (has_macrocells(file.grid())) return MacrocellGrid(file.grid(), kMacrocell).finite_range();
-  } catch (const Error&) {  // said when its turn comes
+  } catch (const Error&) {  // the file is reported when it is opened in its turn
   }
   return std::nullopt;
 }
@@ -71,7 +73,7 @@ std::string described(const std::string& path, const SeriesPlace& place) {
              origin[2]);
 }
 
-// Of what was seen first, and this file.
+// Records the first difference between the first file and this file.
 void note_difference(SeriesSummary& summary, const std::string& path, const VolumeHead& head) {
   const SeriesPlace place{head.voxel_size, head.origin};
   if (!summary.box) {
@@ -128,7 +130,7 @@ SeriesSummary summarise_series(std::span<const std::string> files) {
   for (const std::string& path : files) {
     try {
       add_to_summary(summary, path);
-    } catch (const Error&) {  // said when its turn comes
+    } catch (const Error&) {  // the file is reported when it is opened in its turn
     }
   }
   return summary;

@@ -16,23 +16,23 @@ namespace {
 
 constexpr Float3 kBarPaper{1, 1, 1};
 constexpr Float3 kBarInk{0.15F, 0.15F, 0.15F};
-constexpr std::int32_t kColorBarWidthUnit = 8;  // pixels: encoders of video take no odd width
-// In sizes of the text.
+constexpr std::int32_t kColorBarWidthUnit = 8;  // pixels: video encoders do not take odd widths
+// Lengths in units of the text size.
 constexpr double kColorBarGap = 0.5;
 constexpr double kColorBarWidth = 1.5;
-constexpr double kColorBarTickSpace = 3;  // between two ticks, at least
+constexpr double kColorBarTickSpace = 3;  // least space between two ticks
 
 struct ColorBarTick {
   double value;
   std::string label;
 };
 
-// Round numbers inside the range, about as many as there is room for, or its ends, a hundredth of it exactly; of a
-// single value that one.
+// Returns ticks at round numbers inside the range, about as many as there is room for. If fewer than two fit, returns
+// the range's ends, exact to a hundredth of the range; for a single value, that value.
 std::vector<ColorBarTick> color_bar_ticks(double low, double high, int most) {
   if (!(high > low)) return {{low, short_number(low)}};
   const double step = tick_step(high - low, most);
-  const double slack = 1e-6 * step;  // that float32 ends are off round numbers by
+  const double slack = 1e-6 * step;  // the rounding of float32 ends that should be round numbers
   std::vector<ColorBarTick> ticks;
   for (double i = std::ceil((low - slack) / step); i * step <= high + slack; ++i) {
     ticks.push_back({i * step, tick_text(i * step, step)});
@@ -99,7 +99,7 @@ Image draw_color_bar(const TransferFunction& transfer, const std::string& title,
 
 Picture with_color_bar(const Picture& picture, const Image& bar) {
   Picture both{.image = Image(picture.image.width + bar.width, picture.image.height),
-               .tone = {1, false},  // as it is: the tone is in the pixels
+               .tone = {1, false},  // no further tone mapping: the pixels already have it
                .render_s = picture.render_s,
                .cache = picture.cache,
                .missed = picture.missed,

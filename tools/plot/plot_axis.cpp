@@ -11,19 +11,20 @@ namespace {
 constexpr int kMostEvenSteps = 8;
 constexpr std::size_t kMostDecadeTicks = 10;
 
-// Numbers of ticks are written with an exponent from here on, and where they would have more decimals.
+// Ticks are written with an exponent from kLargestPlain on, and if they would need more than kMostDecimals decimals.
 constexpr double kLargestPlain = 1e6;
 constexpr int kMostDecimals = 4;
 
-// Shares of a step that rounding may have put a tick off by.
+// The share of a step by which rounding may have moved a tick.
 constexpr double kTickRounding = 1e-9;
 
-// factor * 10^decade, the nearest double: negative powers of ten are no binary numbers.
+// Returns the double nearest to factor * 10^decade. Negative powers of ten have no exact binary form, so they are
+// divided by.
 double scaled(double factor, int decade) {
   return decade >= 0 ? factor * std::pow(10.0, decade) : factor / std::pow(10.0, -decade);
 }
 
-// The n-th number of 1, 2, 5, 10, 20, 50, ...; n may be negative.
+// Returns the n-th number of 1, 2, 5, 10, 20, 50, ...; n may be negative.
 double one_two_five(int n) {
   constexpr std::array kFactors{1.0, 2.0, 5.0};
   const int decade = n >= 0 ? n / 3 : -((2 - n) / 3);

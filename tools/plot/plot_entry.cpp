@@ -1,4 +1,4 @@
-// The entry of weir_plot.so, and all that is compiled against cairo.
+// The entry point of weir_plot.so, and all code that is compiled against cairo.
 #include <cairo-svg.h>
 #include <cairo.h>
 
@@ -17,7 +17,8 @@ cairo_status_t append(void* bytes, const unsigned char* data, unsigned length) {
   return CAIRO_STATUS_SUCCESS;
 }
 
-/// `text` with what is no UTF-8, of which cairo draws nothing at all, as "?": a file's name may hold any bytes.
+/// Returns `text` with bytes that are not UTF-8 as "?", because a file's name may hold any bytes and cairo draws
+/// nothing of invalid text.
 std::string valid_utf8(std::string_view text) {
   std::string valid;
   while (!text.empty()) {
@@ -131,7 +132,7 @@ class CairoCanvas final : public PlotCanvas {
     void operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
     void operator()(cairo_t* cairo) const { cairo_destroy(cairo); }
   };
-  std::string bytes_;  // before the surface, which writes to it
+  std::string bytes_;  // declared before the surface, which writes to it
   std::unique_ptr<cairo_surface_t, Destroy> surface_;
   std::unique_ptr<cairo_t, Destroy> cairo_;
   PlotFormat format_;

@@ -1,4 +1,4 @@
-// Where along an axis of a chart a value lies.
+// Maps values to positions along an axis of a chart.
 #pragma once
 
 #include <cmath>
@@ -8,7 +8,7 @@
 
 namespace weir {
 
-/// From the first of some ticks, at pixel `first`, to the last, at pixel `last`.
+/// An axis from the first tick, at pixel `first`, to the last tick, at pixel `last`.
 class PlotScale {
  public:
   PlotScale(std::vector<double> ticks, bool logarithmic, std::int32_t first, std::int32_t last)

@@ -15,14 +15,14 @@
 namespace weir {
 namespace {
 
-// What a small volume was given instead of the default rate.
+// Returns the budget that a small volume was given instead of the default rate.
 std::string default_text(const Sidecar& s, const Budget& budget) {
   if (budget.kind != Budget::Kind::automatic) return "";
   if (s.budget.kind == "psnr") return cat(" (default: ", kDefaultLeastDb, " dB)");
   return s.budget.kind == "lossless" ? " (default: lossless)" : "";
 }
 
-// Before the extent: "/qc at 2, magnitude, "; empty for a file that is one volume.
+// Returns the text before the extent: "/qc at 2, magnitude, "; empty for a file that is one volume.
 std::string chosen_prefix(const Sidecar::Source& source) {
   const std::string text = chosen_text(source.dataset, source.index, source.component);
   return text.empty() ? "" : text + ", ";

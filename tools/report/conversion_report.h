@@ -1,4 +1,4 @@
-// What is said of a conversion at its end, to people and to the program that started the command.
+// What a finished conversion reports, to people and to the program that started the command.
 #pragma once
 
 #include <string>
@@ -10,13 +10,13 @@
 
 namespace weir {
 
-/// One line for people. `budget` is what was asked for.
+/// Logs one line for people. `budget` is the budget that was asked for.
 void say_converted(const Sidecar& sidecar, const Budget& budget, const std::string& output);
 
-/// For the program that started this one. `skipped`: it was done already.
+/// Announces the output to the program that started this command. `skipped`: an earlier run had already made it.
 void announce_output(const ProgressOptions& progress, const std::string& output, bool skipped, const Sidecar& sidecar);
 
-/// As a configuration names options: it is where they are set for a service.
+/// Announces `error`. Options are named as in a configuration file, because a service's options are set there.
 void announce_failure(const ProgressOptions& progress, const Error& error);
 
 }  // namespace weir

@@ -6,7 +6,7 @@
 namespace weir {
 namespace {
 
-// Whether no voxel is finite in both the source and the file.
+// Returns whether no voxel is finite in both the source and the file.
 bool compares_nothing(const DerivedErrors& errors) {
   return errors.octaves.zeros == 0 && errors.octaves.counts.empty();
 }

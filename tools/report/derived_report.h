@@ -1,4 +1,4 @@
-// The errors of what is derived from a volume, for people and for programs.
+// Reports the errors of quantities that are derived from a volume, for people and for programs.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -8,10 +8,11 @@
 
 namespace weir {
 
-/// {"quantiles": {"0.5": E, ...}, "octaves": {"zeros", "first", "counts"}, "gradient": {...}, "ssim", ...}.
+/// Returns {"quantiles": {"0.5": E, ...}, "octaves": {"zeros", "first", "counts"}, "gradient": {...}, "ssim", ...}.
 nlohmann::ordered_json derived_json(const DerivedErrors& errors);
 
-/// Three lines. `range`: of the source, largest value less smallest; `units`: of its values, perhaps empty.
+/// Returns the report as lines for people. `range`: largest value of the source less its smallest; `units`: of its
+/// values, may be empty.
 std::string derived_text(const DerivedErrors& errors, double range, const std::string& units);
 
 }  // namespace weir

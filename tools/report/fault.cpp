@@ -14,7 +14,7 @@ bool says_no_thread(const std::exception& error) {
   if (const auto* of_system = dynamic_cast<const std::system_error*>(&error)) {
     return of_system->code() == std::errc::resource_unavailable_try_again;
   }
-  return std::string_view(error.what()).starts_with("pthread_create has failed");  // oneTBB's words for it
+  return std::string_view(error.what()).starts_with("pthread_create has failed");  // oneTBB's message
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What a command says of an exception that is no Error, and what it ends with.
+// The message and exit code for an exception that is not an Error.
 #pragma once
 
 #include <exception>
@@ -12,8 +12,8 @@ struct Fault {
   int exit_code = 0;
 };
 
-/// No memory and no more threads are of the machine, all else is a fault of weir. `smaller`: what to make smaller where
-/// there is no memory, "--memory" for instance.
+/// Returns the message and exit code for `error`. A lack of memory or threads is blamed on the machine, everything
+/// else on weir. `smaller`: what to reduce when memory is short, for instance "--memory".
 Fault fault_of(const std::exception& error, std::string_view smaller);
 
 }  // namespace weir

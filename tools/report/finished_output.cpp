@@ -22,7 +22,8 @@
 namespace weir {
 namespace {
 
-// `source` and `options` as a sidecar gives them back: JSON does not hold every byte that a path may.
+// Returns the record of `source` and `options` as a sidecar would give it back: JSON does not hold every byte that a
+// path may have.
 Sidecar expected_record(const SourceInfo& source, const ConversionOptions& options) {
   Sidecar record;
   record.source.path = source.path;
@@ -39,8 +40,9 @@ Sidecar expected_record(const SourceInfo& source, const ConversionOptions& optio
   return parse_sidecar(to_json_text(record), source.path);
 }
 
-// Those that say what the source does not say itself. Where it lies, which volume it is and which part of it is taken
-// is compared as it came out: "a" and "/a", -1 and the last position, a spacing that is the file's own are the same.
+// Returns the options that describe what the source does not say itself. Place, chosen volume and region are left out,
+// because their results are compared instead: "a" and "/a", -1 and the last position, and a spacing equal to the
+// file's own are the same.
 std::map<std::string, std::string> compared_options(const std::map<std::string, std::string>& options,
                                                     const SourceInfo& source) {
   std::map<std::string, std::string> compared = canonical_options(deciding_options(options));
@@ -63,8 +65,9 @@ bool same_file(const std::string& a, const std::string& b) {
   return a == b || std::filesystem::equivalent(a, b, not_there);
 }
 
-// "a.raw", "./a.raw" and its absolute path name one file. "a.raw" of two working directories names two, as long as both
-// are there: a directory may have been renamed, or moved to another machine.
+// Returns whether both records name one file. "a.raw", "./a.raw" and the absolute path name one file. "a.raw" in two
+// working directories names two files, if both exist; otherwise a directory may have been renamed or moved to another
+// machine.
 bool same_source(const Sidecar::Source& found, const Sidecar::Source& expected) {
   const std::string& real = found.real_path;  // weir 0.1 did not say it
   if (found.path == expected.path) return real.empty() || !is_there(real) || same_file(real, expected.real_path);
@@ -97,9 +100,9 @@ std::string difference(const Sidecar& found, const Sidecar& expected, const Sour
   return {};
 }
 
-// A file that took the source's place, with its size and time (cp -p, rsync -t), or was rewritten and had its time set
-// back, got its status at that moment, which no program sets. The sidecar was written after the last look at the
-// source.
+// Returns which file of the source changed after the sidecar was written; empty: none. The sidecar was written after
+// the last look at the source. A file that took the source's place with its size and time (cp -p, rsync -t), or that
+// was rewritten and had its time set back, has a newer status time (ctime), which no program can set.
 std::string changed_since(const std::string& record_path, const SourceInfo& source) {
   const FileState record = look_at_file(record_path);
   for (const FileState& file : source.files) {
@@ -111,7 +114,7 @@ std::string changed_since(const std::string& record_path, const SourceInfo& sour
   return {};
 }
 
-// Empty where the volume is the one that the sidecar describes.
+// Returns why the volume is not the one that the sidecar describes; empty if it is.
 std::string broken(const std::string& output, const Sidecar& sidecar) {
   try {
     const NvdbFile file(output);

@@ -1,5 +1,5 @@
-// What a conversion finds at the path of its output, for `weir convert --skip-done`. Two small reads and one of the
-// volume's nodes; values are read only beside what a killed commit left.
+// Finds out what stands at the path of an output, for `weir convert --skip-done`. Two small reads and one read of the
+// volume's nodes; values are read only if a killed commit left files behind.
 #pragma once
 
 #include <optional>
@@ -13,25 +13,25 @@ namespace weir {
 
 struct FinishedOutput {
   enum class State {
-    absent,      ///< neither volume nor sidecar
-    done,        ///< the result of this very conversion: `sidecar` is its record
-    stale,       ///< weir made it of the same source, which has changed since, or with other options, or not to the end
+    absent,      ///< neither volume nor sidecar exists
+    done,        ///< the result of exactly this conversion: `sidecar` is its record
+    stale,       ///< weir made it of the same source, but the source or options changed, or it is incomplete
     foreign,     ///< weir did not make it of this source; `reason` says what it is
-    unreadable,  ///< the system does not give its sidecar now, so that nobody knows: `reason` is the error's line
+    unreadable,  ///< the system cannot read the sidecar now, so the state is unknown: `reason` is the error
   };
   State state = State::absent;
   std::optional<Sidecar> sidecar;
-  std::string reason;  ///< why it is not done
+  std::string reason;  ///< why the state is not `done`
 };
 
-/// At options.output; options.provenance has those of the command line, as given_options says them, and the ones that
-/// do not change the volume's bytes (memory, threads, places) need not agree. Done means: the sidecar names the same
-/// source, by its real path where it has that, dataset, size, modification time and states of its files, the same
-/// options, however they were written, and a scene that said the same, and the volume is the sidecar's
-/// (is_of.h). Throws nothing for what stands there.
+/// Inspects options.output. options.provenance holds the options of the command line, as given_options returns them;
+/// options that do not change the volume's bytes (memory, threads, places) may differ. The state is `done` if the
+/// sidecar names the same source (real path if recorded, dataset, size, modification time and file states), the same
+/// options in any spelling, and a scene with the same content, and if the volume is the sidecar's (is_of.h). Throws
+/// nothing for the files found there.
 FinishedOutput find_output(const SourceInfo& source, const ConversionOptions& options);
 
-/// Throws Error(usage) where `output` is the input itself, or a directory.
+/// Throws Error(usage) if `output` is the input itself or a directory.
 void check_output(const std::string& input, const std::string& output);
 
 }  // namespace weir

@@ -22,7 +22,7 @@ bool has_spread(const Expected& expected) { return expected.low < expected.high;
 
 std::string seconds_text(double seconds) { return cat(fixed(seconds, seconds < 10 ? 1 : 0), " s"); }
 
-// Names are a foreign file's.
+// Returns one line of the report. `text` may hold names from a foreign file, so it is made safe.
 std::string line(const std::string& what, const std::string& text) {
   constexpr std::size_t kColumn = 10;
   std::string head = cat("  ", what);
@@ -46,7 +46,8 @@ std::string file_text(const Forecast& f, const std::string& output) {
   return text;
 }
 
-// A PSNR that was asked for is one of all voxels, or of those that a scene shows, and no figure of a sample.
+// Whether the PSNR is the one that the budget asked for. That PSNR holds for all voxels, or for those that a scene
+// shows, so it is not an estimate from a sample.
 enum class Asked { no, yes };
 
 Asked of_all(const ConversionOptions& options) {
@@ -79,13 +80,13 @@ std::string shown_line(const Forecast& f, const ConversionOptions& options) {
              " of the voxels");
 }
 
-// What float32 loses, which the error does not count; empty where that is nothing.
+// Returns what the conversion to float32 loses, which the error does not count; empty if nothing is lost.
 std::string rounded_line(const Forecast& f) {
   const std::string text = rounded_text(f.loss);
   return text.empty() ? "" : cat(text, f.whole ? "" : ", in the sample", "; the error does not count that");
 }
 
-// What takes the place of a budget that nobody gave; empty where one was.
+// Returns the budget that is used when none was given; empty if one was given.
 std::string default_budget_text(const Forecast& f, const ConversionOptions& options) {
   if (options.budget.kind != Budget::Kind::automatic) return "";
   const std::string rate = cat("--rate ", options.budget.rate);

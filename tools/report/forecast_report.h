@@ -1,4 +1,4 @@
-// What `weir convert --dry-run` says of a conversion that it did not make.
+// The report of `weir convert --dry-run` about a conversion that was not made.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -10,10 +10,10 @@
 
 namespace weir {
 
-/// Lines for people, with the last newline.
+/// Returns lines for people, including the last newline.
 std::string forecast_text(const Forecast& forecast, const SourceInfo& source, const ConversionOptions& options);
 
-/// Bytes, seconds, dB; null where there is no such figure.
+/// Returns the figures in bytes, seconds and dB; null for a figure that is not known.
 nlohmann::ordered_json forecast_json(const Forecast& forecast, const SourceInfo& source,
                                      const ConversionOptions& options);
 

@@ -1,15 +1,15 @@
-// Whether a file that is to be a result of weir is another program's.
+// Recognises a file of another program where a result of weir is expected.
 #pragma once
 
 #include <string>
 
 namespace weir {
 
-/// Whether `path` is a file that can be looked at, is not called .nvdb and does not begin as NanoVDB. A damaged .nvdb
-/// is none: what is wrong with it is said when it is opened.
+/// Returns whether `path` is a regular file that is not called .nvdb and does not begin as NanoVDB. A damaged .nvdb is
+/// not foreign: opening it reports what is wrong.
 bool is_foreign_file(const std::string& path);
 
-/// Throws Error(input), which gives the command that converts it, where is_foreign_file().
+/// Throws Error(input), with the command that converts the file, if is_foreign_file().
 void refuse_foreign_file(const std::string& path);
 
 }  // namespace weir

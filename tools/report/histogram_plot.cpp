@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kTextColumns = 64;
 constexpr int kTextRows = 10;
 constexpr std::size_t kLabelWidth = 9;
-constexpr std::size_t kDiscreteBins = 16;  // fewer filled ones say nothing about what lies between
+constexpr std::size_t kDiscreteBins = 16;  // fewer filled bins do not show that the data are discrete
 
 constexpr std::int32_t kWidth = 720;  // pixels
 constexpr std::int32_t kHeight = 384;
@@ -39,8 +39,9 @@ bool nothing_to_show(const Sidecar::Histogram& h) {
          std::none_of(h.counts.begin(), h.counts.end(), [](std::uint64_t count) { return count != 0; });
 }
 
-// Whole numbers of neighbouring bins merged, so that all columns are equally wide: as many as lie
-// between the values of discrete data, then as many as make at most `columns`.
+// Returns `h` with neighbouring bins merged, the same number for every column, so that all columns are equally wide.
+// First merges as many bins as lie between the values of discrete data, then as many as give at most `columns`
+// columns.
 Sidecar::Histogram merged(const Sidecar::Histogram& h, std::size_t columns) {
   std::size_t first = h.counts.size();
   std::size_t stride = 0;
@@ -64,7 +65,7 @@ Sidecar::Histogram merged(const Sidecar::Histogram& h, std::size_t columns) {
   return result;
 }
 
-// 0 for no voxel, above 0 for one, 1 for `most`.
+// Returns 0 for no voxel, above 0 for one voxel, 1 for `most` voxels.
 double log_height(std::uint64_t count, std::uint64_t most) {
   return std::log10(1.0 + static_cast<double>(count)) / std::log10(1.0 + static_cast<double>(most));
 }

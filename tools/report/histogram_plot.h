@@ -1,5 +1,5 @@
-// A histogram as a picture: on a terminal and as an image. Counts are shown on
-// a logarithmic scale, since the background alone often holds most voxels.
+// Draws a histogram as text for a terminal and as an image. Counts are on a logarithmic scale, because the background
+// alone often holds most voxels.
 #pragma once
 
 #include <optional>
@@ -10,18 +10,18 @@
 
 namespace weir {
 
-/// Bars of '#', at most 64 wide and 10 high, with axes; several lines, each ending in a newline. One
-/// line saying so where there is nothing to show.
+/// Returns bars of '#', at most 64 wide and 10 high, with axes: several lines, each ending in a newline. Returns one
+/// line that says so if there is nothing to show.
 std::string histogram_text(const Sidecar::Histogram& histogram);
 
-/// What stands on a chart.
+/// The texts on a chart.
 struct HistogramLabels {
-  std::string title;   ///< above it, what the volume is
-  std::string values;  ///< below the axis of values, with their units
+  std::string title;   ///< above the chart: what the volume is
+  std::string values;  ///< below the value axis, with units
 };
 
-/// The bytes of a file, 720 x 384 pixels with labels, axes, decade lines, and a mark at `background` where it is given
-/// and inside. Throws as make_plot_canvas.
+/// Returns the bytes of an image file of 720 x 384 pixels with labels, axes, decade lines, and a mark at `background`
+/// if that is given and inside the range. Throws as make_plot_canvas.
 std::string histogram_chart(const Sidecar::Histogram& histogram, std::optional<double> background,
                             const HistogramLabels& labels, PlotFormat format);
 

@@ -30,7 +30,7 @@ std::string command_of(const InputListing& listing, const DatasetInfo& dataset) 
 InputListing list_input(const std::string& path, const SourceOptions& options) {
   if (options.stack) return {path, "stack", false, list_single(open_source(path, options)->info(), "")};
   const SourceFormat& format = format_of(path);
-  SourceOptions without_dataset = options;  // of which keep_named() says what there is
+  SourceOptions without_dataset = options;  // keep_named() reports a dataset that does not exist
   without_dataset.dataset.clear();
   refuse_foreign_options(path, format, without_dataset);
   SourceOptions all = options;

@@ -1,5 +1,4 @@
-// What an input file holds, for `weir inspect`: its datasets or grids and the
-// command that converts each.
+// What an input file holds, for `weir inspect`: its datasets or grids, and the command that converts each.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -13,20 +12,20 @@ namespace weir {
 struct InputListing {
   std::string path;
   std::string format;
-  bool container = false;  ///< its datasets are chosen by --dataset
+  bool container = false;  ///< --dataset chooses one of its datasets
   std::vector<DatasetInfo> datasets;
-  std::string words{};  ///< input options that the commands take besides their own, a space before each
+  std::string words{};  ///< input options that are appended to each command, each with a space before it
 };
 
-/// Lists `path`, with options.stack as one volume; reads no values. Throws what open_source throws of the file itself,
-/// and of options that are not for its format, but for the dataset.
+/// Lists `path`, or with options.stack one volume; reads no values. Throws what open_source throws for the file itself
+/// and for options that its format does not take; the dataset is not checked here.
 InputListing list_input(const std::string& path, const SourceOptions& options);
 
-/// Leaves the datasets that `dataset` names, with or without the slash before it, or as a pattern. Throws Error(usage)
-/// where there is none.
+/// Keeps only the datasets that `dataset` names, with or without the leading slash, or as a pattern. Throws
+/// Error(usage) if there is none.
 void keep_named(InputListing& listing, const std::string& dataset);
 
-/// On stdout, for people.
+/// Prints the listing on stdout, for people.
 void print_text(const InputListing& listing);
 nlohmann::ordered_json to_json(const InputListing& listing);
 

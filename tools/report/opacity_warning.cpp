@@ -10,7 +10,8 @@
 namespace weir {
 namespace {
 
-// Entries are a thousandth of the range apart: four digits would not tell the ends of a band between two.
+// Entries are a thousandth of the range apart, so four digits could not tell apart the ends of a band between two
+// entries.
 std::string six_digits(double value) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.6g", value);

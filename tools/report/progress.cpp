@@ -28,7 +28,7 @@ double steady_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-// "0:04", "12:30", "3:00:00".
+// Returns a time as "0:04", "12:30" or "3:00:00".
 std::string clock_text(double seconds) {
   const long whole = std::lround(std::min(seconds, 359999.0));
   std::array<char, 32> text{};
@@ -142,7 +142,7 @@ void announce(const ProgressOptions& options, std::string line) {
   while (!rest.empty()) {
     const ssize_t written = ::write(options.descriptor, rest.data(), rest.size());
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) return;  // nobody reads any more: the work goes on
+    if (written < 0) return;  // the reader is gone; the work goes on
     rest.remove_prefix(static_cast<std::size_t>(written));
   }
 }

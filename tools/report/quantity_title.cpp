@@ -10,7 +10,7 @@
 namespace weir {
 namespace {
 
-// "density" of "/fields/density".
+// Returns "density" for "/fields/density".
 std::string last_part(const std::string& name) { return name.substr(name.rfind('/') + 1); }
 
 std::string quantity_text(const std::string& long_name, const std::string& name, const std::string& units) {
@@ -26,7 +26,7 @@ std::string quantity_title(const NvdbFile& file) {
     if (const std::optional<Sidecar> sidecar = own_sidecar(file)) {
       return quantity_text(sidecar->source.long_name, sidecar->grid.name, sidecar->source.units);
     }
-  } catch (const Error&) {  // a title is worth no picture; `weir verify` says what is wrong
+  } catch (const Error&) {  // a missing title must not prevent a picture; `weir verify` reports the fault
   }
   return last_part(file.grid().name());
 }

@@ -1,4 +1,4 @@
-// What the values of a volume are, in a few words for a chart.
+// Names the values of a volume in a few words for a chart.
 #pragma once
 
 #include <string>
@@ -8,8 +8,9 @@
 
 namespace weir {
 
-/// "cloud water mixing ratio (kg kg-1)": the long name, or else the last part of the name, and the units where they are
-/// known. Of a file as its sidecar says it; without a sidecar that is the file's, the last part of its grid's name.
+/// Returns "cloud water mixing ratio (kg kg-1)": the long name, otherwise the last part of the name, and the units if
+/// they are known. For a file these come from its sidecar; without a sidecar, the last part of the grid's name is
+/// returned.
 std::string quantity_title(const NvdbFile& file);
 std::string quantity_title(const SourceInfo& source);
 

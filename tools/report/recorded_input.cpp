@@ -22,8 +22,8 @@ namespace {
 
 using Note = std::function<void(const char* option, const std::string& text)>;
 
-/// What neither `options` nor the name of the file says of the layout of a raw file, and the options of the conversion,
-/// `said`, do.
+/// Takes the layout of a raw file from `said`, the options of the conversion, where neither `options` nor the file's
+/// name gives it.
 void take_raw_layout(const std::string& input, const std::map<std::string, std::string>& said, SourceOptions& options,
                      const Note& note) {
   const auto name = parse_raw_name(input);

@@ -1,4 +1,4 @@
-// What a sidecar says of how its source was read.
+// Reads from a sidecar how its source was read.
 #pragma once
 
 #include <cstdint>
@@ -14,32 +14,31 @@
 
 namespace weir {
 
-/// What lies beside a volume.
+/// The sidecar that lies beside a volume.
 struct InputRecord {
-  std::string path;                ///< of the sidecar, be it there or not
-  std::optional<Sidecar> sidecar;  ///< if it is the volume's own
-  std::string unusable;            ///< why one that is there is none: "PATH: ...; the source is read without ..."
+  std::string path;                ///< path of the sidecar, whether or not it exists
+  std::optional<Sidecar> sidecar;  ///< the sidecar, if it belongs to the volume
+  std::string unusable;            ///< why an existing sidecar is not used: "PATH: ...; the source is read without ..."
 };
 
-/// Throws nothing: what is wrong with the sidecar is `unusable`.
+/// Reads the sidecar of `file`. Throws nothing: a fault of the sidecar is in `unusable`.
 InputRecord read_input_record(const NvdbFile& file);
 
-/// Sets extent, type, byte order and offset of raw files, whether it is a stack, dataset, index, component, level,
-/// region, spacing, the value that stands for "no data" and whether such voxels are data in `options`, where they are
-/// not `given`, to those that `recorded` has, if that is of a source of the format of `input`. Returns what was set, as
-/// options, "--dataset /rho --index 3"; empty: nothing.
+/// Fills options that are not `given` from `recorded`, if its source has the format of `input`: extent, type, byte
+/// order and offset of raw files, stack, dataset, index, component, level, region, spacing, the "no data" value and
+/// whether such voxels are data. Returns the options that were set, "--dataset /rho --index 3"; empty: none.
 std::string take_recorded_input(const std::string& input, const InputRecord& recorded, const GivenOptions& given,
                                 SourceOptions& options);
 
-/// Where `recorded`, if it is of the format of `source`, was made of the file at the same path when it had another
-/// time: what is different, to follow the source's path; else empty.
+/// Returns what changed in the source file since the volume was made, if `recorded` names the same path and format but
+/// another time; the text follows the source's path. Otherwise empty.
 std::string changed_source_note(const InputRecord& recorded, const SourceInfo& source);
 
-/// Where `recorded`, if it is of the format of `source`, has another dataset, index, component or spacing than
-/// `source`: "was converted with --index 1, as a.nvdb.json records, and is compared with --index 0"; else empty.
+/// Returns how the dataset, index, component or spacing of `recorded` differs from `source`, if both have the same
+/// format: "was converted with --index 1, as a.nvdb.json records, and is compared with --index 0"; otherwise empty.
 std::string other_input_note(const InputRecord& recorded, const SourceInfo& source);
 
-/// As --index takes it: "3,0".
+/// Returns `index` as --index takes it: "3,0".
 std::string index_text(const std::vector<std::int64_t>& index);
 
 }  // namespace weir

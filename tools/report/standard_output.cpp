@@ -10,7 +10,7 @@
 namespace weir {
 namespace {
 
-// Of a write before, whose own is lost: that of one more.
+// Returns an errno for an earlier failed write, whose own errno is lost: the errno of one more write.
 int later_reason() { return ::write(STDOUT_FILENO, "\n", 1) < 0 ? errno : EIO; }
 
 }  // namespace

@@ -32,7 +32,7 @@ std::string surface_warning(const Scene& scene, const MinMax& values) {
                ": the picture shows no surface");
   }
   const double passed = iso < low ? low : high;
-  constexpr int kAll = 17;  // tell any two doubles apart
+  constexpr int kAll = 17;  // digits that tell any two doubles apart
   int digits = 4;
   while (digits < kAll && with_digits(iso, digits) == with_digits(passed, digits)) ++digits;
   return cat("the iso value ", with_digits(iso, digits), " lies outside the values, ", with_digits(low, digits), " .. ",

@@ -1,4 +1,4 @@
-// What is said of an iso surface that no voxel can reach.
+// The warning about an iso surface that no voxel can reach.
 #pragma once
 
 #include "format/leaf/bounds.h"
@@ -6,10 +6,10 @@
 
 namespace weir {
 
-/// "the iso value 0.74 lies outside the values, 0 .. 0.7399: the picture shows no surface", with as many digits as tell
-/// the value from the end that it lies beyond; or that it is the lowest of `values`, which none of them is below; or,
-/// where `scene` names no value, that there is one alone. Empty where `scene` draws no surface, and where there are
-/// values on both sides.
+/// Returns "the iso value 0.74 lies outside the values, 0 .. 0.7399: the picture shows no surface", with enough digits
+/// to tell the iso value from the end of the range. Also warns if the iso value is the lowest of `values`, so that no
+/// value is below it, or if `scene` names no iso value and all values are equal. Empty if `scene` draws no surface or
+/// if values lie on both sides.
 std::string surface_warning(const Scene& scene, const MinMax& values);
 
 }  // namespace weir

@@ -13,7 +13,7 @@ nlohmann::ordered_json quantity_json(const QuantityError& error) {
   return json;
 }
 
-// The divergence of many fields is next to nothing, and a share of that says little: both are named.
+// The divergence of many fields is close to zero, so a relative error says little: the line names both rms values.
 std::string quantity_text(const QuantityError& error, const std::string& units) {
   return cat("rms error ", short_number(error.rms), ", the source's rms ", short_number(error.source_rms),
              ", largest error ", short_number(error.max_abs), units.empty() ? "" : cat(" ", printable(units)),

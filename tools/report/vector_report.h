@@ -1,4 +1,4 @@
-// The errors of vorticity and divergence, for people and for programs.
+// Reports the errors of vorticity and divergence, for people and for programs.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -8,10 +8,10 @@
 
 namespace weir {
 
-/// {"vorticity": {"rms", "source_rms", "relative_rms", "max_abs"}, "divergence": {...}, "voxels", "left_out"}.
+/// Returns {"vorticity": {"rms", "source_rms", "relative_rms", "max_abs"}, "divergence": {...}, "voxels", "left_out"}.
 nlohmann::ordered_json vector_json(const VectorErrors& errors);
 
-/// Two lines. `units`: of the components' values, perhaps empty.
+/// Returns two lines for people. `units`: of the components' values, may be empty.
 std::string vector_text(const VectorErrors& errors, const std::string& units);
 
 }  // namespace weir

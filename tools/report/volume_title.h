@@ -1,4 +1,4 @@
-// What a volume is called where people read it.
+// Names a volume for people.
 #pragma once
 
 #include <cstdint>
@@ -9,11 +9,11 @@
 
 namespace weir {
 
-/// What was chosen of an input: "/qc at 2,1, component x", or "/v, magnitude"; empty for a file that is one volume.
-/// `component` as the sidecar has it.
+/// Returns what was chosen of an input: "/qc at 2,1, component x", or "/v, magnitude"; empty for a file that is one
+/// volume. `component` is the sidecar's text.
 std::string chosen_text(const std::string& dataset, std::span<const std::int64_t> index, const std::string& component);
 
-/// The file's name without its folders, and what was chosen of it: "run.h5 /qc at 2".
+/// Returns the file's name without its folders, and what was chosen of the file: "run.h5 /qc at 2".
 std::string volume_title(const Sidecar::Source& source);
 
 }  // namespace weir

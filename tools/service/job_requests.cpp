@@ -22,7 +22,7 @@ void ask_of_jobs(const ServiceClient& client, const JobRequests& requests) {
       } else if (std::string_view(refused->what()) != error.what()) {
         refused = Error(refused->kind(), cat(refused->what(), "; ", error.what()));
       }
-      if (error.kind() != ErrorKind::usage) break;  // not of this job: the service does not answer
+      if (error.kind() != ErrorKind::usage) break;  // not a refusal of this job: the service does not answer
     }
   }
   if (requests.json) std::cout << ServiceClient::Json{{"jobs", jobs}}.dump() << '\n';

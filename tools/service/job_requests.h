@@ -1,4 +1,4 @@
-// What is asked of several jobs of a running `weir watch`, one after the other.
+// Sends one request for several jobs of a running `weir watch`, one job after the other.
 #pragma once
 
 #include <cstdint>
@@ -13,13 +13,13 @@ namespace weir {
 
 struct JobRequests {
   std::span<const std::int64_t> ids;
-  std::string action;  ///< of POST /api/jobs/ID/ACTION
+  std::string action;  ///< the ACTION in POST /api/jobs/ID/ACTION
   std::function<std::string(const ServiceClient::Json& job)> text;
   bool json = false;
 };
 
-/// Says on stdout what came of each job: its `text`, or with `json` one object {"jobs": [...]}. A job that the service
-/// refuses does not keep it from the others; then throws Error with what it said of all that it refused.
+/// Prints the result for each job on stdout: its `text`, or with `json` one object {"jobs": [...]}. If the service
+/// refuses a job, the other jobs are still sent; then an Error with all refusals is thrown.
 void ask_of_jobs(const ServiceClient& client, const JobRequests& requests);
 
 }  // namespace weir

@@ -29,8 +29,8 @@ using boost::asio::ip::tcp;
 using UnixEndpoint = boost::asio::local::stream_protocol::endpoint;
 using boost::system::error_code;
 
-constexpr std::chrono::seconds kPatience{30};                  // for a whole answer
-constexpr std::chrono::milliseconds kInterruptLook{100};       // an interrupt ends no wait by itself
+constexpr std::chrono::seconds kPatience{30};                  // time limit for a whole answer
+constexpr std::chrono::milliseconds kInterruptLook{100};       // how often a wait checks the interrupt flag
 constexpr std::uint64_t kMaxAnswer = std::uint64_t{64} << 20;  // bytes; a full page of jobs is a few MiB
 
 std::string first_word_of(const std::string& path) {
@@ -41,7 +41,8 @@ std::string first_word_of(const std::string& path) {
   return word;
 }
 
-// A server that listens on all addresses is asked on this machine's own.
+// Returns the host to connect to. A server that listens on all addresses is reached at this machine's loopback
+// address.
 std::string reachable(const std::string& host) {
   if (host == "0.0.0.0") return "127.0.0.1";
   return host == "::" ? "::1" : host;
@@ -63,7 +64,7 @@ ListenAddress address_of(const ServiceConfig& service) {
   return address;
 }
 
-// One exchange over one connection, all of it within kPatience.
+// One request and its answer over one connection, within kPatience.
 class Exchange {
  public:
   Exchange(const ListenAddress& address, const http::request<http::empty_body>& request)
@@ -130,7 +131,7 @@ class Exchange {
   std::string failure_;
 };
 
-// Weir's own refusal, as an error of the command.
+// Throws weir's own refusal as an error of the command.
 [[noreturn]] void refuse(const std::string& where, unsigned status, const nlohmann::ordered_json& body,
                          bool gave_token) {
   const auto message = body.is_object() ? body.value("error", "") : std::string();

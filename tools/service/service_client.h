@@ -1,5 +1,5 @@
-// The other end of the control server: what `weir jobs`, `weir status`,
-// `weir retry`, `weir cancel`, `weir pause` and `weir resume` ask a running `weir watch`. One request, one connection.
+// The client of the control server, with which `weir jobs`, `weir status`, `weir retry`, `weir cancel`, `weir pause`
+// and `weir resume` talk to a running `weir watch`. Each request uses its own connection.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -16,8 +16,8 @@ namespace weir {
 /// The service's address and token, as options.
 struct ServiceOptions {
   std::string address;     ///< HOST:PORT or unix:PATH
-  std::string config;      ///< CONFIG.toml, which says both
-  std::string token_file;  ///< else the environment's WEIR_TOKEN
+  std::string config;      ///< CONFIG.toml, which holds address and token
+  std::string token_file;  ///< if empty, the environment's WEIR_TOKEN is used
 };
 
 /// Adds --address, --config and --token-file.
@@ -29,17 +29,18 @@ class ServiceClient {
 
   ServiceClient(ListenAddress address, std::string token)
       : address_(std::move(address)), control_(address_), token_(std::move(token)) {}
-  /// As the options say: 127.0.0.1:8470 where they say nothing. Of a configuration with a control socket, what changes
-  /// something is asked there, and all else at `listen`. Throws Error(usage) for an address that is none,
-  /// Error(input) for a file that cannot be read, or is no configuration.
+  /// Uses the address and token of the options; the default address is 127.0.0.1:8470. If the configuration has a
+  /// control socket, post() uses it and get() uses `listen`. Throws Error(usage) for an invalid address, Error(input)
+  /// for a file that cannot be read or is no configuration.
   explicit ServiceClient(const ServiceOptions& options);
 
-  /// The JSON the service answers. Throws Error(io) where it does not answer, or not as weir does; Error(usage) with
-  /// its own message where it refuses; Error(interrupted) where interrupt_flag() was set before the answer.
+  /// Return the service's JSON answer. Throw Error(io) if the service does not answer, or not as weir does;
+  /// Error(usage) with the service's message if it refuses; Error(interrupted) if interrupt_flag() is set before the
+  /// answer.
   Json get(const std::string& target) const { return ask("GET", target); }
   Json post(const std::string& target) const { return ask("POST", target); }
 
-  /// use(answer), where `answer` has the members that weir's would have; else throws Error(io).
+  /// Returns use(answer). Throws Error(io) if `answer` lacks a member that weir's answers have.
   template <typename Use>
   auto read(const Json& answer, Use use) const {
     try {
@@ -54,7 +55,7 @@ class ServiceClient {
   [[noreturn]] void refuse_foreign() const;
 
   ListenAddress address_;
-  ListenAddress control_;  ///< for post(); the same where there is no other
+  ListenAddress control_;  ///< for post(); equal to `address_` without a control socket
   std::string token_;
 };
 

@@ -25,7 +25,7 @@ std::string text_at(const Json& json, const char* key) { return printable(json.a
 
 std::string bytes_at(const Json& json, const char* key) { return format_bytes(json.at(key).get<std::uint64_t>()); }
 
-// "rate 8, 51.2 dB" of a job's only output, or how many there are.
+// Returns "rate 8, 51.2 dB" for a job with one output, otherwise the number of outputs.
 std::string result_text(const Json& outputs) {
   if (outputs.empty()) return "";
   if (outputs.size() > 1) return cat(outputs.size(), " outputs");
@@ -41,12 +41,12 @@ std::string result_text(const Json& outputs) {
 std::string running_text(const Json& job) {
   const Json& fraction = job.at("fraction");
   const std::string share = fraction.is_null() ? "" : cat(std::floor(100 * fraction.get<double>()), " % after ");
-  const bool thumbnail = job.at("step") == "render";  // of a job that is done
+  const bool thumbnail = job.at("step") == "render";  // the job itself is done, its thumbnail is being rendered
   return cat(thumbnail ? "thumbnail   " : "running     ", job.at("id").get<std::int64_t>(), ' ', text_at(job, "source"),
              ": ", text_at(job, "step"), ", ", share, duration_text(job.at("seconds").get<double>()), '\n');
 }
 
-// ", 2 failed, 1 quarantined"; nothing where none is.
+// Returns ", 2 failed, 1 quarantined"; empty if there is none.
 std::string problems_text(const Json& counts) {
   std::string text;
   for (const char* state : {"failed", "quarantined"}) {

@@ -1,4 +1,4 @@
-// The service's JSON answers as text for a terminal.
+// Formats the service's JSON answers for a terminal.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -6,13 +6,14 @@
 
 namespace weir {
 
-/// "4.1 s", "62 s", "7 min", "2 h", "3 days".
+/// Returns a duration as "4.1 s", "62 s", "7 min", "2 h" or "3 days".
 std::string duration_text(double seconds);
 
-/// A table of GET /api/jobs, a line each, its reason below where there is one. `now` is a Unix time.
+/// Returns the jobs of GET /api/jobs as a table, one line each, with the reason below if there is one. `now` is a Unix
+/// time.
 std::string jobs_text(const nlohmann::ordered_json& page, double now);
 
-/// GET /api/status, a line a fact.
+/// Returns GET /api/status as text, one line per fact.
 std::string status_text(const nlohmann::ordered_json& status, double now);
 
 }  // namespace weir

@@ -10,7 +10,7 @@ namespace weir {
 
 class BlockTransform::Plan {
  public:
-  // FFTW_ESTIMATE measures nothing, so that the sums are the same in every run, and touches no array.
+  // FFTW_ESTIMATE measures nothing, so the sums are the same in every run, and it does not touch the arrays.
   explicit Plan(const Index3& extent) {
     std::vector<double> values(static_cast<std::size_t>(volume(extent)));
     std::vector<std::complex<double>> result(static_cast<std::size_t>(volume(frequencies(extent))));
@@ -27,7 +27,7 @@ class BlockTransform::Plan {
   }
 
  private:
-  // std::complex<double> is laid out as an array of two.
+  // std::complex<double> has the layout of an array of two doubles.
   static fftw_complex* fftw_array(std::span<std::complex<double>> numbers) {
     return reinterpret_cast<fftw_complex*>(numbers.data());
   }

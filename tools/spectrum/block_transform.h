@@ -9,16 +9,19 @@
 
 namespace weir {
 
-/// Of blocks of one extent. Plans of FFTW are made and freed by one thread at a time; any threads may use one.
+/// Transforms blocks of one extent. Only one thread at a time may make or free objects, because of FFTW's plans; any
+/// number of threads may use one object.
 class BlockTransform {
  public:
-  /// `extent`: voxels, each from 1 on. Throws Error(usage) in a build without FFTW.
+  /// `extent`: voxels, each at least 1. Throws Error(usage) in a build without FFTW.
   explicit BlockTransform(const Index3& extent);
 
-  /// Of the frequencies that run() gives: extent.x / 2 + 1 along x, the others are their conjugates.
+  /// Returns the extent of the result of run(): extent.x / 2 + 1 along x; the other frequencies are the conjugates of
+  /// these.
   static Index3 frequencies(const Index3& extent) { return {extent.x / 2 + 1, extent.y, extent.z}; }
 
-  /// Sums of value * exp(-2 pi i (m . n / extent)) over the voxels n, not scaled. Both x fastest.
+  /// Computes the sums of value * exp(-2 pi i (m . n / extent)) over the voxels n, not scaled. Values and result are x
+  /// fastest.
   void run(std::span<double> values, std::span<std::complex<double>> result) const;
 
  private:
@@ -26,7 +29,7 @@ class BlockTransform {
   std::shared_ptr<const Plan> plan_;
 };
 
-/// Whether this build has FFTW.
+/// Returns whether this build has FFTW.
 bool has_fftw();
 
 }  // namespace weir

@@ -34,7 +34,7 @@ std::vector<double> hann(std::int64_t block) {
   return weights;
 }
 
-/// What is the same for all blocks.
+/// The data that all blocks share.
 struct Method {
   VolumeWindows windows;
   Index3 block;  ///< voxels of each
@@ -66,12 +66,12 @@ struct ShellSums {
   ExactSum error;
 };
 
-/// For one thread; sums do not depend on order and grouping.
+/// The sums of one thread; they do not depend on order and grouping.
 class SpectrumTally {
  public:
   explicit SpectrumTally(const Method& method) : method_(&method), sums_(method.shells.count()) {}
 
-  /// The blocks that begin in `part`.
+  /// Adds the blocks that begin in `part`.
   void add(const ValuePair& values, const Box& part) {
     const Index3& lo = values.domain.lo;
     for_each_index(method_->windows.in({part.lo - lo, part.hi - lo}), [&](const Index3& number) {
@@ -119,7 +119,7 @@ class SpectrumTally {
       return;
     }
     ++blocks_;
-    // By Parseval's equation the powers of all frequencies sum up to the mean square under the window.
+    // By Parseval's equation, the powers of all frequencies sum up to the mean square under the window.
     const double scale = 1 / (static_cast<double>(volume(method_->block)) * method_->window_squares);
     std::vector<Powers> powers(sums_.size());
     const std::vector<WaveShells::Place>& places = method_->shells.places();
@@ -137,7 +137,7 @@ class SpectrumTally {
     }
   }
 
-  // False where a value is not finite.
+  // Returns false if a value is not finite.
   bool transform(const ValuePair& values, const Box& box, std::span<const float> all, Frequencies& result) {
     const Index3 extent = box.extent();
     block_.resize(static_cast<std::size_t>(volume(extent)));

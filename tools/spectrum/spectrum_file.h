@@ -1,4 +1,4 @@
-// Where a spectrum goes: FILE.png or FILE.svg, a chart, or FILE.csv, a table.
+// The output file of a spectrum: FILE.png or FILE.svg, a chart, or FILE.csv, a table.
 #pragma once
 
 #include <optional>
@@ -13,11 +13,11 @@ namespace weir {
 
 class SpectrumFile {
  public:
-  /// Takes the place, so that what is wrong with it is said before the work. `files` must outlive the object; a file at
-  /// `path` is replaced. Throws Error(usage) for another ending and without FFTW, and as load_driver and PartialFile.
+  /// Opens the output, so that a fault is reported before the work. `files` must outlive the object; a file at `path`
+  /// is replaced. Throws Error(usage) for another ending and without FFTW, and as load_driver and PartialFile.
   SpectrumFile(FileSystem& files, const std::string& path);
 
-  /// `title`: over the chart. Throws Error(io), and leaves what was there.
+  /// Writes the file. `title`: over the chart. On failure throws Error(io) and leaves the previous file.
   void write(const PowerSpectrum& spectrum, const std::string& title);
 
  private:

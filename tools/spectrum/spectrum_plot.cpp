@@ -24,10 +24,10 @@ constexpr double kLine = 2.4;
 constexpr Float3 kSpectrumPaper{1, 1, 1};
 constexpr Float3 kSpectrumInk{0.13F, 0.13F, 0.13F};
 constexpr Float3 kSpectrumGridLine{0.88F, 0.88F, 0.88F};
-// Colours that the colour-blind tell apart (M. Okabe, K. Ito, 2008).
+// Colours that colour-blind people can tell apart (M. Okabe, K. Ito, 2008).
 constexpr Float3 kKept{0.000F, 0.447F, 0.698F};
 constexpr Float3 kLost{0.835F, 0.369F, 0.000F};
-/// Less is drawn here.
+/// Smaller shares are drawn at this value.
 constexpr double kLeastShare = 1e-16;
 
 struct PowerShare {
@@ -43,13 +43,13 @@ std::vector<PowerShare> shares(const PowerSpectrum& spectrum, double PowerSpectr
   return all;
 }
 
-// Of a power of ten.
+// Returns the label of `tick`, a power of ten.
 std::string share_text(double tick) {
   const long exponent = std::lround(std::log10(tick));
   return exponent == 0 ? "1" : exponent == 1 ? "10" : cat("1e", exponent);
 }
 
-// Powers of ten around all values and 1, which is all of the source's power.
+// Returns powers of ten around all values and around 1, which is all of the source's power.
 std::vector<double> share_ticks(const std::vector<PowerShare>& kept, const std::vector<PowerShare>& lost) {
   double low = 1;
   double high = 1;

@@ -1,4 +1,4 @@
-// The chart of a spectrum: how much of the source's power a file keeps, and how large its error is, by wave number.
+// The chart of a spectrum: how much of the source's power the file keeps, and how large its error is, by wave number.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace weir {
 
-/// 900 x 600 pixels, both axes logarithmic: power of the file and of the error as a share of the source's, where that
-/// is not 0. Returns the bytes of a file. Throws as make_plot_canvas.
+/// Returns the bytes of a chart file, 900 x 600 pixels, both axes logarithmic: power of the file and of the error as a
+/// share of the source's power, for shells in which that is not 0. Throws as make_plot_canvas.
 std::string spectrum_chart(const PowerSpectrum& spectrum, const std::string& title, PlotFormat format);
 
 }  // namespace weir

@@ -8,7 +8,8 @@ namespace weir {
 namespace {
 
 constexpr double kSmallShare = 0.01;
-// Of the largest power in a shell: below it there is the rounding of float32, and no signal to be lost.
+// A share of the largest power in a shell. Smaller powers are rounding of float32 and hold no signal that could be
+// lost.
 constexpr double kPowerRounding = 1e-12;
 
 std::string blocks_text(const PowerSpectrum& spectrum) {

@@ -1,4 +1,4 @@
-// A spectrum for people and for programs.
+// Reports a spectrum, for people and for programs.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -8,15 +8,15 @@
 
 namespace weir {
 
-/// {"block": [x, y, z], "blocks", "left_out", "wave_number": [...], "modes", "source", "decoded", "error"}: lists of
-/// one length.
+/// Returns {"block": [x, y, z], "blocks", "left_out", "wave_number": [...], "modes", "source", "decoded", "error"};
+/// all lists have one length.
 nlohmann::ordered_json spectrum_json(const PowerSpectrum& spectrum);
 
-/// A line for each shell: wave_number, modes, source, decoded, error.
+/// Returns a line for each shell: wave_number, modes, source, decoded, error.
 std::string spectrum_csv(const PowerSpectrum& spectrum);
 
-/// One line: to which wavelength down the error is at most 1 % of the source's power; that is the longest one of the
-/// first shell in which it is more.
+/// Returns one line: down to which wavelength the error is at most 1 % of the source's power. That is the longest
+/// wavelength of the first shell in which the error is larger.
 std::string spectrum_text(const PowerSpectrum& spectrum);
 
 }  // namespace weir

@@ -9,12 +9,13 @@
 namespace weir {
 namespace {
 
-/// Cycles per world unit of position `m` along an axis of `n` voxels: 0, 1/L, ... and from the middle on below 0.
+/// Returns the cycles per world unit of position `m` along an axis of `n` voxels: 0, 1/L, ...; negative beyond the
+/// middle.
 double cycles(std::int64_t m, std::int64_t n, double spacing) {
   return static_cast<double>(m <= n / 2 ? m : m - n) / (static_cast<double>(n) * spacing);
 }
 
-/// The step between two shells: that of the longest axis, as long as there are not too many shells.
+/// Returns the step between two shells: the step of the longest axis, unless that gives too many shells.
 double step_of(const std::array<std::int64_t, 3>& n, const std::array<double, 3>& spacing) {
   double step = std::numeric_limits<double>::infinity();
   std::array<double, 3> highest{};

@@ -61,7 +61,7 @@ std::vector<double> parse_rates(std::string_view text) {
       throw usage_error(cat("--rates holds \"", part,
                             "\", it must be positive numbers such as 20,10,8: dense float32 bytes ", "/ file bytes"));
     }
-    // As text, which is in the names of kept files.
+    // Compared as text, because the text is part of the names of kept files.
     if (std::any_of(rates.begin(), rates.end(), [&](double other) { return cat(other) == cat(*rate); })) {
       throw usage_error(cat("--rates holds ", part, " twice; leave one of them out"));
     }

@@ -1,4 +1,4 @@
-// The methods a sweep compares: the conversion's own, and ZFP.
+// The methods that a sweep compares: those of `weir convert`, and ZFP.
 #pragma once
 
 #include <map>
@@ -13,22 +13,24 @@ namespace weir {
 
 struct SweepMethod {
   std::string name;
-  std::map<std::string, std::string> options;  ///< of `weir convert`, long names; none for ZFP
+  std::map<std::string, std::string> options;  ///< options of `weir convert` by long name; empty for ZFP
 
   bool is_zfp() const { return name == "zfp"; }
 };
 
-/// "auto, fpn, ..., zfp": every name.
+/// Returns every method name: "auto, fpn, ..., zfp".
 std::string sweep_method_names();
 
-/// Of names between commas. Throws Error(usage) naming --methods and the name that is none, or is there twice.
+/// Parses method names between commas. Throws Error(usage), naming --methods and the name, for an unknown or repeated
+/// name.
 std::vector<SweepMethod> parse_sweep_methods(std::string_view text);
 
-/// What `weir convert` makes of the method's options and the nonfinite of `given`. Throws Error(usage) for a policy
-/// that is none.
+/// Returns the conversion options that `weir convert` would read from the method's options and the nonfinite option of
+/// `given`. Throws Error(usage) for an unknown policy.
 ConversionOptions conversion_of(const SweepMethod& method, const GivenOptions& given);
 
-/// Of numbers between commas. Throws Error(usage) naming --rates and what is no rate, or is there twice.
+/// Parses rates between commas. Throws Error(usage), naming --rates and the text, for a text that is no rate or is
+/// repeated.
 std::vector<double> parse_rates(std::string_view text);
 
 }  // namespace weir

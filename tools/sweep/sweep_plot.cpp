@@ -25,7 +25,7 @@ constexpr std::int32_t kSheetRight = 28;
 constexpr std::int32_t kSheetBottom = 68;
 constexpr std::int32_t kTitle = 26;       // centre of its text
 constexpr std::int32_t kLegend = 56;      // centre of its first line
-constexpr std::int32_t kLegendLine = 26;  // from one line of it to the next
+constexpr std::int32_t kLegendLine = 26;  // from one legend line to the next
 constexpr std::int32_t kLosslessBand = 48;
 constexpr double kLabelSize = 15;
 constexpr double kTitleSize = 18;
@@ -35,7 +35,7 @@ constexpr Float3 kSheetPaper{1, 1, 1};
 constexpr Float3 kSheetInk{0.13F, 0.13F, 0.13F};
 constexpr Float3 kSheetGridLine{0.88F, 0.88F, 0.88F};
 
-/// How a method's points look: a regular polygon, so that methods can be told apart without colours.
+/// The marker of a method: a regular polygon, so that methods can be told apart without colours.
 struct Style {
   Float3 ink;
   int corners;
@@ -43,7 +43,7 @@ struct Style {
   bool filled;
 };
 
-// Colours that the colour-blind tell apart (M. Okabe, K. Ito, 2008), and darker ones.
+// Colours that colour-blind people can tell apart (M. Okabe, K. Ito, 2008), and darker ones.
 constexpr std::array<Style, 10> kStyles{{{{0.000F, 0.447F, 0.698F}, 24, 0.000, true},
                                          {{0.835F, 0.369F, 0.000F}, 4, 0.125, false},
                                          {{0.000F, 0.620F, 0.451F}, 4, 0.000, false},
@@ -57,7 +57,7 @@ constexpr std::array<Style, 10> kStyles{{{{0.000F, 0.447F, 0.698F}, 24, 0.000, t
 
 struct Point {
   double x;
-  std::optional<double> psnr_db;  ///< none: lossless
+  std::optional<double> psnr_db;  ///< nullopt: lossless
 };
 
 struct Series {
@@ -66,7 +66,7 @@ struct Series {
   std::vector<Point> points;
 };
 
-// A volume of one value, changed, has no PSNR and cannot be shown.
+// Returns whether a row can be drawn. A volume of one value that was changed has no PSNR and cannot be drawn.
 bool shown(const SweepRow& row) { return row.result && (row.result->error.lossless || row.result->error.psnr_db); }
 
 std::vector<Series> series_of(const SweepReport& report, SweepAxis axis) {
@@ -84,7 +84,7 @@ std::vector<Series> series_of(const SweepReport& report, SweepAxis axis) {
   return all;
 }
 
-// The inside hides what lies below, of a hollow marker too.
+// Draws a marker. Its inside hides what lies below, even for a hollow marker.
 void draw_marker(PlotCanvas& canvas, const PlotPoint& centre, const Style& style) {
   std::vector<PlotPoint> corners;
   for (int i = 0; i < style.corners; ++i) {
@@ -94,9 +94,9 @@ void draw_marker(PlotCanvas& canvas, const PlotPoint& centre, const Style& style
   canvas.polygon(corners, kLineWidth, style.filled ? style.ink : kSheetPaper, style.ink);
 }
 
-// Below the title, as many lines as it needs; returns the y below it.
+// Draws the legend below the title, in as many lines as it needs. Returns the y below the legend.
 std::int32_t draw_legend(PlotCanvas& canvas, const std::vector<Series>& all) {
-  constexpr double kSample = 40;  // a piece of line with a marker
+  constexpr double kSample = 40;  // a piece of line with a marker, pixels
   constexpr double kGap = 28;
   double x = kSheetLeft;
   std::int32_t y = kLegend;
@@ -116,8 +116,8 @@ std::int32_t draw_legend(PlotCanvas& canvas, const std::vector<Series>& all) {
 }
 
 struct Frame {
-  std::int32_t top;    ///< of the axes, the band of lossless results included
-  std::int32_t floor;  ///< where the x axis lies
+  std::int32_t top;    ///< top of the axes, including the band of lossless results
+  std::int32_t floor;  ///< y of the x axis
   PlotScale x;
   PlotScale psnr;
   bool band;
@@ -138,7 +138,7 @@ Frame make_frame(const std::vector<Series>& all, std::int32_t top) {
       band = band || !point.psnr_db;
     }
   }
-  if (psnr.empty()) psnr = {0, 100};  // all are in the band; decibels as usual below it
+  if (psnr.empty()) psnr = {0, 100};  // all points are in the band; the usual decibels below it
   const auto [x_min, x_max] = std::minmax_element(x.begin(), x.end());
   const auto [psnr_min, psnr_max] = std::minmax_element(psnr.begin(), psnr.end());
   constexpr std::int32_t kFloor = kSheetHeight - kSheetBottom;

@@ -125,7 +125,7 @@ std::string table_text(const SweepReport& report) {
   for (std::size_t n = 0; n < lines.size(); ++n) {
     for (std::size_t i = 0; i < lines[n].size(); ++i) {
       const std::string gap(widths[i] - lines[n][i].size(), ' ');
-      text += i == 0 ? cat(lines[n][i], gap) : cat("  ", gap, lines[n][i]);  // the name left, numbers right
+      text += i == 0 ? cat(lines[n][i], gap) : cat("  ", gap, lines[n][i]);  // the name is aligned left, numbers right
     }
     if (n > 0 && !report.rows[n - 1].result) text += cat("  ", report.rows[n - 1].note);
     text += '\n';

@@ -11,7 +11,7 @@
 namespace weir {
 namespace {
 
-// The library's streams are whole words, of 8 to 64 bits as it was built.
+// The library's streams consist of whole words, of 8 to 64 bits depending on how it was built.
 std::uint64_t word_bytes() { return ::stream_word_bits / 8; }
 
 static_assert(kMostZfpBits == ZFP_MAX_BITS);
@@ -23,13 +23,13 @@ std::uint64_t blocks_of(const Index3& extent) {
   return along(extent.x) * along(extent.y) * along(extent.z);
 }
 
-/// The library's three objects for one box: stream and field refer to memory of the caller.
+/// The library's three objects for one box. Stream and field refer to the caller's memory.
 class Coder {
  public:
   Coder(unsigned block_bits, std::span<std::byte> stream, const ZfpField& field)
       : bits_(::stream_open(stream.data(), stream.size()), &::stream_close),
         zfp_(::zfp_stream_open(bits_.get()), &::zfp_stream_close),
-        // Its interface is C's: compressing only reads what the pointer leads to.
+        // The C interface takes a non-const pointer, but compressing only reads from it.
         field_(
             ::zfp_field_3d(const_cast<float*>(field.values), zfp_type_float, static_cast<std::size_t>(field.extent.x),
                            static_cast<std::size_t>(field.extent.y), static_cast<std::size_t>(field.extent.z)),

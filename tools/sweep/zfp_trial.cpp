@@ -24,25 +24,26 @@
 namespace weir {
 namespace {
 
-/// What one worker codes at a time.
+/// Voxels that one worker codes at a time.
 constexpr std::int64_t kPieceVoxels = std::int64_t{1} << 18U;
-/// A worker's stack and the allocator's waste; libraries' heaps and code pages touched later.
+/// Memory for a worker's stack and the allocator's waste, and for library heaps and code pages touched later.
 constexpr std::uint64_t kWorkerBytes = std::uint64_t{1} << 20U;
 constexpr std::uint64_t kSlackBytes = std::uint64_t{16} << 20U;
 constexpr std::uint64_t kLeastBlockTrialBytes = std::uint64_t{1} << 20U;
-/// Larger blocks are no faster.
+/// Larger blocks are not faster.
 constexpr std::uint64_t kMostBlockTrialBytes = std::uint64_t{64} << 20U;
 
 inline bool is_finite_value(float v) { return v - v == 0.0F; }
 
-// Of a chunked source the cut is moved with the domain: ZFP's blocks begin at its corner.
+// The cut into blocks is shifted with the domain, because ZFP's blocks begin at the domain's corner.
 AccessShape access_from_corner(const VolumeSource& source) {
   AccessShape access = source.access();
   access.chunk_origin = access.chunk_origin - source.info().index_origin;
   return access;
 }
 
-// Whole ZFP blocks, as long as possible in x, then y, then z, at most kPieceVoxels of them.
+// Cuts `block` into pieces of whole ZFP blocks, at most kPieceVoxels voxels each, as long as possible in x, then y,
+// then z.
 std::vector<Box> pieces_of(const Box& block) {
   constexpr std::int64_t kFace = kZfpBlockDim * kZfpBlockDim;
   const auto up = [](std::int64_t n) { return (n + kZfpBlockDim - 1) / kZfpBlockDim * kZfpBlockDim; };
@@ -92,7 +93,7 @@ std::uint64_t count_nonfinite(const ZfpField& field) {
   return count;
 }
 
-/// What one thread has seen; the order of merging does not matter.
+/// The error sums of one thread; the order of merging does not matter.
 struct Tally {
   ExactSum squared_error;
   double max_abs = 0;
@@ -137,7 +138,7 @@ class Trial {
     }
   }
 
-  /// Writes the stream of every piece; returns the voxels that are not finite.
+  /// Writes the stream of every piece. Returns the number of voxels that are not finite.
   std::uint64_t compress() {
     tbb::enumerable_thread_specific<std::uint64_t> nonfinite(0);
     run("compress", [&](ZfpCodec& codec, const ZfpField& field, std::uint64_t offset) {
@@ -149,7 +150,7 @@ class Trial {
     return nonfinite.combine(std::plus<>());
   }
 
-  /// `loss` becomes that of reading the source.
+  /// Compares source and stream. Sets `loss` to the loss of reading the source.
   Tally compare(ConversionLoss& loss) {
     tbb::enumerable_thread_specific<Tally> tallies;
     loss = run("compare", [&](ZfpCodec& codec, const ZfpField& field, std::uint64_t offset) {
@@ -166,7 +167,8 @@ class Trial {
   }
 
  private:
-  // Of what --memory leaves there are two blocks at a time, and a piece with its stream per worker.
+  // Returns the bytes of a block. The memory that --memory leaves holds two blocks at a time, and one piece with its
+  // stream per worker.
   std::uint64_t block_bytes() const {
     const std::size_t threads = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
     const std::uint64_t worker = static_cast<std::uint64_t>(kPieceVoxels) * sizeof(float) +
@@ -181,8 +183,8 @@ class Trial {
     return std::min((options_.memory - fixed) / 2, kMostBlockTrialBytes);
   }
 
-  // Calls work(codec, piece's voxels, offset of its stream) for all pieces, and returns the loss of reading them; those
-  // of a block run at once. The pieces' streams lie one after the other, each a whole number of words.
+  // Calls work(codec, piece's voxels, offset of its stream) for all pieces, and returns the loss of reading them. The
+  // pieces of a block run in parallel. Their streams lie one after the other, each a whole number of words.
   template <typename Work>
   ConversionLoss run(const std::string& pass, const Work& work) {
     const auto voxels = static_cast<std::uint64_t>(volume(source_.info().extent));

@@ -19,7 +19,7 @@
 namespace weir {
 namespace {
 
-constexpr double kRounding = 1e-9;  ///< of figures that were computed in another order
+constexpr double kRounding = 1e-9;  ///< relative difference of figures that were computed in another order
 
 bool is_near(double a, double b) {
   return a == b || std::fabs(a - b) <= kRounding * std::max(std::fabs(a), std::fabs(b));
@@ -32,7 +32,7 @@ VolumeCheck at_most(const std::string& name, std::uint64_t found, std::uint64_t 
   return {name, cat(found), cat("at most ", most), found <= most};
 }
 
-// `name`: "sidecar error"; `range`: least and largest value.
+// `name`: for example "sidecar error"; `range`: least and largest value.
 void check_error(const std::string& name, const Sidecar::CertifiedError& error, const std::array<double, 2>& range,
                  std::vector<VolumeCheck>& checks) {
   const Certificate from_mse = make_certificate(error.mse, error.max_abs, error.lossless, 1,
@@ -48,7 +48,7 @@ void check_error(const std::string& name, const Sidecar::CertifiedError& error, 
                         : psnr_db.has_value() == error.psnr_db.has_value();
   checks.push_back(
       {name + ".psnr_db", shown(error.psnr_db), shown(psnr_db), same || !std::isfinite(range[1] - range[0])});
-  const bool no_ratio = !std::isfinite(error.nmse) && !std::isfinite(from_mse.nmse);  // of one value
+  const bool no_ratio = !std::isfinite(error.nmse) && !std::isfinite(from_mse.nmse);  // the range is a single value
   checks.push_back({name + ".nmse", cat(error.nmse), cat(from_mse.nmse, ", (rmse / range)^2"),
                     no_ratio || is_near(error.nmse, from_mse.nmse)});
   const bool exact = error.mse == 0 && error.max_abs == 0;
@@ -56,8 +56,8 @@ void check_error(const std::string& name, const Sidecar::CertifiedError& error, 
                     exact || !error.lossless});
 }
 
-// Decoded values keep to the source's range, widened by a background outside it. Weir 0.1, which did not say what
-// became of missing voxels, kept no such promise.
+// Checks that decoded values stay within the source's range, widened by a background outside it. Weir 0.1, which did
+// not record what became of missing voxels, did not guarantee this.
 void check_span(const std::string& name, const Sidecar::CertifiedError& error, const Sidecar& s,
                 std::vector<VolumeCheck>& checks) {
   if (s.missing.policy.empty()) return;
@@ -69,7 +69,7 @@ void check_span(const std::string& name, const Sidecar::CertifiedError& error, c
                     !known || error.max_abs <= reach * (1 + kRounding)});
 }
 
-// Figures that are not finite are null in the sidecar, and contradict nothing.
+// Checks the gradient's figures. Non-finite figures are null in the sidecar and are not checked.
 void check_gradient(const Sidecar::GradientError& gradient, std::uint64_t voxels, std::vector<VolumeCheck>& checks) {
   const std::string name = "sidecar error.gradient";
   checks.push_back({name + ".rms", cat(gradient.rms), cat("0 to ", gradient.max_abs, ", max_abs"),
@@ -89,7 +89,7 @@ std::uint64_t leaves_of(const Box& box) {
          static_cast<std::uint64_t>(count.z);
 }
 
-// The first bin holds the least value, the last one the largest.
+// Checks the histogram: the first bin holds the least value, the last bin the largest.
 void check_histogram(const Sidecar& s, std::vector<VolumeCheck>& checks) {
   const auto& [min, max, counts] = s.histogram;
   const std::uint64_t counted = std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
@@ -116,7 +116,7 @@ void check_digests(const Sidecar& s, std::vector<VolumeCheck>& checks) {
   }
 }
 
-// Whether the file keeps what was asked of it: of what a scene shows, where one was given.
+// Checks that the error keeps the budget that was asked for; with a scene, the error of what the scene shows.
 void check_budget(const Sidecar& s, std::uint64_t dense, std::vector<VolumeCheck>& checks) {
   const Sidecar::Budget& budget = s.budget;
   const Sidecar::CertifiedError& error = s.visible ? s.visible->error : s.error;
@@ -190,7 +190,7 @@ std::vector<VolumeCheck> check_certificate(const Sidecar& s) {
     checks.push_back({cat("sidecar ", name), value, is_known ? value : "a name that weir writes", is_known});
   };
   const auto type = parse_scalar(s.source.type);
-  one_of("source.type", s.source.type, {type ? scalar_name(*type) : "none"});  // by no alias
+  one_of("source.type", s.source.type, {type ? scalar_name(*type) : "none"});  // aliases are not accepted
   one_of("budget.kind", s.budget.kind, {"size", "rate", "psnr", "max_error", "lossless", "minimum"});
   check_budget(s, dense, checks);
   one_of("selection.metric", s.selection.metric, {"sse", "farthest", "closest", "median"});
@@ -205,7 +205,7 @@ std::vector<VolumeCheck> check_certificate(const Sidecar& s) {
   const double rounded = s.conversion_loss.max_abs_error;
   checks.push_back({"sidecar conversion_loss.max_abs_error", cat(rounded), "0 or more", !(rounded < 0)});
   if (s.visible) checks.push_back(at_most("sidecar visible.voxels", s.visible->voxels, voxels));
-  // Weir 0.1 did not say what became of missing voxels, and so which it counted.
+  // Weir 0.1 did not record what became of missing voxels, so it is not known which voxels were counted.
   if (!s.missing.policy.empty()) check_histogram(s, checks);
   if (s.gradient) check_gradient(*s.gradient, voxels, checks);
   check_digests(s, checks);

@@ -1,4 +1,4 @@
-// Whether the figures of a sidecar agree with each other: what can be told without the source.
+// Checks without the source whether the figures of a sidecar agree with each other.
 #pragma once
 
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace weir {
 
-/// Root, share of the range, PSNR and largest value of each error, the gradient's, extents, rate, counts of voxels and
-/// blocks, the histogram's ends, and the form of digests.
+/// Checks the root, share of the range, PSNR and largest value of each error and of the gradient's, extents, rate,
+/// counts of voxels and blocks, the histogram's ends, and the form of digests.
 std::vector<VolumeCheck> check_certificate(const Sidecar& sidecar);
 
 }  // namespace weir

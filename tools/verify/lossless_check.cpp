@@ -10,13 +10,13 @@
 namespace weir {
 namespace {
 
-// Whether the voxels that were counted are all of the source's, with its values.
+// Returns whether the counted voxels are all voxels of the source, with its values.
 bool holds_source(const TreeCensus& census, float background, const Sidecar& s) {
   return s.zeros && std::isfinite(background) && lossless_everywhere(s) &&
          census.valued_voxels + census.quiet_voxels == static_cast<std::uint64_t>(volume(s.grid.extent));
 }
 
-// With the voxels of inactive tiles, which have the background.
+// Returns `census` including the voxels of inactive tiles, which have the background value.
 TreeCensus with_quiet_voxels(TreeCensus census, float background) {
   const std::uint64_t quiet = census.quiet_voxels;
   if (quiet == 0) return census;
@@ -46,7 +46,7 @@ std::vector<VolumeCheck> check_lossless(const TreeCensus& counted, float backgro
   checks.push_back({"sidecar value_range of a lossless file", cat(census.min, " .. ", census.max, " decoded"),
                     cat(lo, " .. ", hi),
                     lo == static_cast<double>(census.min) && hi == static_cast<double>(census.max)});
-  if (s.background.method != "mode") return checks;  // of samples, of a bin, or not counted
+  if (s.background.method != "mode") return checks;  // the share is of samples or of a bin, or was not counted
   const double share = static_cast<double>(census.backgrounds) / static_cast<double>(finite);
   checks.push_back({"sidecar background.share of a lossless file", cat(share, " decoded"), cat(s.background.share),
                     std::fabs(share - s.background.share) <= 1e-9});

@@ -1,4 +1,5 @@
-// What a sidecar says of the source, against the values that a lossless file decodes to: they are the source's.
+// Checks what a sidecar says of the source against the decoded values of a lossless file, which are the source's
+// values.
 #pragma once
 
 #include <vector>
@@ -9,9 +10,9 @@
 
 namespace weir {
 
-/// `background`: the grid's. Range, zeros, voxels that are not finite, and the background's share where it was counted.
-/// No check where the file is not lossless, where other values took the place of voxels without a valid one, or where
-/// weir was older.
+/// Checks range, zeros, non-finite voxels, and the background's share if it was counted. `background` is the grid's.
+/// Returns no checks if the file is not lossless, if voxels without a valid value got other values, or if an older
+/// weir wrote the sidecar.
 std::vector<VolumeCheck> check_lossless(const TreeCensus& census, float background, const Sidecar& sidecar);
 
 }  // namespace weir

@@ -1,4 +1,4 @@
-// How the blocks of a packed grid are coded, counted from its directories and the first byte of each stream.
+// Counts how the blocks of a packed grid are coded, from its directories and the first byte of each stream.
 #pragma once
 
 #include <array>
@@ -9,23 +9,23 @@
 namespace weir {
 
 struct PackedCensus {
-  std::array<std::uint64_t, kPackedKinds> blocks{};  ///< with a stream, by PackedKind
-  std::array<std::uint64_t, kPackedKinds> bytes{};   ///< of their streams
+  std::array<std::uint64_t, kPackedKinds> blocks{};  ///< blocks with a stream, by PackedKind
+  std::array<std::uint64_t, kPackedKinds> bytes{};   ///< bytes of the streams, by PackedKind
   std::uint64_t none = 0;                            ///< blocks of 8^3 that touch the index box and have no stream
-  std::uint64_t directory_bytes = 0;                 ///< all packed data but the streams
+  std::uint64_t directory_bytes = 0;                 ///< all packed data except the streams
 
   std::uint64_t coded() const;
-  /// Of the streams alone; 0 where there is none.
+  /// Returns the bits per voxel of the streams of `kind`, without directories; 0 if there are none.
   double bits_a_voxel(PackedKind kind) const;
 };
 
-/// Looks at every region, on all threads of TBB; decodes nothing. Throws as PackedData::stream.
+/// Counts every region, on all threads of TBB; decodes nothing. Throws as PackedData::stream.
 PackedCensus take_packed_census(const PackedData& packed);
 
-/// "mean", "transform", "lattice" or "raw".
+/// Returns "mean", "transform", "lattice" or "raw".
 const char* packed_kind_name(PackedKind kind);
 
-/// All blocks of 8^3 that touch the index box.
+/// Returns the number of blocks of 8^3 that touch the index box.
 std::uint64_t packed_block_count(const PackedData& packed);
 
 }  // namespace weir

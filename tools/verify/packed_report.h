@@ -1,4 +1,4 @@
-// What `weir inspect` says of how the blocks of a packed grid are coded.
+// The report of `weir inspect` about how the blocks of a packed grid are coded.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -9,7 +9,7 @@
 
 namespace weir {
 
-/// Lines for people, with the last newline.
+/// Returns lines for people, including the last newline.
 std::string packed_text(const PackedData& packed, const PackedCensus& census);
 
 nlohmann::ordered_json packed_json(const PackedData& packed, const PackedCensus& census);

@@ -13,7 +13,7 @@
 namespace weir {
 namespace {
 
-constexpr std::size_t kLeafBatch = 8192;  // leaves: some milliseconds of work
+constexpr std::size_t kLeafBatch = 8192;  // leaves in one batch: some milliseconds of work
 
 std::size_t tile_level(std::int64_t dim) { return dim == kLeafDim ? 0 : dim == kLowerDim ? 1 : 2; }
 
@@ -31,15 +31,15 @@ bool voxel_active(const NvdbGrid& grid, const GridBlock& block, unsigned n) {
   return block.leaf != nullptr ? leaf_active(block.leaf, n) : grid.index_bbox().contains(block.origin + voxel_of(n));
 }
 
-// The voxels of a block of one value that it has to do with: of a packed grid those inside the index box.
+// Returns the voxels of a constant block that count: for a packed grid only those inside the index box.
 Box tile_box(const NvdbGrid& grid, const GridBlock& tile, bool of_tree) {
   const Box box{tile.origin, tile.origin + Index3{tile.dim, tile.dim, tile.dim}};
   return of_tree ? box : intersect(box, grid.index_bbox());
 }
 
-// Calls on_tile for every block of one value that `walk` visits in this thread, and reduces the coded ones batch by
-// batch on all threads. `Tally` has add(const GridBlock& block, std::span<const float, 512> values) and
-// merge(const Tally&).
+// Calls on_tile for every constant block that `walk` visits, in this thread, and reduces the coded blocks batch by
+// batch on all threads. `Tally` has add(const GridBlock& block, std::span<const float, 512> values) and merge(const
+// Tally&).
 template <typename Tally, typename OnTile>
 Tally reduce_blocks(const NvdbGrid& grid, Walk walk, const Tally& zero, const CensusProgress& progress,
                     const OnTile& on_tile, Trace* trace = nullptr) {
@@ -77,8 +77,8 @@ Tally reduce_blocks(const NvdbGrid& grid, Walk walk, const Tally& zero, const Ce
 
 class CensusTally {
  public:
-  /// `of_tree`: what is visited is the tree's; else packed data, with the macrocells, which are of what a grid decodes
-  /// to.
+  /// `of_tree`: the tree is visited. Otherwise the packed data are visited; macrocells are then checked too, because
+  /// they hold bounds of what a grid decodes to.
   CensusTally(const NvdbGrid& grid, bool of_tree)
       : grid_(&grid),
         of_tree_(of_tree),
@@ -111,7 +111,7 @@ class CensusTally {
     for_each_index(cells_that_see(inside), [&](const Index3& cell) { check(tile.origin, inside, cell, tile.value); });
   }
 
-  // Voxels beyond the domain's border count with the background.
+  // Checks the cells whose apron reaches beyond the domain, where voxels count as background.
   void check_border() {
     if (cells_.cells.empty()) return;
     const NodeLattice& lattice = cells_.lattice;
@@ -144,7 +144,7 @@ class CensusTally {
     return std::all_of(mask, mask + kLeafVoxels / 8, [](std::byte b) { return b == std::byte{255}; });
   }
 
-  // The usual leaf, wholly inside and active: its extremes say all.
+  // Adds the usual leaf, wholly inside and active, for which the extremes suffice.
   void add_whole(const GridBlock& leaf, const Box& box, std::span<const float, 512> values) {
     float lo = std::numeric_limits<float>::infinity();
     float hi = -lo;
@@ -213,10 +213,10 @@ class CensusTally {
 
   Box box_of(const Index3& cell) const { return cells_.lattice.node_box(cell - cells_.lattice.first); }
 
-  // Voxels that a cell's bounds are of.
+  // Returns the voxels that the bounds of `cell` cover.
   Box seen_from(const Index3& cell) const { return grown(box_of(cell), cells_.apron); }
 
-  // None where the grid has no macrocells.
+  // Returns the cells whose bounds cover some of `voxels`; empty if the grid has no macrocells.
   Box cells_that_see(const Box& voxels) const {
     if (cells_.cells.empty() || voxels.empty()) return {};
     const NodeLattice& lattice = cells_.lattice;
@@ -226,8 +226,8 @@ class CensusTally {
     return intersect(cells, {lattice.first, lattice.first + lattice.count});
   }
 
-  // NaN lies in no cell and needs none: it is no extinction. `block` has the value in `voxels`, which lie in the cell,
-  // or in its apron alone.
+  // Checks `value` against the bounds of `cell`. NaN is not checked: it has no extinction. `block` has the value in
+  // `voxels`, which lie in the cell or only in its apron.
   void check(const Index3& block, const Box& voxels, const Index3& cell, float value) {
     const MinMax& bounds = cell_at(cell);
     if (std::isnan(value) || (value >= bounds.min && value <= bounds.max)) return;
@@ -324,7 +324,7 @@ Sidecar::Histogram finite_histogram(const NvdbGrid& grid, const MinMax& range, s
   Sidecar::Histogram histogram{lo, hi, {}};
   if (lo < hi) {
     histogram.counts = count_values(grid, lo, hi, bins, progress);
-  } else if (lo == hi) {  // up to the next number towards 0, which is never infinite
+  } else if (lo == hi) {  // from the value to the next number towards 0, which is never infinite
     const float next = std::nextafter(lo, lo == 0 ? 1.0F : 0.0F);
     histogram.counts = count_values(grid, std::min(lo, next), std::max(lo, next), 1, progress);
   }

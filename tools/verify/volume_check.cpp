@@ -31,7 +31,7 @@ VolumeCheck equal(const std::string& name, const T& found, const T& expected) {
   return {name, text_of(found), text_of(expected), found == expected};
 }
 
-// The sidecar has null for any value that is not finite.
+// Returns whether the values agree; the sidecar has null for any value that is not finite.
 bool same_value(double stored, double from_sidecar) {
   return stored == from_sidecar || (!std::isfinite(stored) && !std::isfinite(from_sidecar));
 }
@@ -54,7 +54,7 @@ VolumeCheck stored_range(const NvdbGrid& grid, const TreeCensus& census) {
           none || census.nonfinite != 0 || exact};
 }
 
-// Every decoded value is within max_abs of a source value, or is the background.
+// Checks that every decoded value is within max_abs of a source value, or is the background.
 VolumeCheck source_range(const NvdbGrid& grid, const TreeCensus& census, const Sidecar& sidecar) {
   const auto [lo, hi] = sidecar.value_range;
   const auto widened = [&](double bound, double away) {
@@ -68,7 +68,7 @@ VolumeCheck source_range(const NvdbGrid& grid, const TreeCensus& census, const S
   return {"sidecar value_range", cat(census.min, " .. ", census.max), cat("within ", least, " .. ", most), ok};
 }
 
-// Where nothing but numbers was to be kept, there are no others.
+// Checks the counts of missing and non-finite voxels. With a policy that refuses them there must be none.
 std::vector<VolumeCheck> validity_checks(const TreeCensus& census, const Sidecar& s) {
   const auto all = static_cast<std::uint64_t>(volume(s.source.extent));
   const std::uint64_t others = s.nonfinite.count + s.missing.count;
@@ -80,7 +80,7 @@ std::vector<VolumeCheck> validity_checks(const TreeCensus& census, const Sidecar
   return checks;
 }
 
-// Kinds of blocks, counted again.
+// Counts the kinds of blocks again and compares them with the sidecar.
 std::vector<VolumeCheck> packed_checks(const PackedData& packed, const Sidecar& sidecar) {
   if (!sidecar.packed || !sidecar.selection.blocks)
     return {{"sidecar packed, selection.blocks", "no such objects", "those of a packed file", false}};
@@ -139,7 +139,7 @@ std::vector<VolumeCheck> check_sidecar(const NvdbGrid& grid, const TreeCensus& c
                     same_value(grid.background(), s.background.value)});
   checks.push_back(source_range(grid, census, s));
   for (VolumeCheck& check : validity_checks(census, s)) checks.push_back(std::move(check));
-  if (grid.packed() == nullptr) {  // where packed, the selection is not of leaves
+  if (grid.packed() == nullptr) {  // a packed grid's selection is not of leaves
     checks.push_back(equal("sidecar selection.bits", census.leaves_by_bits, s.selection.bits));
     checks.push_back(equal("sidecar selection.leaves_kept", census.leaves, s.selection.leaves_kept));
   } else {

@@ -10,8 +10,8 @@
 
 namespace weir {
 
-/// One thing that must hold; `found` and `expected` in words. Where reading failed, `found` is the
-/// whole message and `expected` is empty.
+/// One check; `found` and `expected` are texts. If reading failed, `found` is the whole message and `expected` is
+/// empty.
 struct VolumeCheck {
   std::string name;
   std::string found;
@@ -19,11 +19,11 @@ struct VolumeCheck {
   bool ok = false;
 };
 
-/// The stored figures of `grid` against `census`: tree, bounding box, range, macrocells, head checksum.
+/// Checks the stored figures of `grid` against `census`: tree, bounding box, range, macrocells, head checksum.
 std::vector<VolumeCheck> check_structure(const NvdbGrid& grid, const TreeCensus& census);
 
-/// The sidecar against the volume: size, checksum, digest, name, type, extent, transform, background,
-/// range, kept leaves, macrocells. `digest` is of the file as it is.
+/// Checks the sidecar against the volume: size, checksum, digest, name, type, extent, transform, background, range,
+/// kept leaves, macrocells. `digest` is that of the file as it is.
 std::vector<VolumeCheck> check_sidecar(const NvdbGrid& grid, const TreeCensus& census, const std::string& digest,
                                        const Sidecar& sidecar);
 

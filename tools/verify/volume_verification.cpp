@@ -27,7 +27,7 @@ void stop_if_cancelled(const VerificationWatch& watch) {
   if (watch.cancel != nullptr && *watch.cancel) throw Error(ErrorKind::interrupted, "interrupted");
 }
 
-// Has pages of a file released as a pass over it goes on: mapped ones count as the process's memory.
+// Releases the pages of a file during a pass, because mapped pages count as the process's memory.
 class PageRelease {
  public:
   explicit PageRelease(const FileMapping& mapping) : mapping_(mapping) {}
@@ -35,7 +35,7 @@ class PageRelease {
   PageRelease(const PageRelease&) = delete;
   PageRelease& operator=(const PageRelease&) = delete;
 
-  // So many bytes of the pass are done.
+  // Tells that `done` bytes of the pass are done.
   void advanced(std::uint64_t done) {
     constexpr std::uint64_t kMostPages = std::uint64_t{32} << 20U;
     if (done < released_ + kMostPages) return;
@@ -76,7 +76,8 @@ TreeCensus watched_census(const NvdbGrid& grid, const FileMapping& file, const V
   return take_census(grid, progress, watch.trace);
 }
 
-// A commit of --overwrite that was killed leaves the new sidecar beside the old volume, and the volume's own one too.
+// Detects a commit of --overwrite that was killed: it leaves the new sidecar beside the old volume, and also the
+// volume's own sidecar.
 std::optional<VolumeCheck> find_killed_overwrite(const std::string& path, const std::string& digest,
                                                  const Sidecar& sidecar) {
   const std::string in_place = find_sidecar(path);
@@ -85,7 +86,7 @@ std::optional<VolumeCheck> find_killed_overwrite(const std::string& path, const 
   try {
     if (read_sidecar(previous).file.digest != digest) return std::nullopt;
   } catch (const Error&) {
-    return std::nullopt;  // the other checks say what is wrong
+    return std::nullopt;  // the other checks report what is wrong
   }
   return VolumeCheck{"sidecar",
                      cat(previous, ": is the sidecar of ", path,
@@ -93,7 +94,7 @@ std::optional<VolumeCheck> find_killed_overwrite(const std::string& path, const 
                      "", false};
 }
 
-// Failures that end the verification early become a check like any other.
+// Runs `run` and turns a failure that ends the verification early into a failed check.
 template <typename Run>
 auto checked(const std::string& name, std::vector<VolumeCheck>& checks, const Run& run)
     -> std::optional<decltype(run())> {
@@ -115,7 +116,7 @@ std::vector<VolumeCheck> verify_volume(const std::string& path, const Verificati
     refuse_foreign_file(path);
     return std::make_unique<NvdbFile>(path);
   });
-  if (!file) return checks;  // of what is no volume a sidecar says nothing
+  if (!file) return checks;  // a sidecar says nothing about a file that is no volume
   const auto sidecar = checked("sidecar", checks, [&] { return read_sidecar(find_sidecar(path)); });
   const NvdbGrid& grid = (*file)->grid();
   const auto census = checked("structure", checks, [&] { return watched_census(grid, (*file)->mapping(), watch); });

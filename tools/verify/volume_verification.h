@@ -1,4 +1,4 @@
-// All checks of a volume and its sidecar, as `weir verify` makes them.
+// Runs all checks of `weir verify` on a volume and its sidecar.
 #pragma once
 
 #include <atomic>
@@ -12,17 +12,17 @@
 
 namespace weir {
 
-/// What a caller can watch and stop; called from the calling thread.
+/// Callbacks with which a caller watches and stops the verification; called from the calling thread.
 struct VerificationWatch {
   std::function<void(const std::string& pass, std::uint64_t total_bytes)> pass_started;
   std::function<void(std::uint64_t done_bytes)> pass_advanced;
   const std::atomic<bool>* cancel = nullptr;
-  Trace* trace = nullptr;  ///< gets the passes, and what each thread decodes and hashes in them
+  Trace* trace = nullptr;  ///< receives the passes, and what each thread decodes and hashes
 };
 
-/// Checks the .nvdb at `path` and the sidecar beside it: structure, checksum, digest, and what one says of the other.
-/// What is missing or makes no sense is a check that failed. Throws Error(io) where a file is there and cannot be read,
-/// which says nothing of what it holds, and Error(interrupted) when cancelled.
+/// Checks the .nvdb at `path` and the sidecar beside it: structure, checksum, digest, and whether the two agree.
+/// Missing or invalid content is a failed check. Throws Error(io) if an existing file cannot be read, because that
+/// says nothing about its content, and Error(interrupted) when cancelled.
 std::vector<VolumeCheck> verify_volume(const std::string& path, const VerificationWatch& watch);
 
 }  // namespace weir

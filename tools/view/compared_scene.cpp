@@ -21,7 +21,7 @@ std::optional<Scene> scene_of_other(const Scene& scene, const GridFrame& frame, 
   constexpr std::array kAxes{&Index3::x, &Index3::y, &Index3::z};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto of = kAxes[axis];
-    // Before it becomes an integer: places are anywhere.
+    // Clamped before the conversion to an integer, because places may lie anywhere.
     const auto near = [&](double at) {
       return std::clamp(at, static_cast<double>(other.domain.lo.*of - 1), static_cast<double>(other.domain.hi.*of + 1));
     };

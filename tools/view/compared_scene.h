@@ -1,4 +1,5 @@
-// A scene of a file, for the one that it is compared with: a clip box counts voxels, and the two lie in one world.
+// Converts a scene of one file for the file that it is compared with. A clip box counts voxels, so it is converted
+// through the world, which both files share.
 #pragma once
 
 #include <optional>
@@ -8,11 +9,11 @@
 
 namespace weir {
 
-/// The scene with its region, which counts voxels of `frame`, in voxels of `other`: the whole ones whose faces are
-/// nearest to the same places in the world, at least one along each axis. None where `other` has no voxel there.
+/// Returns `scene` with its region, which counts voxels of `frame`, in voxels of `other`: whole voxels whose faces are
+/// nearest to the same places in the world, at least one along each axis. nullopt if `other` has no voxel there.
 std::optional<Scene> scene_of_other(const Scene& scene, const GridFrame& frame, const GridFrame& other);
 
-/// What is behind the volume of the scene, and nothing of the volume.
+/// Returns the scene with only what lies behind the volume, without the volume.
 Scene without_volume(Scene scene);
 
 }  // namespace weir

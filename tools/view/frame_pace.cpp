@@ -6,9 +6,9 @@
 namespace weir {
 namespace {
 
-constexpr double kNewest = 0.4;       // share of the newest measurement
-constexpr double kStepsPerHalf = 4;   // sizes between one and half of it: a picture must not change size all the time
-constexpr double kLongestFrame = 10;  // seconds that count: a machine that slept says nothing
+constexpr double kNewest = 0.4;       // weight of the newest measurement
+constexpr double kStepsPerHalf = 4;   // size steps per halving, so that the size rarely changes
+constexpr double kLongestFrame = 10;  // longest measurement that counts, seconds: a machine that slept tells nothing
 
 }  // namespace
 
@@ -36,7 +36,7 @@ FrameSize FramePace::next(std::int32_t width, std::int32_t height, int layers, i
 void FramePace::add(std::uint64_t samples, double seconds) {
   if (samples == 0 || !(seconds > 0)) return;
   const double measured = std::min(seconds, kLongestFrame) / static_cast<double>(samples);
-  // What became much dearer, as another mode, is believed at once: the next picture must not be late, too.
+  // A much higher cost, as of another mode, is believed at once, so that the next picture is not late too.
   sample_s_ = measured > 3 * sample_s_ ? measured : sample_s_ + kNewest * (measured - sample_s_);
 }
 

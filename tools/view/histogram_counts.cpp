@@ -70,7 +70,7 @@ void HistogramCounts::counted(const std::string& text) {
   jobs_.pop_front();
   counting_ = false;
   const bool cancelled = cancel_.exchange(false);
-  // Whoever came when it had been given up waits for another count.
+  // Viewers that came after the count was cancelled wait for another count.
   if (cancelled && !job.viewers.empty()) jobs_.push_front(job);
   if (!cancelled) {
     for (const ViewerId viewer : job.viewers) tell_(viewer, text);

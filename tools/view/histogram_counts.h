@@ -1,6 +1,6 @@
-// Histograms for all viewers: each is counted once, one after the other, in a thread of its own, since a file without a
-// certificate has to be read whole for it. What nobody waits for any more is not counted. Lives on the io_context's
-// thread.
+// Counts histograms for all viewers. Each histogram is counted once, one at a time, in a separate thread, because a
+// file without a certificate has to be read whole. A histogram that nobody waits for any more is not counted. Lives on
+// the io_context's thread.
 #pragma once
 
 #include <atomic>
@@ -26,23 +26,23 @@ struct HistogramQuestion {
 
 class HistogramCounts {
  public:
-  /// The text for the viewers; called in the other thread, ends soon where `cancel` was set. May throw.
+  /// Returns the text for the viewers. Called in the counting thread; ends soon after `cancel` is set. May throw.
   using Count = std::function<std::string(const HistogramQuestion&, const std::atomic<bool>& cancel)>;
   using Tell = std::function<void(ViewerId, const std::string& text)>;
 
   HistogramCounts(boost::asio::io_context& io, Count count, Tell tell);
-  /// Waits for the count that is under way, which is cancelled.
+  /// Cancels the count that is under way and waits for its end.
   ~HistogramCounts();
   HistogramCounts(const HistogramCounts&) = delete;
   HistogramCounts& operator=(const HistogramCounts&) = delete;
 
-  /// The viewer is told when it is counted, unless it asks for another one of the same side before.
+  /// Tells the viewer when the histogram is counted, unless it asks for another histogram of the same side before.
   void ask(ViewerId viewer, HistogramQuestion question);
   void forget(ViewerId viewer);
 
  private:
   struct Job {
-    std::string key;  // of the file that has the path now
+    std::string key;  // identity of the file that the path names now
     HistogramQuestion question;
     std::set<ViewerId> viewers;
   };
@@ -55,7 +55,7 @@ class HistogramCounts {
   const Count count_;
   const Tell tell_;
   KeptTexts known_;
-  std::list<Job> jobs_;  // the first one is under way, where counting_
+  std::list<Job> jobs_;  // the first job is under way if counting_
   bool counting_ = false;
   std::atomic<bool> cancel_{false};
   std::shared_ptr<int> alive_ = std::make_shared<int>(0);

@@ -14,7 +14,7 @@
 namespace weir {
 namespace {
 
-// The library ends the process where its errors come back from here.
+// The error state of libjpeg. on_error() jumps to `back`, because the library would end the process if it returned.
 struct JpegErrors {
   jpeg_error_mgr base;  // first: the library hands out a pointer to it
   std::jmp_buf back;
@@ -28,11 +28,12 @@ struct JpegErrors {
 }
 
 struct JpegBytes {
-  unsigned char* bytes = nullptr;  // of malloc
+  unsigned char* bytes = nullptr;  // allocated with malloc
   unsigned long size = 0;
 };
 
-// Nothing in here has a destructor that a jump would leave out. False: errors.message says why.
+// Must hold no object with a destructor, because longjmp would skip it. Returns false on failure; errors.message says
+// why.
 bool compress(const std::uint8_t* rows, std::int32_t width, std::int32_t height, int quality, JpegErrors& errors,
               JpegBytes& out) {
   jpeg_compress_struct info{};
@@ -54,7 +55,7 @@ bool compress(const std::uint8_t* rows, std::int32_t width, std::int32_t height,
   info.comp_info[0].v_samp_factor = 1;
   jpeg_start_compress(&info, TRUE);
   while (info.next_scanline < info.image_height) {
-    auto* row = const_cast<JSAMPROW>(rows + std::size_t{info.next_scanline} * info.image_width * 3);  // is only read
+    auto* row = const_cast<JSAMPROW>(rows + std::size_t{info.next_scanline} * info.image_width * 3);  // read only
     jpeg_write_scanlines(&info, &row, 1);
   }
   jpeg_finish_compress(&info);

@@ -1,4 +1,4 @@
-// JPEG pictures in memory, by libjpeg-turbo; a build without it (WEIR_JPEG=OFF) has none.
+// Encodes JPEG pictures in memory with libjpeg-turbo. A build with WEIR_JPEG=OFF cannot.
 #pragma once
 
 #include <cstddef>
@@ -9,11 +9,11 @@
 
 namespace weir {
 
-/// Whether this build can write JPEG.
+/// Returns whether this build can write JPEG.
 bool has_jpeg();
 
-/// Baseline JPEG in sRGB, colours at full resolution: pictures are small ones that are shown large. `quality` from 1 to
-/// 100. Throws Error(internal) where the library fails, or this build has none.
+/// Returns a baseline JPEG in sRGB, with colours at full resolution because small pictures are shown enlarged.
+/// `quality` from 1 to 100. Throws Error(internal) if the library fails or this build has no JPEG.
 std::vector<std::byte> encode_jpeg(const Image& image, const ToneMapping& tone, int quality);
 
 }  // namespace weir

@@ -1,4 +1,5 @@
-// Texts that are dear to make and asked for again by every viewer. Any thread may ask; two may make the same one.
+// Caches texts that are expensive to make and that every viewer asks for. Any thread may ask; two threads may make the
+// same text.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +12,7 @@ namespace weir {
 
 class KeptTexts {
  public:
-  /// What was made for `key` before, or else `make()`, whose exceptions it passes on.
+  /// Returns the text kept for `key`, otherwise the result of `make()`, whose exceptions pass through.
   std::string get(const std::string& key, const std::function<std::string()>& make) {
     {
       const std::lock_guard lock(mutex_);

@@ -16,7 +16,8 @@ void require_memory_of(const std::string& path, const VoxelMemory& memory, const
   try {
     plan_voxels(file.grid(), memory);
   } catch (const Error& error) {
-    // Of another kind where the machine has less: that may be otherwise when its picture is asked for.
+    // An error of another kind says that the machine has too little memory now; that may change before a picture is
+    // asked for.
     if (error.kind() == ErrorKind::usage) throw usage_error(compose(named(path), ": ", error.message()));
   }
 }

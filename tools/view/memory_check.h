@@ -1,4 +1,4 @@
-// Whether weir view can draw anything in the memory that it is given, asked before its page is there.
+// Checks before the page is served whether weir view can draw anything in the memory that it is given.
 #pragma once
 
 #include <functional>
@@ -9,9 +9,9 @@
 
 namespace weir {
 
-/// Throws Error(usage), "FILE: " and what plan_voxels says, where a given ceiling is too small for all steps that can
-/// be read, then of the first one, or for the one file that all are compared with. Throws as NvdbFile where that one
-/// cannot be read. `named` gives what the user has called a file.
+/// Throws Error(usage), "FILE: " and the message of plan_voxels, if a given ceiling is too small for every step that
+/// can be read (naming the first step) or for the single file that all are compared with. Throws as NvdbFile if that
+/// file cannot be read. `named` returns the name that the user gave a file.
 void require_memory(const ViewedFiles& files, const VoxelMemory& memory,
                     const std::function<std::string(const std::string& path)>& named);
 

@@ -8,9 +8,9 @@
 namespace weir {
 namespace {
 
-struct NoVolume {};  // a camera depends on no voxel
+struct NoVolume {};  // a stand-in volume: a camera depends on no voxel
 
-// Whether the camera stands or looks where what is shown decides.
+// Returns whether the position or direction of the camera depends on the shown content.
 bool frames_content(const SceneCamera& camera) {
   return camera.framing == Framing::content && !(camera.position && camera.look_at);
 }

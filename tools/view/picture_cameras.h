@@ -1,4 +1,4 @@
-// The cameras of pictures, without the pictures: for who points at one.
+// Computes the cameras of pictures without rendering, to find what a viewer points at.
 #pragma once
 
 #include <cstdint>
@@ -16,14 +16,15 @@ namespace weir {
 
 class PictureCameras {
  public:
-  /// `cell`: voxels along the edge of the macrocells that pictures are made with, at least: they bound what is framed.
+  /// `cell`: least edge in voxels of the macrocells that pictures are made with, because macrocells bound the framed
+  /// content.
   explicit PictureCameras(std::int64_t cell) : cell_(cell) {}
 
-  /// The one that RenderSetup gives the picture. Macrocells are taken only where the scene frames its content, and kept
-  /// for the next time; those of a file that has none are gathered, which decodes all of it. Any thread may ask. Throws
-  /// as RenderSetup; where the scene's region shows nothing, the camera is of the whole volume.
+  /// Returns the camera that RenderSetup gives the picture. Macrocells are used only if the scene frames its content,
+  /// and are kept for the next call. If a file has none they are computed, which decodes the whole file. Any thread
+  /// may ask. Throws as RenderSetup; if the scene's region shows nothing, the camera frames the whole volume.
   Camera camera(const std::shared_ptr<const NvdbFile>& file, const Scene& scene, const RenderOptions& options);
-  /// The macrocells of the file, kept likewise. Any thread may ask.
+  /// Returns the macrocells of the file, which are kept too. Any thread may ask.
   std::shared_ptr<const MacrocellGrid> cells_of(const std::shared_ptr<const NvdbFile>& file);
 
  private:
@@ -31,11 +32,11 @@ class PictureCameras {
     std::weak_ptr<const NvdbFile> file;
     std::shared_ptr<const MacrocellGrid> cells;
   };
-  static constexpr std::size_t kMost = 2;  // a file, and the one it is compared with
+  static constexpr std::size_t kMost = 2;  // a file, and the file it is compared with
 
   const std::int64_t cell_;
   std::mutex mutex_;
-  std::list<Entry> entries_;  // used last first
+  std::list<Entry> entries_;  // most recently used first
 };
 
 }  // namespace weir

@@ -6,7 +6,7 @@
 namespace weir {
 namespace {
 
-// Samples of one pass, at most: what is asked meanwhile waits for its end.
+// The most samples per pixel of one pass. Requests that come in the meantime wait for its end.
 constexpr std::uint32_t kMostOfPass = 4;
 
 }  // namespace
@@ -29,7 +29,7 @@ std::optional<RefinementPass> Refinement::next() const {
     return pass;
   }
   pass.whole = true;
-  // Passes end at powers of two, where a picture goes out: each has half the noise's square of the one before.
+  // A picture is sent when the samples reach a power of two: its noise variance is half that of the previous picture.
   const std::uint32_t until = std::min(of_, std::bit_ceil(samples_ + 1));
   pass.size = {width_, height_, std::min(until - samples_, kMostOfPass)};
   pass.seed = 1 + samples_;

@@ -16,12 +16,12 @@
 namespace weir {
 namespace {
 
-constexpr int kMovingQuality = 88;  // of JPEG
-constexpr int kSmallQuality = 90;   // of a still picture that is not whole yet
-constexpr int kMostDoublings = 16;  // of a slice: hours
+constexpr int kMovingQuality = 88;  // JPEG quality
+constexpr int kSmallQuality = 90;   // JPEG quality of a still picture that is not whole yet
+constexpr int kMostDoublings = 16;  // doublings of a slice: hours
 constexpr std::chrono::milliseconds kStillMoving{500};
 constexpr std::chrono::milliseconds kProgress{200};
-// A moving picture that takes longer is given up, and drawn again, smaller; that at the least size fails.
+// A moving picture that takes longer is stopped and drawn again, smaller. At the least size it fails instead.
 constexpr double kLongestMoving_s = 2 * FramePace::kLongest_s;
 constexpr double kLongestSmall_s = 10;
 
@@ -81,7 +81,7 @@ void RenderLoop::taken(ViewerId id, std::int64_t frame) {
   changed_.notify_all();
 }
 
-// At once for a view that moves; for a still one end_slices() does, later. mutex_ is held.
+// Ends the current still pass at once if `viewer` moves. For a still view end_slices() does so later. mutex_ is held.
 void RenderLoop::make_room(const Viewer& viewer) {
   if (!viewer.fresh || viewer.under_way || !viewer.request->moving || !turn_ || turn_->moving) return;
   const auto drawn = viewers_.find(turn_->viewer);
@@ -101,19 +101,19 @@ int RenderLoop::moving_viewers() const {
   }));
 }
 
-// Whether there is something to draw for it. mutex_ is held.
+// Returns whether there is something to draw for `viewer`. mutex_ is held.
 bool RenderLoop::waits(const Viewer& viewer) {
   if (viewer.under_way || !viewer.request) return false;
   return viewer.fresh || (!viewer.request->moving && viewer.refinement && viewer.refinement->next());
 }
 
-// Than the one whose turn it is. mutex_ is held.
+// Returns whether a viewer other than that of turn_ waits. mutex_ is held.
 bool RenderLoop::another_waits() const {
   return std::any_of(viewers_.begin(), viewers_.end(),
                      [&](const auto& entry) { return entry.first != turn_->viewer && waits(entry.second); });
 }
 
-// The clock of the still passes, in a thread of its own: a back end tells of its progress too seldom.
+// Times the still passes in a separate thread, because a back end reports progress too seldom.
 void RenderLoop::end_slices() {
   std::unique_lock lock(mutex_);
   while (!ended_) {
@@ -128,8 +128,8 @@ void RenderLoop::end_slices() {
   }
 }
 
-// Not shorter than what the turn has taken so far, to load its volume: else two files that do not fit into memory
-// together would be loaded for next to nothing, again and again.
+// Begins a slice that is at least as long as the turn has taken to load its volume. Otherwise two files that do not
+// fit into memory together would be loaded again and again for almost no drawing.
 void RenderLoop::begin_slice(const Turn& turn, Clock::time_point turn_began) {
   {
     const std::lock_guard lock(mutex_);
@@ -141,7 +141,7 @@ void RenderLoop::begin_slice(const Turn& turn, Clock::time_point turn_began) {
   changed_.notify_all();
 }
 
-// Whose turn it is, and what to draw; none: nobody's. mutex_ is held.
+// Returns whose turn it is and what to draw; nullopt if nobody waits. mutex_ is held.
 std::optional<RenderLoop::Turn> RenderLoop::next_turn() {
   Viewer* chosen = nullptr;
   ViewerId id = 0;
@@ -167,7 +167,7 @@ std::optional<RenderLoop::Turn> RenderLoop::next_turn() {
     turn.size = moving;
   } else {
     if (!chosen->refinement) {
-      // What was just seen small need not be seen as small again.
+      // A view that was just shown small need not start as small again.
       const bool seen = chosen->drawn && chosen->drawn->scene_text == view.scene_text &&
                         chosen->drawn->step == view.step && chosen->drawn->against == view.against;
       const double share = static_cast<double>(moving.width) / view.width * (seen ? 2 : 1);
@@ -203,7 +203,7 @@ void RenderLoop::run() {
         if (late_) draw_smaller(*turn, *late_);
       } else {
         done = true;
-        if (turn->refinement) *turn->refinement = Refinement();  // nothing better would come of another pass
+        if (turn->refinement) *turn->refinement = Refinement();  // another pass would fail in the same way
         events_.failed(turn->viewer, turn->request->id, error.what());
       }
     } catch (const std::exception& error) {
@@ -223,7 +223,7 @@ void RenderLoop::end_turn(const Turn& turn, bool done, bool progressed) {
   if (found == viewers_.end()) return;
   Viewer& viewer = found->second;
   viewer.served = Clock::now();
-  if (!done && !slice_over_) return;  // it made room for a moving view, or for a newer one of its own
+  if (!done && !slice_over_) return;  // made room for a moving view, or for a newer view of its own
   viewer.passed_over = 0;
   viewer.in_vain = done || progressed ? 0 : viewer.in_vain + 1;
 }
@@ -330,7 +330,7 @@ void RenderLoop::draw(const Turn& turn) {
   header.render_s = seconds_since(started);
   if (!pass->shown) return;
   header.samples = turn.refinement->samples();
-  // A picture of all passes since the last one, as PNG, says nothing of those that move.
+  // 0 samples: a PNG of all passes since the last picture says nothing about the pace of moving pictures.
   deliver(turn, header, turn.refinement->picture(), tone, started, 0);
 }
 

@@ -1,11 +1,12 @@
-// Makes the pictures of all viewers, one after the other, in a thread of its own: moving views before still ones, new
-// still ones before those that are refined, the viewer that waited longest first. A viewer has one picture under way at
-// most; until it was taken nothing is drawn for it, so that a slow one costs the others nothing.
+// Renders the pictures of all viewers, one after the other, in a separate thread. Moving views come before still views,
+// new still views before those that are being refined, and the viewer that waited longest comes first. A viewer has at
+// most one picture under way. Nothing is drawn for it until that picture is taken, so a slow viewer does not delay
+// others.
 //
-// A pass of a still picture makes room for a moving view at once, and for any other viewer that waits when it has run
-// for RenderLoop::kSlice. What was drawn of it is kept, and the viewer's next turn goes on with it. Where nothing could
-// be kept, that turn lasts twice as long. A viewer that was passed over kMostPassedOver times comes first, and has its
-// slice whole: many moving views do not keep it from refining.
+// A pass of a still picture makes room at once for a moving view, and after RenderLoop::kSlice for any other viewer
+// that waits. The part that was drawn is kept, and the viewer's next turn continues it. If nothing could be kept, that
+// turn lasts twice as long. A viewer that was passed over kMostPassedOver times comes first and has a whole slice, so
+// that many moving views do not keep it from refining.
 #pragma once
 
 #include <atomic>
@@ -30,18 +31,18 @@
 
 namespace weir {
 
-/// What is rendered: the files of each step, and what all pictures have in common.
+/// The files of each step, and what all pictures have in common.
 struct RenderedSeries {
   const StepList& steps;             ///< outlives the loop
-  std::vector<std::string> against;  ///< none, one for all steps, or one for each
-  std::optional<float> background;   ///< of all steps of a series
+  std::vector<std::string> against;  ///< files to compare with: none, one for all steps, or one for each
+  std::optional<float> background;   ///< background of all steps of a series
 };
 
 /// Called on the loop's thread; must not block.
 struct RenderEvents {
-  /// A picture, which the viewer has until taken().
+  /// A picture. The viewer gets no other picture until taken().
   std::function<void(ViewerId, const FrameHeader&, std::vector<std::byte> picture)> frame;
-  /// A pass that takes long: share of it, in [0, 1], or a volume that is being loaded.
+  /// Progress of a long pass, as a share in [0, 1], or of loading a volume.
   std::function<void(ViewerId, std::int64_t view, std::string_view what, double share)> progress;
   std::function<void(ViewerId, std::int64_t view, std::string message)> failed;
 };
@@ -49,19 +50,19 @@ struct RenderEvents {
 class RenderLoop {
  public:
   static constexpr std::chrono::milliseconds kSlice{250};
-  static constexpr int kMostPassedOver = 40;  ///< turns: some two seconds of moving views
+  static constexpr int kMostPassedOver = 40;  ///< turns: some two seconds while other views move
 
   /// `shelf` and `backend` must outlive the object.
   RenderLoop(Backend& backend, VolumeShelf& shelf, RenderedSeries series, RenderEvents events);
-  /// No event comes afterwards.
+  /// Ends the threads; no event comes afterwards.
   ~RenderLoop();
   RenderLoop(const RenderLoop&) = delete;
   RenderLoop& operator=(const RenderLoop&) = delete;
 
-  // From any thread.
-  /// The newest view of a viewer takes the place of all before it.
+  // Any thread may call the following functions.
+  /// Sets the newest view of a viewer, which replaces all its previous views.
   void show(ViewerId viewer, ViewRequest view);
-  /// The viewer has shown its picture, number `frame`.
+  /// Tells that the viewer has shown its picture, number `frame`.
   void taken(ViewerId viewer, std::int64_t frame);
   void remove(ViewerId viewer);
 
@@ -72,18 +73,18 @@ class RenderLoop {
 
   struct Viewer {
     Request request;
-    bool fresh = false;           // nothing of the request was drawn yet
-    Request drawn;                // of the last picture
+    bool fresh = false;           // nothing of the request is drawn yet
+    Request drawn;                // request of the last picture
     std::int64_t frame = 0;       // number of the last picture
-    bool under_way = false;       // it was not taken yet
-    Clock::time_point started{};  // of its drawing
-    std::uint64_t samples = 0;    // in it, where it counts for the pace
+    bool under_way = false;       // the last picture is not taken yet
+    Clock::time_point started{};  // when its drawing began
+    std::uint64_t samples = 0;    // pixel samples in it; 0 if it does not count for the pace
     Clock::time_point served{};
     Clock::time_point moved{};
     FramePace pace;
-    std::shared_ptr<Refinement> refinement;  // of the request, where it is still
-    int passed_over = 0;  // turns of others while it waited, since it finished a pass or had a whole slice
-    int in_vain = 0;      // slices in a row of which nothing could be kept
+    std::shared_ptr<Refinement> refinement;  // of the request, if the view is still
+    int passed_over = 0;  // turns of others since this viewer last finished a pass or had a whole slice
+    int in_vain = 0;      // consecutive slices of which nothing could be kept
   };
 
   struct Turn {
@@ -91,16 +92,16 @@ class RenderLoop {
     Request request;
     bool moving = false;
     FrameSize size;
-    std::shared_ptr<Refinement> refinement;  // null where it moves
+    std::shared_ptr<Refinement> refinement;  // null if the view moves
     int in_vain = 0;                         // Viewer::in_vain
-    // Whether it moves and cannot be drawn smaller.
+    // Returns whether the view moves and cannot be drawn smaller.
     bool least() const { return moving && size == scaled(request->width, request->height, FramePace::kLeast); }
   };
 
-  // A moving picture that was given up.
+  // A moving picture that was stopped because it took too long.
   struct Late {
-    std::uint64_t samples = 0;  // that were done
-    double seconds = 0;         // that they took
+    std::uint64_t samples = 0;  // pixel samples that were done
+    double seconds = 0;         // seconds that these samples took
   };
 
   void end();
@@ -127,16 +128,16 @@ class RenderLoop {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::map<ViewerId, Viewer> viewers_;
-  std::optional<Turn> turn_;                    // that is being drawn
-  std::optional<Clock::time_point> slice_end_;  // of turn_; none while its volume is loaded, and where it moves
-  bool slice_over_ = false;                     // it made room because of that
-  bool loaded_ = false;                         // while the picture was drawn; of thread_ alone
-  std::optional<Late> late_;                    // of the turn; set by one of the renderer's threads, at most once
-  std::string warned_;                          // of, last: Picture::memory_note; of thread_ alone
+  std::optional<Turn> turn_;                    // the turn that is being drawn
+  std::optional<Clock::time_point> slice_end_;  // of turn_; none while its volume loads or if it moves
+  bool slice_over_ = false;                     // turn_ made room because its slice ended
+  bool loaded_ = false;                         // a volume was loaded during this picture; used only by thread_
+  std::optional<Late> late_;                    // of the turn; set at most once by a renderer thread
+  std::string warned_;                          // last Picture::memory_note that was logged; used only by thread_
   std::atomic<bool> cancel_{false};
   bool ended_ = false;
   std::thread thread_;
-  std::thread slices_;  // ends them
+  std::thread slices_;  // runs end_slices()
 };
 
 }  // namespace weir

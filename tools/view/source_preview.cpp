@@ -31,7 +31,7 @@ bool is_source(const std::string& path) {
   if (path.ends_with(".nvdb") || !is_there(path)) return false;
   try {
     return !is_nanovdb(path);
-  } catch (const Error&) {  // a directory that is no input, as one of .nvdb files: find_viewed_files says what it is
+  } catch (const Error&) {  // a directory that is no input, such as one of .nvdb files: find_viewed_files handles it
     return false;
   }
 }
@@ -47,7 +47,7 @@ SourcePreview::SourcePreview(const std::string& source, const GivenOptions& give
   if (!name.has_filename()) name = name.parent_path();
   name = name.filename();
   file_ = folder_.path() / (kept == Kept::all ? name += ".nvdb" : name.replace_extension(".nvdb"));
-  GivenOptions all{{"encoding", "packed"}, {"nonfinite", "background"}};  // a preview shows what there is
+  GivenOptions all{{"encoding", "packed"}, {"nonfinite", "background"}};  // a preview needs no clean data
   if (kept == Kept::all) {
     all.emplace("lossless", "true");
   } else {

@@ -1,5 +1,5 @@
-// A source as a NanoVDB file for the time that somebody looks at it: a quick packed conversion in a directory of its
-// own, which goes with the object.
+// Shows a source through a temporary NanoVDB file: a quick packed conversion in a temporary directory, which is
+// removed with the object.
 #pragma once
 
 #include <cstdint>
@@ -13,24 +13,24 @@
 
 namespace weir {
 
-/// Whether `path` is no NanoVDB file, but there, so that it has to be converted to be seen.
+/// Returns whether `path` exists and is no NanoVDB file, so that it must be converted to be shown.
 bool is_source(const std::string& path);
 
-/// "run.h5 --volume dense --dataset=/a": what weir render draws the source itself by, as words of a shell. `given` says
-/// how it is read (input_options).
+/// Returns the shell words with which weir render draws the source itself: "run.h5 --volume dense --dataset=/a".
+/// `given` says how the source is read (input_options).
 std::string dense_words(const std::string& source, const GivenOptions& given);
 
 class SourcePreview {
  public:
-  /// An eighth of its float32 size, to be looked at; or without loss, to compare with.
+  /// `eighth`: an eighth of the float32 size, to be looked at; `all`: lossless, to compare with.
   enum class Kept { eighth, all };
-  /// Converts `source`, one volume, read as `given` says (input_options). The directory is made in `work_dir`, or where
-  /// temporary files are. `memory` is of the whole process. Throws as open_source and convert_volume,
-  /// Error(interrupted) where interrupt_flag() was set.
+  /// Converts `source`, one volume, read as `given` says (input_options). The directory is made in `work_dir`, or in
+  /// the directory for temporary files. `memory` is for the whole process. Throws as open_source and convert_volume,
+  /// Error(interrupted) if interrupt_flag() is set.
   SourcePreview(const std::string& source, const GivenOptions& given, const std::string& work_dir,
                 std::optional<std::uint64_t> memory, const ProgressOptions& shown, Kept kept = Kept::eighth);
-  /// The NanoVDB file, named after the source, one without loss with its suffix before its own; its sidecar lies beside
-  /// it.
+  /// Returns the NanoVDB file, named after the source; a lossless file has the source's suffix before its own. Its
+  /// sidecar lies beside it.
   std::string file() const { return file_.string(); }
 
  private:

@@ -13,11 +13,11 @@
 namespace weir {
 namespace {
 
-constexpr float kStep = 0.5F;              // in the shortest voxel edges
-constexpr float kMostProbeSteps = 20'000;  // along a ray
+constexpr float kStep = 0.5F;              // in units of the shortest voxel edge
+constexpr float kMostProbeSteps = 20'000;  // steps along a ray
 constexpr float kSeen = 1.0F / 512;        // share of a pixel's light below which nothing is seen
 
-// Voxels one after the other, most of them in the block of the one before.
+// Reads voxels one after the other; most lie in the same block as the previous voxel.
 class NearbyVoxels {
  public:
   explicit NearbyVoxels(const NvdbGrid& grid) : grid_(grid) {}
@@ -115,7 +115,7 @@ std::optional<float> value_at(const NvdbGrid& grid, const Double3& world) {
   std::array<std::int64_t, 3> voxel{};
   for (std::size_t a = 0; a < 3; ++a) {
     const double at = std::floor(index[a]);
-    // Before it becomes an integer: places are anywhere.
+    // Checked before the conversion to an integer, because places may lie anywhere.
     if (!(at >= static_cast<double>(low[a]) && at < static_cast<double>(high[a]))) return std::nullopt;
     voxel[a] = static_cast<std::int64_t>(at);
   }

@@ -1,4 +1,4 @@
-// What a page and the server of weir view agree on before they talk.
+// The access rules between a page and the server of weir view.
 #pragma once
 
 #include <string>
@@ -6,13 +6,13 @@
 
 namespace weir {
 
-/// The protocol that the server speaks, and a page has to offer.
+/// The WebSocket protocol that the server speaks and a page must offer.
 inline constexpr std::string_view kViewProtocol = "weir.view";
 
-/// Whether the header Sec-WebSocket-Protocol offers it.
+/// Returns whether `protocols`, a header Sec-WebSocket-Protocol, offers `wanted`.
 bool offers_protocol(std::string_view protocols, std::string_view wanted);
-/// Where the page of a server that is asked for by that Host may connect to, in the words of a content policy: its
-/// WebSocket, which not every browser counts as its own. Empty for a Host that is no plain name.
+/// Returns the connect sources for the page's content security policy: the WebSocket at `host`, the Host header,
+/// because not every browser counts it as the page's own. Empty if `host` is no plain name.
 std::string socket_sources(std::string_view host);
 
 }  // namespace weir

@@ -1,5 +1,5 @@
-// The files of tools/view/page/, compiled into the program (cmake/embed_page.cmake). Those that it shares with the page
-// of the daemon are daemon/page/'s.
+// The files of tools/view/page/, compiled into the program (cmake/embed_page.cmake). Files shared with the daemon's
+// page come from daemon/page/.
 #pragma once
 
 #include <span>

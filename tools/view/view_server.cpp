@@ -42,7 +42,7 @@ AccessRules rules_of(const ViewSettings& settings) {
                   settings.any_host ? "that it printed to --progress-fd" : "in the file that --token-file names")};
 }
 
-// As weir render has it where there is one file: that file's own.
+// Returns the background for pictures. A single file uses its own background, as in weir render.
 std::optional<float> picture_background(const ViewedFiles& files) {
   return files.series() ? files.heads.summary().background : std::nullopt;
 }
@@ -222,30 +222,29 @@ std::string ViewServer::name_of(std::size_t step, int side) const {
   return against_names_.at(files_.against.size() == 1 ? 0 : step);
 }
 
-// What the facts of a step are of: they say its name, too, which changes when a step comes from another folder.
+// Identifies a step's facts, which also tell its name; the name changes when a step comes from another folder.
 std::string ViewServer::told_file(std::size_t step) const {
   return cat(steps_.name(step), ' ', file_identity(steps_.path(step)));
 }
 
-// The first number, that of the file which was named, where that is still there.
+// Returns the lowest number of the present steps: the named file's, if it is still there.
 std::size_t ViewServer::first_step() const {
   const std::vector<std::size_t> order = steps_.order();  // never empty
   return *std::min_element(order.begin(), order.end());
 }
 
-// All have the steps before all have values from a wider range: what a page knows of a file is of the range it had
-// then.
+// Tells the steps before any values of a wider range, because a page's facts are of the range it had then.
 void ViewServer::tell_steps(const SeriesSummary& summary) {
   summary_ = summary;
   Json told{{"type", "steps"}, {"steps", steps_.names()}, {"order", steps_.order()}};
   told.update(values_facts(common_values()));
   const std::string text = line(told);
-  std::vector<ViewerId> ids;  // one that reads nothing is gone after a text too many
+  std::vector<ViewerId> ids;  // copied: a viewer that reads nothing is removed after one text too many
   for (const auto& [id, viewer] : viewers_) ids.push_back(id);
   for (const ViewerId id : ids) send(id, text);
 }
 
-// One step at a time: a series that is scrubbed through asks for the newest alone.
+// Makes the facts of one step at a time: while a series is scrubbed through, only the newest step is asked for.
 void ViewServer::tell_facts(ViewerId id, Viewer& viewer) {
   if (!viewer.wanted || viewer.telling) return;
   const std::size_t step = *std::exchange(viewer.wanted, std::nullopt);
@@ -276,10 +275,10 @@ void ViewServer::tell_facts(ViewerId id, Viewer& viewer) {
   });
 }
 
-// The facts of a step, made with what was `common` then, are there; a histogram may take longer.
+// Sends the facts of a step, which were made with the earlier `common` values. A histogram may come later.
 void ViewServer::tell_facts(ViewerId id, std::size_t step, const SeenValues& common, const Facts& facts) {
   const auto asked = viewers_.find(id);
-  // A page asks for no picture before it has the facts of a step. Of a thousand that cannot be read it is told one.
+  // A page asks for no picture before it has facts. If a thousand steps cannot be read, it is told of one.
   const bool blank = !facts.readable && asked != viewers_.end() && !asked->second.view;
   if (!blank || step == first_step()) {
     for (const std::string& text : facts.texts) send(id, text);
@@ -290,15 +289,14 @@ void ViewServer::tell_facts(ViewerId id, std::size_t step, const SeenValues& com
   const auto found = viewers_.find(id);
   if (found == viewers_.end()) return histograms_->forget(id);
   const MinMax now = common_values().range;
-  const bool older = now.min != common.range.min || now.max != common.range.max;  // a wider one was told meanwhile
+  const bool older = now.min != common.range.min || now.max != common.range.max;  // a wider range was told since
   if (older && !found->second.wanted) found->second.wanted = step;
   found->second.telling = false;
   if (blank && !found->second.wanted) return tell_facts_of_another(id, found->second, step);
   tell_facts(id, found->second);
 }
 
-// Of the next step on the slider, from the last on of the first; when it is the turn of that which was tried first,
-// after a while.
+// Tries the next step on the slider, after the last step the first. Waits before it tries the first step again.
 void ViewServer::tell_facts_of_another(ViewerId id, Viewer& viewer, std::size_t unreadable) {
   viewer.wanted = steps_.after(unreadable).value_or(steps_.order().front());
   if (viewer.wanted != first_step()) return tell_facts(id, viewer);
@@ -310,7 +308,7 @@ void ViewServer::tell_facts_of_another(ViewerId id, Viewer& viewer, std::size_t 
   });
 }
 
-// What a page shows of the file: of a series what its steps have in common. Any thread may ask.
+// Returns the values that a page shows of the file; for a series, what its steps have in common. Any thread may ask.
 SeenValues ViewServer::values_of(const std::string& path, const SeenValues& common) {
   if (files_.series()) return common;
   const auto file = open_files_.get(path);
@@ -365,7 +363,7 @@ void ViewServer::answer_probe(ViewerId id, Viewer& viewer) {
           const auto socket = found->second.socket;
           found->second.probing = false;
           answer_probe(id, found->second);
-          socket->send_text(text);  // last: a viewer that reads nothing is gone after it
+          socket->send_text(text);  // last: a viewer that reads nothing is removed by this call
         });
       });
 }

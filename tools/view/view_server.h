@@ -1,5 +1,5 @@
-// `weir view` as a server: the page at /, what it asks of it at /api/state, and a WebSocket for each viewer at /ws. The
-// volumes, the thread that renders and those that look values up are shared by all viewers. Lives on the io_context's
+// The server of `weir view`: the page at /, the page's requests at /api/state, and a WebSocket for each viewer at /ws.
+// All viewers share the volumes, the render thread and the threads that look values up. Lives on the io_context's
 // thread.
 #pragma once
 
@@ -37,26 +37,27 @@ namespace weir {
 
 struct ViewSettings {
   ListenAddress address{"127.0.0.1", 0};
-  std::string token;                               ///< that every viewer must bring; empty: none, loopback only
-  std::size_t viewers = 8;                         ///< at once
-  std::int64_t pixels = kMostViewPixels;           ///< of a picture, at most
+  std::string token;                               ///< token that every viewer must send; empty: none, loopback only
+  std::size_t viewers = 8;                         ///< most viewers at once
+  std::int64_t pixels = kMostViewPixels;           ///< most pixels of a picture
   bool allow_convert = false;                      ///< a viewer may have the source converted
   bool forecast = true;                            ///< a viewer may have a conversion forecast
-  std::vector<std::string> forecast_options = {};  ///< of weir convert, "--memory=N" for instance
-  std::string program;                             ///< path of weir, for both
-  std::string version;                             ///< of weir, shown on the page
-  std::string preview_of = {};    ///< the source that the file was made from for this, shown on the page; empty: none
-  std::string render_input = {};  ///< what draws that source behind "weir render", words of a shell; empty: none
-  bool any_host = false;          ///< a Host header may name anything: who asks has a token that no web page can know
-  std::chrono::milliseconds look_again{1000};  ///< between two looks for steps of a series that grows
+  std::vector<std::string> forecast_options = {};  ///< options of weir convert for a forecast, "--memory=N" for
+                                                   ///< instance
+  std::string program;                             ///< path of weir, for conversion and forecast
+  std::string version;                             ///< version of weir, shown on the page
+  std::string preview_of = {};    ///< source of which the file is a preview, shown on the page; empty: none
+  std::string render_input = {};  ///< shell words behind "weir render" that draw that source; empty: none
+  bool any_host = false;          ///< any Host header is accepted: the client has a token that no web page can know
+  std::chrono::milliseconds look_again{1000};  ///< time between two looks for new steps of a growing series
   HttpLimits http = {};
   ViewerLimits sockets = {};
 };
 
 class ViewServer {
  public:
-  /// Listens from here on. `backend` must outlive the server. Throws Error(usage) for an address that others can reach
-  /// without a token, Error(io) where it cannot be had.
+  /// Starts to listen. `backend` must outlive the server. Throws Error(usage) for an address that others can reach
+  /// without a token, Error(io) if the address cannot be bound.
   ViewServer(boost::asio::io_context& io, ViewSettings settings, ViewedFiles files, Backend& backend);
   /// Waits for the pass and the look-up that are under way.
   ~ViewServer();
@@ -70,17 +71,17 @@ class ViewServer {
   struct Viewer {
     std::shared_ptr<ViewerSocket> socket;
     std::shared_ptr<const ViewRequest> view;
-    std::optional<ProbeRequest> probe;  // that waits until the one under way is answered
+    std::optional<ProbeRequest> probe;  // newest probe, waiting until the current probe is answered
     bool probing = false;
-    std::optional<std::size_t> told;    // the step whose facts it has, or gets
-    std::string told_of;                // told_file of that
-    std::optional<std::size_t> wanted;  // the step whose facts it gets next
+    std::optional<std::size_t> told;    // the step whose facts were sent or are being made
+    std::string told_of;                // told_file() of `told`
+    std::optional<std::size_t> wanted;  // the step whose facts are sent next
     bool telling = false;
-    std::optional<boost::asio::steady_timer> retry;  // until `wanted` is looked at, where no step could be read
+    std::optional<boost::asio::steady_timer> retry;  // waits before `wanted` is tried again, if no step could be read
   };
   struct Facts {
-    std::vector<std::string> texts;  // of each side
-    bool readable = true;            // the step's own file
+    std::vector<std::string> texts;  // one text per side
+    bool readable = true;            // the step's own file can be read
   };
 
   HttpResponse answer(const HttpRequest& request) const;
@@ -111,16 +112,16 @@ class ViewServer {
 
   boost::asio::io_context& io_;
   const ViewSettings settings_;
-  const ViewedFiles files_;  // of the beginning
+  const ViewedFiles files_;  // the files at the start
   const std::vector<std::string> against_names_ = step_names(files_.against);
-  SeriesSummary summary_;  // of all steps that were seen since
+  SeriesSummary summary_;  // of all steps seen so far
   StepList steps_;
   const AccessRules rules_;
-  std::string state_text_;  // of /api/state, but for what changes
+  std::string state_text_;  // of /api/state, without what changes
   Backend& backend_;
   std::map<ViewerId, Viewer> viewers_;
   ViewerId last_id_ = 0;
-  std::shared_ptr<int> alive_ = std::make_shared<int>(0);  // what other threads post is dropped with it
+  std::shared_ptr<int> alive_ = std::make_shared<int>(0);  // work posted by other threads is dropped when this is gone
   OpenFiles open_files_;
   KeptTexts facts_cache_;
   PictureCameras cameras_;
@@ -128,7 +129,7 @@ class ViewServer {
   std::optional<HistogramCounts> histograms_;
   std::optional<RenderLoop> loop_;
   SceneRequests scene_requests_;
-  boost::asio::thread_pool side_{2};  // looks facts and values up, looks for steps
+  boost::asio::thread_pool side_{2};  // looks up facts and values, looks for steps
   std::optional<StepWatch> step_watch_;
   std::unique_ptr<HttpServer> http_;
 };

@@ -10,7 +10,7 @@ namespace {
 namespace websocket = boost::beast::websocket;
 using boost::system::error_code;
 
-constexpr std::chrono::seconds kHandshake{10};  // for the client to take its part in opening and closing
+constexpr std::chrono::seconds kHandshake{10};  // time for the client's part in opening and closing
 constexpr std::size_t kLongestReason = 120;     // bytes; RFC 6455 has room for 123
 
 }  // namespace
@@ -46,7 +46,7 @@ void ViewerSocket::read() {
       return self->end("it sent a message that is too large");
     }
     if (error) return self->end(error == boost::beast::error::timeout ? "it gave no sign of life" : "");
-    if (self->closing_) {  // what still comes is of no use
+    if (self->closing_) {  // later messages are ignored
       self->buffer_.consume(self->buffer_.size());
       return self->read();
     }
@@ -62,7 +62,7 @@ void ViewerSocket::read() {
   });
 }
 
-// A bucket that fills at the rate that is allowed.
+// Token bucket that fills at the allowed rate.
 bool ViewerSocket::may_send_more() {
   const auto now = std::chrono::steady_clock::now();
   const double passed_s = std::chrono::duration<double>(now - counted_).count();
@@ -76,7 +76,7 @@ void ViewerSocket::send_text(std::string text) { send({std::move(text), false});
 void ViewerSocket::send_picture(std::string message) {
   taking_.expires_after(limits_.taking);
   taking_.async_wait([self = shared_from_this()](const error_code& error) {
-    // One that fired just before the picture was taken, or the next one sent, has been set anew since.
+    // The timer was set anew if it fired just before the picture was taken or the next picture was sent.
     if (error || self->ended_ || self->taking_.expiry() > std::chrono::steady_clock::now()) return;
     self->end("it takes no pictures");
   });

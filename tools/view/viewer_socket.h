@@ -1,6 +1,6 @@
-// One viewer's WebSocket: reads messages, writes texts and pictures, ends where the client leaves, falls silent, sends
-// too much or takes nothing. What waits to be written is bounded: one picture, and a few texts. One thread, the
-// io_context's; keeps itself alive while it waits.
+// The WebSocket of one viewer: reads messages, writes texts and pictures, and ends if the client leaves, falls silent,
+// sends too much or takes nothing. The queue to be written is bounded to one picture and a few texts. Used only on the
+// io_context's thread; keeps itself alive while it waits.
 #pragma once
 
 #include <boost/asio/generic/stream_protocol.hpp>
@@ -19,14 +19,14 @@
 
 namespace weir {
 
-/// What one viewer may take of the server.
+/// The limits on what one viewer may use of the server.
 struct ViewerLimits {
-  std::size_t message_bytes = 64 << 10;      ///< of one message of a client; more ends its connection
-  double messages_per_s = 300;               ///< likewise
-  double burst = 600;                        ///< messages above that rate
-  std::size_t texts = 64;                    ///< that wait to be written; more ends the connection
-  std::chrono::milliseconds idle{20'000};    ///< without a sign of life, pings answered included
-  std::chrono::milliseconds taking{30'000};  ///< for a picture to be taken
+  std::size_t message_bytes = 64 << 10;      ///< largest message of a client; a larger message ends the connection
+  double messages_per_s = 300;               ///< a higher rate ends the connection
+  double burst = 600;                        ///< messages above that rate that are allowed in a burst
+  std::size_t texts = 64;                    ///< texts waiting to be written; more end the connection
+  std::chrono::milliseconds idle{20'000};    ///< longest time without a sign of life; answered pings count
+  std::chrono::milliseconds taking{30'000};  ///< longest time until a picture is taken
 };
 
 class ViewerSocket : public std::enable_shared_from_this<ViewerSocket> {
@@ -36,22 +36,22 @@ class ViewerSocket : public std::enable_shared_from_this<ViewerSocket> {
   struct Events {
     std::function<void()> opened;
     std::function<void(std::string_view text)> message;
-    /// Once, when the connection is over for whatever reason but close_now(); `why` is empty where the client left.
+    /// Called once when the connection is over for any reason except close_now(); `why` is empty if the client left.
     std::function<void(std::string_view why)> ended;
   };
 
   ViewerSocket(Socket socket, const ViewerLimits& limits, Events events);
 
-  /// Answers the request; `protocol` is the one it agrees to, or empty.
+  /// Answers the request; `protocol` is the agreed protocol, or empty.
   void accept(const UpgradeRequest& request, const std::string& protocol);
   void send_text(std::string text);
-  /// One at a time: the next one after taken().
+  /// Sends a picture. The next picture may be sent after taken().
   void send_picture(std::string message);
-  /// The client has the picture.
+  /// Tells that the client has the picture.
   void taken();
-  /// Says why, with a code of RFC 6455, and ends.
+  /// Closes the connection with a code of RFC 6455 and the reason `why`.
   void close(boost::beast::websocket::close_code code, std::string_view why);
-  /// At once; no event comes from here on.
+  /// Closes the connection at once; no event comes afterwards.
   void close_now();
 
  private:
@@ -71,7 +71,7 @@ class ViewerSocket : public std::enable_shared_from_this<ViewerSocket> {
   const ViewerLimits limits_;
   Events events_;
   boost::beast::flat_buffer buffer_;
-  std::deque<Outgoing> outgoing_;  // the first one is being written
+  std::deque<Outgoing> outgoing_;  // the first message is being written
   bool open_ = false;
   bool closing_ = false;
   bool ended_ = false;

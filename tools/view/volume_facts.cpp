@@ -22,17 +22,17 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kOpacities = 33;  // of the curve where a scene gives none
+constexpr std::size_t kOpacities = 33;  // points of the default opacity curve
 
 Json index_json(const Index3& i) { return {i.x, i.y, i.z}; }
 
-// JSON has no infinity.
+// Returns "inf" and "-inf" as texts, because JSON has no infinity.
 Json end_json(float value) {
   if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
   return value;
 }
 
-// Blocks by kind, those that there are: [["transform", 1234], ...].
+// Returns the kinds of blocks that occur, with their numbers: [["transform", 1234], ...].
 Json kinds_of(const NvdbGrid& grid, const std::optional<Sidecar>& sidecar) {
   Json kinds = Json::array();
   const auto add = [&](const std::string& name, std::uint64_t blocks) {
@@ -131,7 +131,7 @@ Json histogram_facts(const NvdbFile& file, const std::atomic<bool>& cancel) {
       if (cancel) throw Error(ErrorKind::interrupted, "interrupted");
     });
   }
-  // Neighbours become one bin until there are few enough.
+  // Neighbouring bins are merged until there are few enough.
   std::vector<std::uint64_t>& counts = histogram.counts;
   while (counts.size() > kViewBins && counts.size() % 2 == 0) {
     for (std::size_t i = 0; i < counts.size() / 2; ++i) counts[i] = counts[2 * i] + counts[2 * i + 1];

@@ -1,4 +1,4 @@
-// What a page says of a file besides its picture, as JSON: its grid, its certificate, its histogram.
+// The facts that a page shows of a file besides its picture, as JSON: its grid, certificate and histogram.
 #pragma once
 
 #include <atomic>
@@ -14,31 +14,31 @@
 
 namespace weir {
 
-/// Bins of a histogram that is sent: a page has no more pixels for it.
+/// The most bins of a histogram that is sent; a page has no more pixels for it.
 inline constexpr std::size_t kViewBins = 256;
 
-/// Of a file, or what all steps of a series have in common.
+/// The values of a file, or of all steps of a series together.
 struct SeenValues {
-  MinMax range{0, 1};    ///< at the ends of colours and opacity
-  float background = 0;  ///< as RenderOptions has it
+  MinMax range{0, 1};    ///< values at the ends of colours and opacity
+  float background = 0;  ///< as in RenderOptions
 };
 SeenValues seen_values(const SeriesSummary& series);
-/// `cells` are the file's, asked for where neither its root nor its certificate names a finite range. Throws as
-/// own_sidecar and `cells`.
+/// Returns the values of `file`. `cells` returns the file's macrocells; it is called only if neither the root nor the
+/// certificate has a finite range. Throws as own_sidecar and `cells`.
 SeenValues seen_values(const NvdbFile& file, const std::function<std::shared_ptr<const MacrocellGrid>()>& cells);
 
-/// {"range", "background", "opacity"}, the opacity where a scene gives none.
+/// Returns {"range", "background", "opacity"}; the opacity is used if a scene gives none.
 nlohmann::ordered_json values_facts(const SeenValues& values);
 
-/// The grid, `values` and, of the sidecar where one belongs to the file, the certificate; quick. `name` is that of
-/// the file for a page, which commands name it by. Throws as read_sidecar.
+/// Returns the grid, `values` and the certificate, if a sidecar belongs to the file; quick. `name` is the file's name
+/// on the page and in commands. Throws as read_sidecar.
 nlohmann::ordered_json volume_facts(const NvdbFile& file, const std::string& name, const SeenValues& values);
 
-/// {"min", "max", "counts"}: the sidecar's, else counted, which decodes the whole file. Throws Error(interrupted) where
-/// `cancel` was set meanwhile.
+/// Returns {"min", "max", "counts"} from the sidecar; without a sidecar counts them, which decodes the whole file.
+/// Throws Error(interrupted) if `cancel` is set.
 nlohmann::ordered_json histogram_facts(const NvdbFile& file, const std::atomic<bool>& cancel);
 
-/// Colours of all maps by name: kMapColours of them each, "#rrggbb".
+/// Colours of all maps by name: kMapColours colours each, "#rrggbb".
 inline constexpr std::size_t kMapColours = 17;
 nlohmann::ordered_json colormap_facts();
 

@@ -52,13 +52,13 @@ bool VolumeShelf::clear() {
   return held;
 }
 
-// The oldest volume makes room first: two of them might not fit into memory.
+// Loads a volume. The oldest volume is dropped first, because both might not fit into memory.
 std::shared_ptr<LoadedVolume> VolumeShelf::load(const std::string& path, bool ahead) {
   const std::lock_guard one_at_a_time(loading_);
-  const std::string identity = file_identity(path);  // before it is opened: one that takes its place is another
+  const std::string identity = file_identity(path);  // before opening: a replacement has another identity
   {
     const std::lock_guard lock(mutex_);
-    if (auto volume = find(identity)) return volume;  // it came while this waited
+    if (auto volume = find(identity)) return volume;  // loaded by another thread in the meantime
     entries_.remove_if([&](const Entry& e) { return e.path == path; });
     while (entries_.size() >= capacity_) entries_.pop_back();
   }
@@ -67,7 +67,7 @@ std::shared_ptr<LoadedVolume> VolumeShelf::load(const std::string& path, bool ah
   try {
     volume = backend_.load(file, 0, nullptr);
   } catch (const Error& error) {
-    // Of device memory, say. What is ahead must not take the place of what is seen.
+    // No room, for instance in device memory. A volume loaded ahead must not displace one that is shown.
     if (ahead || error.kind() != ErrorKind::io || !clear()) throw;
     volume = backend_.load(file, 0, nullptr);
   }
@@ -94,7 +94,7 @@ void VolumeShelf::fetch_ahead() {
     lock.unlock();
     try {
       load(path, true);
-    } catch (const std::exception&) {  // said when its turn comes
+    } catch (const std::exception&) {  // reported when the volume is shown
     }
     lock.lock();
   }

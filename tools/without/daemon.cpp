@@ -1,4 +1,4 @@
-// In place of the commands of the service in a build with WEIR_DAEMON=OFF: they say what is missing.
+// Replaces the service's commands in a build with WEIR_DAEMON=OFF. Each says what is missing.
 #include <CLI/CLI.hpp>
 
 #include "format/base/error.h"

@@ -1,4 +1,4 @@
-// In place of tools/spectrum/block_transform.cpp in a build with WEIR_FFTW=OFF.
+// Replaces tools/spectrum/block_transform.cpp in a build with WEIR_FFTW=OFF.
 #include "format/base/error.h"
 #include "tools/spectrum/block_transform.h"
 

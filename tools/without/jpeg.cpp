@@ -1,4 +1,4 @@
-// In place of tools/view/jpeg_picture.cpp in a build with WEIR_JPEG=OFF: all pictures of `weir view` are PNG.
+// Replaces tools/view/jpeg_picture.cpp in a build with WEIR_JPEG=OFF: all pictures of `weir view` are PNG.
 #include "format/base/error.h"
 #include "tools/view/jpeg_picture.h"
 

@@ -1,4 +1,4 @@
-// In place of zfp_codec.cpp and zfp_trial.cpp in a build with WEIR_ZFP=OFF.
+// Replaces zfp_codec.cpp and zfp_trial.cpp in a build with WEIR_ZFP=OFF.
 #include "format/base/error.h"
 #include "tools/sweep/zfp_codec.h"
 #include "tools/sweep/zfp_trial.h"

@@ -16,7 +16,7 @@
 namespace weir {
 namespace {
 
-/// An open attribute and how many values of which type it has; no values where it is absent.
+/// An open attribute, its type and its number of values; it has no values if it is absent.
 struct Attribute {
   Attribute(hid_t owner, const char* called) : object(owner), name(called) {
     if (!has_attribute(object, name)) return;
@@ -69,15 +69,16 @@ std::vector<std::string> fixed_texts(const Attribute& attribute) {
   return texts;
 }
 
-// Leaves the source's bytes in place.
+// A conversion that leaves the source's bytes unchanged.
 herr_t keep_stored(hid_t, hid_t, H5T_cdata_t* path, std::size_t, std::size_t, std::size_t, void*, void*, hid_t) {
   if (path->command == H5T_CONV_INIT) path->need_bkg = H5T_BKG_NO;
   return 0;
 }
 
-// Bytes of all texts, by the references that are stored in their place: a length of 32 bits, little-endian, and where
-// they lie ("HDF5 File Format Specification", variable-length types). The library has no call for it, and takes five
-// times as much memory to read them. nullopt where it does not give the references.
+// Returns the bytes of all texts, from the references that the file stores in their place: a little-endian 32-bit
+// length and the text's address ("HDF5 File Format Specification", variable-length types). The library has no call
+// for this, and to read the texts it takes five times their memory. Returns nullopt if the library does not give the
+// references.
 std::optional<std::uint64_t> bytes_of_variable_texts(const Attribute& attribute) {
   constexpr const char* kConversion = "weir: stored references";
   const std::size_t width = static_cast<std::size_t>(H5Aget_storage_size(attribute.handle.get())) / attribute.values;
@@ -100,7 +101,7 @@ std::optional<std::uint64_t> bytes_of_variable_texts(const Attribute& attribute)
 
 std::vector<std::string> variable_texts(const Attribute& attribute) {
   if (bytes_of_variable_texts(attribute).value_or(0) > kMaxAttributeBytes) return {};
-  // The library converts no character sets: the memory's must be the file's.
+  // The library converts no character sets, so the memory type must have the file's character set.
   const Hdf5Handle memory_type(H5Tcopy(H5T_C_S1));
   H5Tset_size(memory_type.get(), H5T_VARIABLE);
   H5Tset_cset(memory_type.get(), H5Tget_cset(attribute.type.get()));
@@ -112,7 +113,7 @@ std::vector<std::string> variable_texts(const Attribute& attribute) {
   return texts;
 }
 
-/// Values in a message.
+/// The most values that a message shows.
 constexpr std::size_t kMostShown = 4;
 
 template <typename T>
@@ -131,7 +132,7 @@ Error attribute_error(hid_t object, const char* name) {
 
 void check_attribute_bytes(hid_t object) {
   H5O_info_t info;
-  // All are in the object's header, of 64 KiB each at most, or none is.
+  // Either all attributes are in the object's header, with at most 64 KiB each, or none is.
   if (H5Oget_info2(object, &info, H5O_INFO_NUM_ATTRS | H5O_INFO_HDR) < 0) return;
   constexpr std::uint64_t kAttributeMessage = std::uint64_t{1} << 12U;
   if (info.num_attrs == 0 || (info.hdr.mesg.present & kAttributeMessage) != 0) return;

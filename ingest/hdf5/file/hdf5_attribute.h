@@ -1,4 +1,4 @@
-// Attributes as numbers or texts, whatever type the file gives them.
+// Reads attributes as numbers or texts, whatever type the file stores them in.
 #pragma once
 
 #include <hdf5.h>
@@ -12,41 +12,45 @@
 
 namespace weir {
 
-/// An attribute of more values, or of more bytes of text, than this gives no place and no name, and is read as none.
+/// An attribute with more values, or more bytes of text, than these limits is not read: it holds no position and no
+/// name.
 inline constexpr std::size_t kMaxAttributeValues = 4096;
 inline constexpr std::size_t kMaxAttributeBytes = std::size_t{1} << 20U;
 
-/// Of all attributes of one object together, where the file keeps them in a heap of their own.
+/// The limit for all attributes of one object together, if the file keeps them in a separate (dense) heap.
 inline constexpr std::size_t kMaxObjectAttributeBytes = std::size_t{16} << 20U;
 
-/// Throws Error(input) where `object` has more than that: the library takes twice the bytes of an attribute to look
-/// whether it is there. Of chunks it costs a look through their index: once for an object is enough. The caller holds
-/// Hdf5Lock.
+/// Throws Error(input) if the attributes of `object` exceed kMaxObjectAttributeBytes. The check is needed because the
+/// library takes twice the bytes of an attribute to look whether it is there. For a chunked dataset the check looks
+/// through the chunk index, so call it only once per object. The caller holds Hdf5Lock.
 void check_attribute_bytes(hid_t object);
 
-/// All of them take an open dataset or group; the caller holds Hdf5Lock. An attribute that is absent or of another kind
-/// reads as empty. All throw Error(input) where the library cannot say whether the attribute is there, or cannot read
-/// it: taken as absent, it would give other values or places without a word.
+/// All functions below take an open dataset or group, and the caller holds Hdf5Lock. An attribute that is absent or
+/// of another kind reads as empty. All functions throw Error(input) if the library cannot say whether the attribute
+/// is there, or cannot read it: to treat it as absent would silently give other values or positions.
+/// Returns integers and floats of any precision as double.
 
 /// Integers and floats of any precision, in double.
 std::vector<double> number_attribute(hid_t object, const char* name);
-/// The same without loss for 64-bit integers; a text that is a number counts as one.
+/// Returns numbers like number_attribute(), but without loss for 64-bit integers. A text that is a number counts as a
+/// number.
 std::vector<StoredValue> stored_value_attribute(hid_t object, const char* name);
-/// The same; names of an enumeration count as the integers that they stand for.
+/// Returns values like stored_value_attribute(). Names of an enumeration count as the integers that they stand for.
 std::vector<StoredValue> enumerated_value_attribute(hid_t object, const char* name);
-/// Texts of fixed or any length, without the blanks and zeros at their ends.
+/// Returns texts of fixed or variable length, without the blanks and zeros at their ends.
 std::vector<std::string> text_attribute(hid_t object, const char* name);
-/// The first of them; empty where there is none.
+/// Returns the first text of text_attribute(); empty if there is none.
 std::string first_text_attribute(hid_t object, const char* name);
 bool has_attribute(hid_t object, const char* name);
-/// How many values it has, also where they are more than are read; 0 where it is absent.
+/// Returns the number of values of the attribute, even if there are too many to read; 0 if the attribute is absent.
 std::size_t attribute_values(hid_t object, const char* name);
-/// What a message says that the attribute is: "0", "'half'", "2 values (1, 2)", "of type boolean", "empty".
+/// Returns the words for the attribute's value in a message: "0", "'half'", "2 values (1, 2)", "of type boolean",
+/// "empty".
 std::string attribute_found(hid_t object, const char* name);
 
-/// "PATH: /fields/density: its attributes cannot be read, looking for NAME: REASON; ...", kind input, of the call of
-/// the library that failed last. The library decodes an object's attributes until it finds the one that it is asked
-/// for: the damage may be to another of them.
+/// Returns an Error(input) for the library call that failed last: "PATH: /fields/density: its attributes cannot be
+/// read, looking for NAME: REASON; ...". The library decodes an object's attributes in turn until it finds `name`, so
+/// the damage may be in another attribute.
 Error attribute_error(hid_t object, const char* name);
 
 }  // namespace weir

@@ -12,12 +12,12 @@
 namespace weir {
 namespace {
 
-// Called for each function of the failed call, the innermost first.
+// The library calls this for each function of the failed call, the innermost first.
 herr_t keep_first(unsigned /*depth*/, const H5E_error2_t* error, void* reason) {
   auto& text = *static_cast<std::string*>(reason);
   try {
     if (text.empty() && error->desc != nullptr) text = error->desc;
-  } catch (const std::bad_alloc&) {  // which must not pass through the library; the reason is then left out
+  } catch (const std::bad_alloc&) {  // must not pass through the library; the reason is left out
     return -1;
   }
   return 0;
@@ -28,7 +28,7 @@ herr_t keep_first(unsigned /*depth*/, const H5E_error2_t* error, void* reason) {
 std::string hdf5_reason() {
   std::string reason;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_first, &reason);
-  // Descriptions quote names from the file.
+  // Descriptions quote names from the file, which may hold control characters.
   std::replace_if(
       reason.begin(), reason.end(), [](char c) { return static_cast<unsigned char>(c) < 32 || c == 127; }, ' ');
   while (reason.ends_with(' ') || reason.ends_with('.')) reason.pop_back();

@@ -9,14 +9,15 @@
 
 namespace weir {
 
-/// What the innermost function that failed in the last call of the library says; the caller has held
-/// Hdf5Lock since. "no reason given" where it says nothing. One line of printable characters.
+/// Returns the message of the innermost function that failed in the library's last call, or "no reason given" if the
+/// library has none. The text is one line of printable characters. The caller has held Hdf5Lock since that call.
 std::string hdf5_reason();
 
-/// "PATH: /fields/density" of an open object; PATH is the file that it lies in. The caller holds Hdf5Lock.
+/// Returns "PATH: /fields/density" for an open object; PATH is the file that holds the object. The caller holds
+/// Hdf5Lock.
 std::string object_text(hid_t object);
 
-/// "WHERE: WHAT: REASON", kind input, of the last call as above.
+/// Returns Error(input) "WHERE: WHAT: REASON", with REASON from hdf5_reason().
 Error hdf5_error(const std::string& where, const std::string& what);
 
 }  // namespace weir

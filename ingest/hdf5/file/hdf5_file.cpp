@@ -16,11 +16,11 @@
 namespace weir {
 namespace {
 
-// Of metadata that a writer has half written. The library sleeps 1, 2, 4 ... ns between them: a quarter of a second in
-// all. Its default of 100 is without end for a file that is damaged.
+// The attempts to read metadata that a writer has half written. Between them the library sleeps 1, 2, 4 ... ns: a
+// quarter of a second in all. With its default of 100 attempts a damaged file would practically never end.
 constexpr unsigned kReadAttempts = 28;
 
-// Readers need no cache of decoded chunks (they ask for each once), and a bounded one of metadata.
+// Readers ask for each decoded chunk once, so they need no chunk cache. The metadata cache is bounded.
 Hdf5Handle access_properties() {
   Hdf5Handle properties(H5Pcreate(H5P_FILE_ACCESS));
   H5Pset_cache(properties.get(), 0, 0, 0, 0.0);
@@ -80,7 +80,7 @@ Hdf5Handle open_hdf5_file(const std::string& path) {
   const Hdf5Handle properties = access_properties();
   Hdf5Handle opened(H5Fopen(path.c_str(), H5F_ACC_RDONLY, properties.get()));
   if (opened) return opened;
-  // A file that a writer has opened for readers beside it wants to be asked so, by all of a process.
+  // If a writer has opened the file for simultaneous readers (SWMR), all opens in this process must ask for SWMR.
   const std::string reason = hdf5_reason();
   if (reason.find("open for write") != std::string::npos || reason.find("SWMR") != std::string::npos) {
     H5Pset_metadata_read_attempts(properties.get(), kReadAttempts);

@@ -1,5 +1,4 @@
-// HDF5 files (NetCDF-4 files are such), opened for reading, also while a
-// simulation still writes them.
+// Opens HDF5 files (and NetCDF-4 files, which are HDF5) for reading, also while a simulation still writes them.
 #pragma once
 
 #include <cstdint>
@@ -9,11 +8,11 @@
 
 namespace weir {
 
-/// What the library keeps of an open file's metadata, in bytes, at most.
+/// The most bytes of an open file's metadata that the library caches.
 inline constexpr std::uint64_t kHdf5MetadataBytes = std::uint64_t{4} << 20U;
 
-/// Opens `path` for reading, beside a writer (SWMR) where the file says that one is there. Throws
-/// Error(input) where it is no HDF5 file, cut short, damaged, or a program has it open for writing alone.
+/// Opens `path` for reading. If the file says that a writer is active, opens it beside the writer (SWMR). Throws
+/// Error(input) if the file is not HDF5, is cut short or damaged, or if a program has it open for exclusive writing.
 /// The caller holds Hdf5Lock.
 Hdf5Handle open_hdf5_file(const std::string& path);
 

@@ -1,5 +1,4 @@
-// Ownership of what libhdf5 hands out: files, groups, datasets, types, spaces,
-// property lists.
+// Owns the objects that libhdf5 hands out: files, groups, datasets, types, spaces, property lists.
 #pragma once
 
 #include <hdf5.h>
@@ -10,11 +9,11 @@
 
 namespace weir {
 
-/// One reference to an object of libhdf5, given back under the lock on destruction. Any thread.
+/// Owns one reference to a libhdf5 object. The destructor takes the lock and releases the reference, on any thread.
 class Hdf5Handle {
  public:
   Hdf5Handle() = default;
-  /// Takes over `id`; an invalid one (< 0), as failing calls return it, is kept as it is.
+  /// Takes ownership of `id`. An invalid id (< 0), which failing calls return, is kept as it is.
   explicit Hdf5Handle(hid_t id) : id_(id) {}
   ~Hdf5Handle() { reset(); }
   Hdf5Handle(Hdf5Handle&& other) noexcept : id_(std::exchange(other.id_, H5I_INVALID_HID)) {}

@@ -18,7 +18,7 @@ Hdf5Reads& reads() {
 
 }  // namespace
 
-// A library built with thread-safety has one error stack per thread, so silencing it once would not do.
+// A thread-safe libhdf5 has one error stack per thread, so it must be silenced on each thread, not once.
 Hdf5Lock::Hdf5Lock() : guard_(library_mutex()) { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
 Hdf5ReadLock::Hdf5ReadLock(const std::string& crash_line) {

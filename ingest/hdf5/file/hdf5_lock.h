@@ -1,5 +1,5 @@
-// libhdf5 as distributions build it keeps one state for the whole process and no
-// locks of its own. Every call of it happens while an Hdf5Lock is held.
+// The libhdf5 of Linux distributions keeps one state for the whole process and has no locks of its own. Hold an
+// Hdf5Lock during every call of the library.
 #pragma once
 
 #include <mutex>
@@ -9,9 +9,9 @@
 
 namespace weir {
 
-/// Holds the process's one lock of libhdf5. Recursive: handles (ingest/hdf5/file/hdf5_handle.h) close themselves
-/// under it wherever they go out of scope. The library prints nothing while it is held: what went wrong is
-/// asked of it (ingest/hdf5/file/hdf5_error.h).
+/// Holds the process's only libhdf5 lock. The lock is recursive because handles (ingest/hdf5/file/hdf5_handle.h) take
+/// it to close themselves when they go out of scope. While the lock is held the library prints no errors;
+/// ingest/hdf5/file/hdf5_error.h asks the library for them.
 class Hdf5Lock {
  public:
   Hdf5Lock();
@@ -23,8 +23,8 @@ class Hdf5Lock {
   std::lock_guard<std::recursive_mutex> guard_;
 };
 
-/// Holds the lock for reading values: a crash of the library meanwhile is one at what `crash_line` names
-/// (hdf5_crash_line), which outlives the object.
+/// Holds the lock while values are read. If the library crashes during this time, the crash is reported for the
+/// dataset that `crash_line` names (hdf5_crash_line). `crash_line` outlives the object.
 class Hdf5ReadLock {
  public:
   explicit Hdf5ReadLock(const std::string& crash_line);
@@ -36,7 +36,7 @@ class Hdf5ReadLock {
   Hdf5Lock lock_;
 };
 
-/// Who holds an Hdf5ReadLock.
+/// Returns the record of the thread that holds an Hdf5ReadLock.
 const Hdf5Reads& hdf5_reads();
 
 }  // namespace weir

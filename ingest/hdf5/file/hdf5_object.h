@@ -1,4 +1,4 @@
-// One dataset (or group) of an open file, and the words for it.
+// An open dataset or group of a file, and its name for messages.
 #pragma once
 
 #include <string>
@@ -17,18 +17,19 @@ struct Hdf5Object {
   std::string where() const { return path + ": " + name; }
 };
 
-/// The groups an object lies in, its own first, the root last: "/a/b/c" lies in "/a/b", "/a" and "/". Those
-/// that cannot be opened are left out. The caller holds Hdf5Lock.
+/// Returns the groups around an object, innermost first, the root last: for "/a/b/c" these are "/a/b", "/a" and "/".
+/// Leaves out groups that cannot be opened. The caller holds Hdf5Lock.
 std::vector<Hdf5Handle> enclosing_groups(hid_t file, const std::string& name);
 
-/// The object that a link of `group` leads to; invalid where there is no such link, or one of another place that leads
-/// nowhere. Throws Error(input) where the file has it and it cannot be opened. The caller holds Hdf5Lock.
+/// Returns the object that the link `name` of `group` leads to. The handle is invalid if there is no such link, or if
+/// the link points to another place where nothing is. Throws Error(input) if the file has the object but it cannot be
+/// opened. The caller holds Hdf5Lock.
 Hdf5Handle open_linked(hid_t group, const std::string& name);
 
 bool is_dataset(hid_t object);
 
-/// A component of an openPMD record that is the same everywhere: a group with the attributes `value` and
-/// `shape` in place of a dataset. The caller holds Hdf5Lock, as for is_dataset.
+/// Returns whether `object` is an openPMD record component with one constant value: a group with the attributes
+/// `value` and `shape` instead of a dataset. For this function and for is_dataset() the caller holds Hdf5Lock.
 bool is_openpmd_constant(hid_t object);
 
 }  // namespace weir

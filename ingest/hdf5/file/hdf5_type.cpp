@@ -13,7 +13,7 @@ struct Known {
   StoredType stored;
 };
 
-// IEEE 754 binary16, which the library has no name for.
+// Returns the type IEEE 754 binary16, which the library has no name for.
 Hdf5Handle half(hid_t single) {
   Hdf5Handle type(H5Tcopy(single));
   H5Tset_fields(type.get(), 15, 10, 5, 0, 10);
@@ -22,7 +22,7 @@ Hdf5Handle half(hid_t single) {
   return type;
 }
 
-// h5py's and the Fortran compilers' way to store truth values.
+// Returns whether `type` is a boolean as h5py and Fortran compilers store it.
 bool is_boolean(hid_t type) {
   if (H5Tget_nmembers(type) != 2) return false;
   char* const first = H5Tget_member_name(type, 0);

@@ -42,7 +42,7 @@ herr_t collect_link(hid_t /*group*/, const char* name, const H5L_info_t* info, v
 struct Group {
   std::string name;
   Hdf5Handle handle;
-  int depth = 0;  ///< 0: the one that the walk begins at
+  int depth = 0;  ///< 0: the group that the walk begins at
 };
 
 Error too_deep(const Group& group) {
@@ -63,7 +63,7 @@ class GroupWalk {
     if (!root) return say_damaged(name, "cannot be opened");
     if (!is_new(name, root.get())) return;
     groups_.push_back({name == "/" ? "" : name, std::move(root), 0});
-    // External links wait until all there is in the file itself has its name.
+    // External links wait until everything in the file itself has its name.
     while (!groups_.empty() || !external_.empty()) {
       if (groups_.empty()) {
         const std::string link = std::move(external_.front());
@@ -73,7 +73,7 @@ class GroupWalk {
           unread_({link, cat("leads to another file, and cannot be followed: ", hdf5_reason()), true});
           continue;
         }
-        // A file closed and opened again has another number: what is new could not be told from what is not.
+        // The file stays open, because a reopened file gets another number. Known objects in it would then look new.
         kept_.emplace_back(H5Iget_file_id(object.get()));
         take(link, std::move(object), 1);
       } else {
@@ -85,7 +85,7 @@ class GroupWalk {
   }
 
  private:
-  // Right after the call of the library that failed.
+  // Reports a damaged object. Call it right after the library call that failed.
   void say_damaged(const std::string& name, const char* what) {
     unread_({name, cat(what, ": ", hdf5_reason(), "; the file is damaged")});
   }
@@ -124,7 +124,7 @@ class GroupWalk {
     }
   }
 
-  // What it leads to is found by its own name, if it is there.
+  // Reports a soft link that leads nowhere. A target that exists is found by its own name.
   void look_at_soft(const Group& group, const std::string& name, const std::string& path) {
     if (H5Oexists_by_name(group.handle.get(), name.c_str(), H5P_DEFAULT) > 0) return;
     std::array<char, 4096> target{};

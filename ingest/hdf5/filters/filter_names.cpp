@@ -12,7 +12,7 @@ namespace {
 struct FilterEntry {
   H5Z_filter_t id;
   std::string_view name;
-  std::string_view package;  ///< of Debian and Ubuntu; empty where there is none
+  std::string_view package;  ///< the package in Debian and Ubuntu; empty if there is none
 };
 
 // The HDF Group's registry of filters.

@@ -15,7 +15,7 @@ namespace {
 
 bool applied(FilterMask left_out, std::size_t i) { return i >= 32 || (left_out >> i & 1U) == 0; }
 
-/// Bytes of a chunk before filter `i` was applied; none of the filters before it is deflate or lzf.
+/// Returns the bytes of a chunk before filter `i` was applied; no filter before `i` is deflate or lzf.
 std::size_t bytes_before(const FilterPipeline& pipeline, FilterMask left_out, std::size_t chunk_bytes, std::size_t i) {
   std::size_t bytes = chunk_bytes;
   for (std::size_t k = 0; k < i; ++k) {
@@ -56,7 +56,8 @@ std::size_t most_stored_bytes(const FilterPipeline& pipeline, std::size_t chunk_
   std::size_t bytes = chunk_bytes;
   for (const ChunkFilter& filter : pipeline) {
     if (filter.kind == FilterKind::fletcher32) bytes += kFletcher32Bytes;
-    // HDF5 gives deflate 1.001 times the size and 12 bytes, and stores the chunk as it is where that is too little.
+    // HDF5 gives deflate a buffer of 1.001 times the size plus 12 bytes. If that is too small, it stores the chunk
+    // unfiltered.
     if (filter.kind == FilterKind::deflate) bytes += bytes / 256 + 64;
   }
   return bytes;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kChunkBytesAt = 2;  // in the filter's parameters, as h5py writes them
 
-// An H5Z_func_t: 0 is a failure, which makes the library leave a chunk unpacked where it is being written.
+// An H5Z_func_t: 0 means failure. When the library writes a chunk, a failure makes it leave the chunk unpacked.
 std::size_t undo_lzf(unsigned flags, std::size_t parameters, const unsigned* parameter, std::size_t stored,
                      std::size_t* room, void** buffer) {
   if ((flags & H5Z_FLAG_REVERSE) == 0 || parameters <= kChunkBytesAt) return 0;
@@ -20,7 +20,7 @@ std::size_t undo_lzf(unsigned flags, std::size_t parameters, const unsigned* par
   if (unpacked == nullptr) return 0;
   try {
     unpack_lzf({static_cast<const std::byte*>(*buffer), stored}, {static_cast<std::byte*>(unpacked), bytes});
-  } catch (const std::exception&) {  // none may pass through the library
+  } catch (const std::exception&) {  // no exception may pass through the library
     H5free_memory(unpacked);
     return 0;
   }
@@ -30,7 +30,7 @@ std::size_t undo_lzf(unsigned flags, std::size_t parameters, const unsigned* par
   return bytes;
 }
 
-// Whether the library has weir's decoder, which packs nothing.
+// Returns whether the library has weir's decoder; it is recognised because it has no encoder.
 bool is_offered() {
   unsigned how = 0;
   return H5Zget_filter_info(kLzfFilter, &how) >= 0 && (how & H5Z_FILTER_CONFIG_ENCODE_ENABLED) == 0;
@@ -40,7 +40,7 @@ bool is_offered() {
 
 void offer_lzf() {
   unsigned how = 0;
-  if (H5Zget_filter_info(kLzfFilter, &how) >= 0) return;  // known, and no plugin is looked for
+  if (H5Zget_filter_info(kLzfFilter, &how) >= 0) return;  // known already; this call looks for no plugin
   const H5Z_class2_t filter{H5Z_CLASS_T_VERS, kLzfFilter, 0, 1, "lzf", nullptr, nullptr, undo_lzf};
   H5Zregister(&filter);
 }

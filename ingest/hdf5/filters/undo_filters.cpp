@@ -11,9 +11,9 @@ namespace weir {
 
 namespace {
 
-constexpr std::size_t kFirstRepeat = 32;  // smaller ones count literals
-constexpr std::size_t kLongRepeat = 7;    // its length goes on in a byte of its own
-constexpr std::size_t kShortest = 2;      // repeats are this much longer than they say
+constexpr std::size_t kFirstRepeat = 32;  // smaller control bytes count literals
+constexpr std::size_t kLongRepeat = 7;    // the length continues in the next byte
+constexpr std::size_t kShortest = 2;      // added to the stated length of a repeat
 
 }  // namespace
 
@@ -42,7 +42,7 @@ void unpack_lzf(std::span<const std::byte> stream, std::span<std::byte> bytes) {
     } else {
       const std::size_t back = ((control % kFirstRepeat) << 8U) + next() + 1;
       if (back > out) throw damaged("repeats what is not there");
-      // Byte by byte: what is repeated may reach into what it becomes.
+      // Copies byte by byte, because the repeated bytes may overlap the bytes being written.
       for (std::size_t i = 0; i < count; ++i) bytes[out + i] = bytes[out + i - back];
     }
     out += count;
@@ -52,10 +52,10 @@ void unpack_lzf(std::span<const std::byte> stream, std::span<std::byte> bytes) {
 
 namespace {
 
-/// Words summed before the sums are reduced: the second one stays below 2^47.
+/// The words that are summed before the sums are reduced. The second sum stays below 2^47.
 constexpr std::size_t kWordsAtATime = 32768;
 
-/// The remainder of ones' complement, which has two zeros: only a sum of nothing but zeros is 0.
+/// Returns the ones' complement remainder. Ones' complement has two zeros; only a sum of zeros alone gives 0.
 std::uint64_t reduce(std::uint64_t sum) { return sum == 0 ? 0 : (sum - 1) % 0xFFFFU + 1; }
 
 }  // namespace
@@ -90,7 +90,7 @@ std::span<std::byte> check_fletcher32(std::span<std::byte> bytes) {
     stored |= std::to_integer<std::uint32_t>(bytes[checked.size() + i]) << (8 * i);
   }
   const std::uint32_t computed = fletcher32(checked);
-  // HDF5 before 1.6.3 stored the two bytes of each half the other way round on little-endian machines.
+  // On little-endian machines, HDF5 before 1.6.3 stored the two bytes of each half in reversed order.
   const std::uint32_t reversed = (computed & 0x00FF00FFU) << 8U | (computed >> 8U & 0x00FF00FFU);
   if (stored != computed && stored != reversed) {
     throw Error(ErrorKind::input, cat("its checksum is ", stored, ", its bytes give ", computed));

@@ -15,7 +15,7 @@
 namespace weir {
 namespace {
 
-// None where it is no time.
+// Returns the times of `coordinate`; empty if it is no time.
 TimeValues times_of(hid_t coordinate) {
   check_attribute_bytes(coordinate);
   const std::string units = first_text_attribute(coordinate, "units");
@@ -23,7 +23,7 @@ TimeValues times_of(hid_t coordinate) {
   return {coordinate_values(coordinate), units, first_text_attribute(coordinate, "calendar")};
 }
 
-// Calls visit(coordinate, times) for each that is a time.
+// Calls visit(coordinate, times) for each coordinate that is a time.
 template <typename Visit>
 void for_each_time(const Hdf5Object& object, std::span<const Hdf5Handle> groups, const Visit& visit) {
   for (const std::string& name : split(first_text_attribute(object.handle.get(), "coordinates"), ' ')) {
@@ -36,7 +36,7 @@ void for_each_time(const Hdf5Object& object, std::span<const Hdf5Handle> groups,
   }
 }
 
-// Of a row of numbers, the name of its dimension.
+// Returns the name of the dimension of a coordinate that is a row of numbers.
 std::string dimension_of(hid_t coordinate, std::size_t count) {
   std::array<AxisPlace, 1> axis;
   axis[0].extent = static_cast<std::int64_t>(count);

@@ -1,4 +1,4 @@
-// Times by CF's auxiliary coordinates: variables that an array names, and that are no coordinates of an axis.
+// Reads times from CF's auxiliary coordinates: variables that an array names and that are not coordinates of an axis.
 #pragma once
 
 #include <span>
@@ -11,12 +11,13 @@
 
 namespace weir {
 
-/// Those that the attribute `coordinates` of `object` names, in its group or one around it, `groups` from the inside
-/// out (CF 5). Throws Error(input) where one cannot be read. The caller holds Hdf5Lock, here and below.
+/// Returns the times that the attribute `coordinates` of `object` names (CF 5). They lie in the object's group or in
+/// a group around it; `groups` lists these innermost first. Throws Error(input) if a time cannot be read. For both
+/// functions the caller holds Hdf5Lock.
 std::vector<TimeValues> auxiliary_times(const Hdf5Object& object, std::span<const Hdf5Handle> groups);
 
-/// Sets `unwritten` of an axis of time that may grow and has no coordinates, where such times along the same dimension
-/// are more than it has elements: NetCDF-4 writes the length of such a dimension nowhere else.
+/// Sets `unwritten` of a time axis that may grow and has no coordinates, if auxiliary times along the same dimension
+/// have more elements than the axis. NetCDF-4 writes the length of such a dimension nowhere else.
 void count_unwritten_times(const Hdf5Object& object, std::span<const Hdf5Handle> groups, std::span<AxisPlace> axes);
 
 }  // namespace weir

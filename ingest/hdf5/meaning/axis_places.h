@@ -1,5 +1,5 @@
-// What the axes of an array are called and where its elements lie along them,
-// from whatever convention the file follows.
+// The names of an array's axes and the positions of its elements along them, from any convention that the file
+// follows.
 #pragma once
 
 #include <cstdint>
@@ -11,9 +11,9 @@
 
 namespace weir {
 
-/// The axes of `object`, an array of `extents`, in the file's order, slowest first: by openPMD, then by
-/// NetCDF's coordinate variables, then by plain attributes, which count from the last axis that holds no components;
-/// what one leaves open the next may say. The caller holds Hdf5Lock.
+/// Returns the axes of `object`, an array of `extents`, in the file's order, slowest first. Three sources are tried
+/// in turn: openPMD, NetCDF's coordinate variables, and plain attributes, which count from the last axis without
+/// components. A later source fills in what an earlier source leaves open. The caller holds Hdf5Lock.
 std::vector<AxisPlace> axis_places(hid_t file, const Hdf5Object& object, std::span<const std::int64_t> extents);
 
 }  // namespace weir

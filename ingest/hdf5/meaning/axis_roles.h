@@ -1,4 +1,4 @@
-// Which axes of an array are a volume's, and which need a position each.
+// Decides which axes of an array make the volume, and which need one position each.
 #pragma once
 
 #include <array>
@@ -11,21 +11,21 @@
 
 namespace weir {
 
-/// The axes of an array of three or more, by their places among them, 0 the slowest.
+/// The axes of an array with three or more axes, by axis number, 0 the slowest.
 struct AxisRoles {
   std::array<std::size_t, 3> volume{};  ///< z, y, x
   std::vector<std::size_t> others;      ///< in the file's order
 
-  /// Whether some of the others lie between the volume's axes, or behind them.
+  /// Returns whether some of `others` lie between the volume's axes or after them.
   bool interleaved() const { return !others.empty() && others.back() > volume[0]; }
 };
 
-/// The volume's are the last three that are no time; the last three whatever they are where fewer are none. `axes` are
-/// those of an array, without one of components.
+/// Returns the roles: the volume has the last three axes that are no time. If fewer than three are no time, it has
+/// the last three axes of any kind. `axes` do not include an axis of components.
 AxisRoles axis_roles(std::span<const AxisPlace> axes);
 
-/// The same of all axes of an array, four or more where `components` are found; that of the components has neither
-/// role.
+/// Returns the roles as axis_roles() does, for all axes of an array: four or more if `components` are found. The axis
+/// of components gets neither role.
 AxisRoles axis_roles_beside(const ComponentAxis& components, std::span<const AxisPlace> axes);
 
 }  // namespace weir

@@ -33,7 +33,7 @@ Error several(const std::string& path, const std::vector<DatasetCandidate>& cand
   return several_volumes(path, "volumes", candidates.size(), commands);
 }
 
-// Whether the positions of --index, where there are any, and --component are for it.
+// Returns whether the candidate takes the given --component and, if any are given, the positions of --index.
 bool takes(const DatasetCandidate& candidate, const SourceOptions& options) {
   if (options.component && candidate.info.components == 1) return false;
   const std::size_t positions = options.index.size();
@@ -42,14 +42,14 @@ bool takes(const DatasetCandidate& candidate, const SourceOptions& options) {
          (components_as_x && positions == candidate.info.extents.size() - kVolumeRank);
 }
 
-// Axes, three at most, and values.
+// Returns the number of axes, three at most, and the number of values.
 std::pair<std::size_t, double> size_of(std::span<const AxisPlace> axes) {
   double values = 1;
   for (const AxisPlace& axis : axes) values *= static_cast<double>(axis.extent);
   return {std::min(axes.size(), kVolumeRank), values};
 }
 
-// Why a dataset is left out that would be a volume else; empty where it is none, or is one.
+// Returns why a dataset that otherwise is a volume cannot be converted; empty if it can, or if it is no volume.
 std::string volume_obstacle(const DatasetFacts& facts) {
   return facts.axes.size() < kVolumeRank || facts.over_time || facts.marks ? std::string() : facts.obstacle;
 }
@@ -60,7 +60,7 @@ Hdf5Object only_volume(hid_t file, const std::string& path, const SourceOptions&
   std::vector<DatasetCandidate> candidates;
   std::size_t datasets = 0;
   std::vector<LeftOut> left_out;
-  std::string obstacle;  // of the one that comes nearest to a volume: the most axes, then the most values
+  std::string obstacle;  // of the dataset nearest to a volume: most axes, then most values
   std::pair<std::size_t, double> nearest;
   const auto look_at = [&](std::string name, Hdf5Handle handle) {
     if (is_bare_dimension(handle.get())) return;

@@ -1,4 +1,4 @@
-// The dataset that is meant where the user names none.
+// Chooses the dataset if the user names none.
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace weir {
 
-/// The only dataset of `file`, whose path is `path`, that can be converted; where options.index or options.component is
-/// given, the only one that takes it, unless none does. Throws Error(usage), with the command for each, where there are
-/// several, Error(input), saying why, where there is none. Volumes that cannot be converted are said to options.notice.
-/// The caller holds Hdf5Lock.
+/// Returns the only dataset of `file`, with the path `path`, that can be converted. If `options.index` or
+/// `options.component` is given, returns the only dataset that takes it, unless none does. Throws Error(usage), with
+/// the command for each, if there are several, and Error(input), with the reason, if there is none. Reports volumes
+/// that cannot be converted to `options.notice`. The caller holds Hdf5Lock.
 Hdf5Object only_volume(hid_t file, const std::string& path, const SourceOptions& options);
 
 }  // namespace weir

@@ -54,7 +54,8 @@ std::string shape_obstacle(const DatasetFacts& facts) {
   return std::any_of(facts.axes.begin(), facts.axes.end(), is_empty) ? cat("empty: ", axes_text(facts.axes)) : "";
 }
 
-// A series of planes looks like a volume, and its steps of time like a spacing.
+// Returns an obstacle for a series of planes over time: it looks like a volume, and its time steps look like a
+// spacing.
 std::string time_obstacle(const DatasetFacts& facts) {
   const auto axes = std::span(facts.axes).first(facts.axes.size() - (facts.components.found() ? 1 : 0));
   if (axes.size() < kVolumeRank) return {};
@@ -64,7 +65,8 @@ std::string time_obstacle(const DatasetFacts& facts) {
              "); a volume has three axes of space");
 }
 
-// Of a dataset that was never written: whether what it reads as is a value, and none that stands for no data.
+// Returns whether a dataset that was never written reads as a real value, and not as a value that stands for missing
+// data.
 bool reads_as_data(hid_t object, const DatasetFacts& facts) {
   if (!facts.type || !facts.storage || !facts.storage->is_all_fill) return false;
   if (may_be_netcdf_fill(object, *facts.type, facts.storage->fill)) return false;

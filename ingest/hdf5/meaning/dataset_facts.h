@@ -1,5 +1,4 @@
-// All that is known of a dataset without reading its values: what listing and
-// opening share.
+// All facts about a dataset that need no reading of its values. Listing and opening share them.
 #pragma once
 
 #include <optional>
@@ -17,18 +16,18 @@ namespace weir {
 
 struct DatasetFacts {
   std::vector<AxisPlace> axes;  ///< slowest first
-  ComponentAxis components;     ///< the last of them, where it holds components
+  ComponentAxis components;     ///< the last axis, if it holds components
   std::string type_text;
-  std::optional<StoredType> type;  ///< of those that can be converted
+  std::optional<StoredType> type;  ///< set if weir can convert the type
   std::optional<Storage> storage;  ///< of a dataset
   std::optional<double> constant;  ///< of an openPMD constant component: its value
-  ValueMeaning meaning;            ///< where there is a type
-  std::string place_note;          ///< that the spacing is that of an attribute of no one meaning; else empty
-  std::string obstacle;            ///< why it cannot be converted; empty where it can
-  bool marks = false;              ///< an array of VTK's that is no field, and a volume only where it is named
-  bool over_time = false;          ///< that is all: one of the three axes is a time, and no length
+  ValueMeaning meaning;            ///< set if there is a type
+  std::string place_note;          ///< says that the spacing comes from an ambiguous attribute; otherwise empty
+  std::string obstacle;            ///< why the dataset cannot be converted; empty if it can
+  bool marks = false;              ///< a VTK array that is no field: it is converted only if the user names it
+  bool over_time = false;          ///< the only obstacle is that one of the three axes is a time and no length
 
-  /// "contiguous", "chunked 64 x 64 x 64, gzip", "constant 0".
+  /// Returns "contiguous", "chunked 64 x 64 x 64, gzip", "constant 0".
   std::string layout_text() const;
 };
 

@@ -28,8 +28,8 @@
 namespace weir {
 namespace {
 
-// The first scale of each axis; invalid where it has none, and with a note where it cannot be opened. Empty where the
-// attribute is not what it should be.
+// Returns the first scale of each axis. The handle is invalid if the axis has no scale, and invalid with a note if
+// the scale cannot be opened. Returns an empty vector if the attribute is malformed.
 std::vector<Hdf5Handle> scales_of(hid_t dataset, std::span<AxisPlace> axes) {
   const std::size_t rank = axes.size();
   if (!has_attribute(dataset, "DIMENSION_LIST")) return {};
@@ -63,14 +63,14 @@ std::string last_part(hid_t object) {
   return std::string(path.substr(path.rfind('/') + 1));
 }
 
-// One rounding of a coordinate, as a part of it.
+// Returns the relative rounding error of a coordinate.
 double precision_of(hid_t dataset) {
   const Hdf5Handle type(H5Dget_type(dataset));
   const bool single = H5Tget_class(type.get()) == H5T_FLOAT && H5Tget_precision(type.get()) <= 32;
   return single ? static_cast<double>(std::numeric_limits<float>::epsilon()) : std::numeric_limits<double>::epsilon();
 }
 
-// Which axes may grow without limit.
+// Returns which axes may grow without limit.
 std::vector<bool> growing_axes(hid_t dataset, std::size_t rank) {
   std::vector<bool> grow(rank, false);
   const Hdf5Handle space(H5Dget_space(dataset));
@@ -83,13 +83,13 @@ std::vector<bool> growing_axes(hid_t dataset, std::size_t rank) {
   return grow;
 }
 
-// NetCDF's unlimited dimension, of which a simulation has one: axis 0, and no other.
+// Returns whether only axis 0 may grow: a simulation has one unlimited NetCDF dimension.
 bool first_alone(const std::vector<bool>& grow) {
   return !grow.empty() && grow[0] && std::count(grow.begin(), grow.end(), true) == 1;
 }
 
-// NetCDF-4 sets the length of an unlimited dimension at its scale, and that of a variable at its last written record. A
-// scale that cannot grow is longer for another reason: it has the edges of cells.
+// NetCDF-4 sets the length of an unlimited dimension at its scale, and the length of a variable at its last written
+// record. If a scale that cannot grow is longer, it has another reason: the scale holds the edges of cells.
 std::int64_t unwritten_elements(hid_t scale, std::int64_t extent) {
   const Hdf5Handle space(H5Dget_space(scale));
   hsize_t elements = 0;
@@ -101,7 +101,7 @@ std::int64_t unwritten_elements(hid_t scale, std::int64_t extent) {
   return std::max<std::int64_t>(static_cast<std::int64_t>(elements) - extent, 0);
 }
 
-// The library unpacks a chunk whole, however few elements of it there are.
+// The library always unpacks a whole chunk, even to read few of its elements.
 bool has_too_large_chunks(const Storage& storage) {
   return storage.chunk.size() == 1 && !storage.filters.empty() && storage.chunk[0] > kMaxCoordinateChunk;
 }
@@ -176,7 +176,7 @@ std::vector<double> coordinate_values(hid_t dataset) {
   }
   std::vector<double> values = decode_doubles(bytes, meant.scalar, meant.big_endian, meaning.mapping);
   if (std::none_of(values.begin(), values.end(), [](double v) { return std::isnan(v); })) return values;
-  // What an attribute calls missing in the midst of a row that rises or falls is none.
+  // A value inside a rising or falling row is valid, even if an attribute calls it missing.
   ValueMapping all = meaning.mapping;
   all.missing.clear();
   std::vector<double> kept = decode_doubles(bytes, meant.scalar, meant.big_endian, all);

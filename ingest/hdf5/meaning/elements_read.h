@@ -1,4 +1,4 @@
-// Which elements of an array a volume of it, or a region of that, has.
+// Computes which elements of an array are read for a volume or for a region of it.
 #pragma once
 
 #include <optional>
@@ -12,11 +12,11 @@
 
 namespace weir {
 
-/// Voxels of the slice's volume, in the order that it is stored in; of a region of it, which counts along axes as they
-/// rise, those in that. Of a region that lies outside, which is refused later, all.
+/// Returns the voxels of the slice's volume in stored order. With a region, which counts along rising axes, returns
+/// the voxels in the region. For a region outside the volume, which is refused later, returns all voxels.
 Box voxels_read(const VolumeSlice& slice, const std::optional<VolumeRegion>& region);
 
-/// Of an array of `axes`: those of voxels_read(), with the components that are asked for.
+/// Returns the elements of an array of `axes` that hold the voxels of voxels_read(), with the requested components.
 ElementRange elements_read(std::span<const AxisPlace> axes, const VolumeSlice& slice,
                            const std::optional<VolumeRegion>& region);
 

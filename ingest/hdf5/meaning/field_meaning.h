@@ -1,4 +1,4 @@
-// What a dataset's attributes and coordinates say of a volume for its sidecar: long name, time, irregular axes.
+// Reads details of a volume for its sidecar from attributes and coordinates: long name, time, irregular axes.
 #pragma once
 
 #include <span>
@@ -11,13 +11,15 @@
 
 namespace weir {
 
-/// Details of the volume `slice` of `object`, an array of `axes` (slowest first) in `file`. The time is the coordinate
-/// of a leading axis; else what CF's attribute `coordinates` names, of units "... since ..."; else a VTKHDF file's;
-/// else that of openPMD's iteration, in seconds. The caller holds Hdf5Lock.
+/// Returns the details of the volume `slice` of `object`, an array of `axes` (slowest first) in `file`. The time
+/// comes from the first of these that exists: the coordinate of a leading axis, CF's attribute `coordinates` with
+/// units "... since ...", a VTKHDF file's time, or the time of openPMD's iteration in seconds. The caller holds
+/// Hdf5Lock.
 FieldDetails field_details(hid_t file, const Hdf5Object& object, std::span<const AxisPlace> axes,
                            const VolumeSlice& slice);
 
-/// Attribute long_name, else WRF's description; empty where there is neither. The caller holds Hdf5Lock.
+/// Returns the attribute long_name, otherwise WRF's description; empty if there is neither. The caller holds
+/// Hdf5Lock.
 std::string long_name_of(hid_t object);
 
 }  // namespace weir

@@ -33,7 +33,7 @@ std::string joined(const std::vector<std::string>& names) {
   return text;
 }
 
-// Where the link `name` itself is there and what it leads to is not: what it says; else empty.
+// If the link `name` exists but its target does not, returns the target that the link states; otherwise empty.
 std::string dangling_target(hid_t file, const std::string& name) {
   H5L_info_t info;
   if (H5Lget_info(file, name.c_str(), &info, H5P_DEFAULT) < 0) return {};
@@ -85,7 +85,7 @@ Hdf5Object find_dataset(hid_t file, const std::string& path, const std::string& 
   if (!found.handle) {
     H5L_info_t info;
     const std::string reason = hdf5_reason();
-    // A hard link is there, but what it leads to cannot be read.
+    // A hard link exists, but its target cannot be read.
     if (H5Lget_info(file, found.name.c_str(), &info, H5P_DEFAULT) >= 0 && info.type == H5L_TYPE_HARD) {
       throw Error(ErrorKind::input, cat(found.where(), ": cannot be opened: ", reason, "; the file is damaged"));
     }

@@ -1,4 +1,4 @@
-// The dataset a user names, or an error that says what there is.
+// Finds the dataset that a user names, or fails with an error that lists what the file has.
 #pragma once
 
 #include <cstddef>
@@ -11,14 +11,14 @@
 
 namespace weir {
 
-/// Opens the dataset (or openPMD constant) `name` of `file`, whose path is `path`; a missing first slash is
-/// added. Follows soft and external links. Throws Error(input), naming like and other datasets, where it is
-/// missing, a group or a link that leads nowhere. The caller holds Hdf5Lock.
+/// Opens the dataset (or openPMD constant) `name` of `file`, with the path `path`, and adds a missing first slash.
+/// Follows soft and external links. Throws Error(input), naming similar and other datasets, if `name` is missing, a
+/// group, or a link that leads nowhere. The caller holds Hdf5Lock.
 Hdf5Object find_dataset(hid_t file, const std::string& path, const std::string& name);
 
-/// Those of `names` (paths with slashes) whose last part is that of `wanted` or differs from it by case or by
-/// up to two insertions, deletions and replacements of characters (Levenshtein's distance; a third of
-/// its length at most), nearest first, `count` at most.
+/// Returns at most `count` of `names` (paths with slashes) with a last part like the last part of `wanted`, nearest
+/// first. Parts are alike if they are equal, differ only by case, or differ by up to two insertions, deletions and
+/// replacements of characters (Levenshtein's distance; at most a third of the length).
 std::vector<std::string> near_names(std::string_view wanted, std::span<const std::string> names, std::size_t count);
 
 }  // namespace weir

@@ -13,7 +13,7 @@
 namespace weir {
 namespace {
 
-// One value per axis, in the file's order; empty where there are not as many.
+// Returns one value per axis, in the file's order; empty if the number of values differs.
 template <typename T>
 std::vector<T> per_axis(std::vector<T> values, std::size_t axes, bool fastest_first) {
   if (values.size() != axes) return {};
@@ -21,14 +21,14 @@ std::vector<T> per_axis(std::vector<T> values, std::size_t axes, bool fastest_fi
   return values;
 }
 
-// The record of a mesh: `object`, or the group around it; invalid where neither is one.
+// Returns the record of a mesh: `object`, or the group around it; invalid if neither is a record.
 hid_t mesh_record(hid_t object, std::span<const Hdf5Handle> groups) {
   if (has_attribute(object, "gridSpacing")) return object;
   return !groups.empty() && has_attribute(groups[0].get(), "gridSpacing") ? groups[0].get() : H5I_INVALID_HID;
 }
 
-// How long after its iteration the record is defined, `object` or the group around it, as those of staggered meshes
-// are.
+// Returns the time from the iteration to the record (`object` or the group around it). Staggered meshes have such
+// offsets.
 double time_offset(hid_t object, std::span<const Hdf5Handle> groups) {
   std::vector<double> offset = number_attribute(object, "timeOffset");
   if (offset.empty() && !groups.empty()) offset = number_attribute(groups[0].get(), "timeOffset");
@@ -48,7 +48,7 @@ void place_by_openpmd(hid_t object, std::span<const Hdf5Handle> groups, std::spa
   const auto spacing = numbers(record, "gridSpacing");
   const auto offset = numbers(record, "gridGlobalOffset");
   const auto position = numbers(object, "position");
-  // Version 1 has one unit, version 2 one for each axis.
+  // openPMD 1 has one unit, openPMD 2 has one unit for each axis.
   std::vector<double> metres = number_attribute(record, "gridUnitSI");
   if (metres.size() <= 1) metres.assign(axes.size(), metres.empty() ? 1.0 : metres[0]);
   metres = per_axis(std::move(metres), axes.size(), fastest_first);

@@ -72,7 +72,7 @@ void fill_places(hid_t dataset, std::span<const Hdf5Handle> groups, std::span<co
   }
   if (!found) return;
   for (std::size_t i = 0; i < axes.size(); ++i) {
-    // A note says that the coordinates are others, or taken as indices.
+    // An axis with a note has other coordinates, or its coordinates are taken as indices.
     if (axes[i].*place || axes[i].is_time || !axes[i].note.empty()) continue;
     axes[i].*place = found->values.at(i);
     axes[i].*from = cat("attribute ", found->name->name, where);

@@ -41,7 +41,7 @@ std::optional<StoredValue> netcdf_default_fill(ScalarType type) {
   }
 }
 
-// Libraries before 4.4.1 (2016) leave no mark on the file, but on most variables with dimensions.
+// NetCDF libraries before 4.4.1 (2016) leave no mark on the file, but mark most variables that have dimensions.
 bool is_netcdf(hid_t object) {
   for (const char* name : {"_Netcdf4Coordinates", "_Netcdf4Dimid"}) {
     if (has_attribute(object, name)) return true;
@@ -50,20 +50,20 @@ bool is_netcdf(hid_t object) {
   return root && (has_attribute(root.get(), "_NCProperties") || has_attribute(root.get(), "_nc3_strict"));
 }
 
-// Nobody else chooses such a number for a fill value.
+// Only NetCDF chooses its floating-point fill numbers as fill values.
 bool is_netcdfs_own(ScalarType type) { return type == ScalarType::float32 || type == ScalarType::float64; }
 
-// Whether the stored value `fill` is `value`.
+// Returns whether the stored value `fill` is `value`.
 bool equals(std::span<const std::byte> fill, const StoredType& type, const StoredValue& value) {
   float read = 0;
   decode_values(fill, type.scalar, type.big_endian, {1, 0, {value}}, {&read, 1});
   return is_missing(read);
 }
 
-// Of the attribute _Unsigned; empty where there is none.
+// Returns the attribute _Unsigned; empty if it is absent.
 std::string unsigned_text(hid_t object) { return first_text_attribute(object, "_Unsigned"); }
 
-// The attribute as one finite number; `fallback` where it is absent.
+// Returns the attribute as one finite number; `fallback` if the attribute is absent.
 double packing(hid_t object, const char* name, double fallback, std::string& obstacle) {
   if (!has_attribute(object, name)) return fallback;
   const std::vector<StoredValue> values = stored_value_attribute(object, name);
@@ -74,8 +74,8 @@ double packing(hid_t object, const char* name, double fallback, std::string& obs
   return fallback;
 }
 
-// Why the attribute, whose numbers stand for no data, does not say which those are; empty where it does. `values` are
-// those that were read.
+// Returns why the attribute does not say clearly which numbers stand for missing data; empty if it does. `values` is
+// the number of values that were read.
 std::string missing_obstacle(hid_t object, const char* name, std::size_t values) {
   const std::size_t count = attribute_values(object, name);
   if (count > kMaxAttributeValues) {
@@ -121,7 +121,7 @@ ValueMeaning value_meaning(hid_t object, const StoredType& type, std::span<const
     const std::string obstacle = missing_obstacle(object, name, values.size());
     if (!obstacle.empty()) meaning.obstacle = obstacle;
   }
-  // Beside missing_value, too: what nobody has written has it.
+  // The default fill applies even if missing_value is set, because unwritten elements hold it.
   const auto by_netcdf = netcdf_default_fill(type.scalar);
   if (!has_attribute(object, "_FillValue") && by_netcdf && !fill.empty() && equals(fill, type, *by_netcdf) &&
       (is_netcdfs_own(type.scalar) || is_netcdf(object))) {

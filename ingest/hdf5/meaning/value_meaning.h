@@ -1,4 +1,4 @@
-// What a dataset's attributes say about its values: units, packing, missing data.
+// Reads what a dataset's attributes say about its values: units, packing, missing data.
 #pragma once
 
 #include <hdf5.h>
@@ -19,21 +19,23 @@ struct ValueMeaning {
   std::optional<double> unit_si;  ///< of openPMD
   std::string obstacle;           ///< an attribute that makes the values unclear; else empty
   bool unpacks = true;            ///< scale and offset are clear
-  std::string note;               ///< attributes that nothing is made of; else empty
+  std::string note;               ///< attributes that weir ignores; else empty
 };
 
-/// `type`, or of integers whose attribute _Unsigned says that they are unsigned ones (NetCDF-3 had none), or not
-/// (OPeNDAP has no signed bytes), as these. The caller holds Hdf5Lock.
+/// Returns the type that the values mean: `type`, or for integers with an attribute _Unsigned the unsigned or signed
+/// type that the attribute says (NetCDF-3 had no unsigned integers, OPeNDAP has no signed bytes). The caller holds
+/// Hdf5Lock.
 StoredType type_as_meant(hid_t object, StoredType type);
 
-/// By the conventions of NetCDF and CF: _FillValue and missing_value are missing, values are packed by scale_factor
-/// and add_offset. In a NetCDF-4 file values equal to NetCDF's default fill are missing too where that is
-/// what unwritten ones read as; of one byte nothing is, as in NetCDF's own tools. `fill` is the dataset's own fill
-/// value as stored, empty where the user who wrote the file set none. The caller holds Hdf5Lock.
+/// Returns the meaning by the conventions of NetCDF and CF: values equal to _FillValue or missing_value are missing,
+/// and scale_factor and add_offset pack the values. In a NetCDF-4 file values equal to NetCDF's default fill are
+/// missing too, if unwritten values read as that fill. One-byte values have no default fill, as in NetCDF's own
+/// tools. `fill` is the dataset's own fill value as stored, empty if the writer of the file set none. The caller
+/// holds Hdf5Lock.
 ValueMeaning value_meaning(hid_t object, const StoredType& type, std::span<const std::byte> fill);
 
-/// Whether `fill`, of a dataset that was never written, may be NetCDF's own choice: its library sets one for each
-/// variable. The caller holds Hdf5Lock.
+/// Returns whether `fill`, from a dataset that was never written, may be NetCDF's own choice: its library sets a fill
+/// value for each variable. The caller holds Hdf5Lock.
 bool may_be_netcdf_fill(hid_t object, const StoredType& type, std::span<const std::byte> fill);
 
 }  // namespace weir

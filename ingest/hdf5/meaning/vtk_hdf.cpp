@@ -28,7 +28,7 @@ bool lies_in(const Hdf5Object& object, std::string_view group) {
   return parent.substr(parent.rfind('/') + 1) == group;
 }
 
-// The group of the image that `object` is an array of points or cells of; invalid where it is none.
+// Returns the group of the image that has `object` as an array of points or cells; invalid if there is none.
 hid_t image_of(const Hdf5Object& object, std::span<const Hdf5Handle> groups) {
   const bool of_image = groups.size() >= 2 && (lies_in(object, kCells) || lies_in(object, kPoints)) &&
                         has_attribute(groups[1].get(), "WholeExtent");
@@ -43,7 +43,7 @@ std::vector<double> finite_numbers(hid_t image, const std::string& name) {
   return finite ? values : std::vector<double>();
 }
 
-// The times of the elements along an array's slowest axis; empty where some have none.
+// Returns the times of the elements along an array's slowest axis; empty if some elements have no time.
 std::vector<double> times_of_elements(const Hdf5Object& object, hid_t image, std::size_t elements) {
   const std::vector<double> times = finite_numbers(image, kStepTimes);
   const std::string array = object.name.substr(object.name.rfind('/') + 1);

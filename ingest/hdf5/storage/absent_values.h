@@ -1,4 +1,4 @@
-// Values that a dataset does not have, as messages say it.
+// Text about values that a dataset does not have, for messages.
 #pragma once
 
 #include <string>
@@ -10,8 +10,9 @@ namespace weir {
 struct AbsentValues {
   std::string what;  ///< "4 of its 8 chunks"
   bool one = false;
-  std::string first = {};  ///< " (the first at 0, 0, 16)", where that is known
-  bool no_source = false;  ///< of a virtual dataset; else never written
+  std::string first = {};  ///< " (the first at 0, 0, 16)", if known
+  bool no_source =
+      false;  ///< they belong to a virtual dataset without a source there; otherwise they were never written
 
   /// "4 of its 8 chunks were never written".
   std::string text() const {

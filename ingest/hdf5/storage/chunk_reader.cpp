@@ -10,7 +10,7 @@
 namespace weir {
 namespace {
 
-/// HDF5's own limit is 2^32 - 1; what chunks can grow by on their way through filters stays below it too.
+/// HDF5's own limit is 2^32 - 1. This limit leaves room for chunks that grow while they pass through filters.
 constexpr std::uint64_t kMostChunkBytes = (std::uint64_t{1} << 32U) - (std::uint64_t{1} << 25U);
 
 std::size_t chunk_bytes_of(const ChunkStore& store, ScalarType type) {
@@ -25,13 +25,13 @@ std::size_t chunk_bytes_of(const ChunkStore& store, ScalarType type) {
   return static_cast<std::size_t>(bytes);
 }
 
-/// Of the three axes behind the leading ones.
+/// Returns the elements along the three axes after the leading axes.
 Index3 volume_axes(const ChunkedSlice& slice, const std::vector<hsize_t>& elements) {
   const auto at = [&](std::size_t axis) { return static_cast<std::int64_t>(elements[slice.index.size() + axis]); };
   return {at(2), at(1), at(0)};
 }
 
-/// Checks what ChunkedSlice promises: everything below counts on it.
+/// Checks the conditions that ChunkedSlice documents. All code below relies on them.
 void check_slice(const ChunkedSlice& slice, const std::vector<hsize_t>& chunk) {
   const bool vectors = slice.components.count > 1;
   if (chunk.size() == slice.index.size() + kSpaceAxes + (vectors ? 1 : 0) &&
@@ -44,7 +44,7 @@ void check_slice(const ChunkedSlice& slice, const std::vector<hsize_t>& chunk) {
                   chunk.size(), " axes, fill value of ", slice.fill.size(), " bytes"));
 }
 
-/// Bytes before the slice in a chunk that is several thick along leading axes.
+/// Returns the bytes before the slice in a chunk that is several elements thick along leading axes.
 std::size_t slice_offset(const ChunkedSlice& slice, const std::vector<hsize_t>& chunk) {
   std::size_t position = 0;
   for (std::size_t axis = 0; axis < slice.index.size(); ++axis) {
@@ -57,7 +57,7 @@ ScratchSize scratch_size(const FilterPipeline& pipeline, std::size_t chunk_bytes
   return {chunk_bytes, most_stored_bytes(pipeline, chunk_bytes), needs_other_buffer(pipeline), 0};
 }
 
-/// Of a checked slice.
+/// Checks the slice and returns its chunked volume.
 ChunkedVolume chunked_volume(const ChunkedSlice& slice, const ChunkLayout& layout) {
   check_slice(slice, layout.chunk);
   return {slice.name,

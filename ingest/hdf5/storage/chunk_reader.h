@@ -1,6 +1,6 @@
-// Boxes of a chunked HDF5 dataset, decoded in parallel. The library runs its
-// filters under one global lock; here only the fetching of a stored chunk is
-// under it, and inflating, unshuffling and converting run on TBB's workers (ingest/chunks).
+// Reads boxes of a chunked HDF5 dataset and decodes its chunks in parallel. The library runs its filters under one
+// global lock. Here only the fetch of a stored chunk holds that lock; inflating, unshuffling and converting run on
+// TBB's workers (ingest/chunks).
 #pragma once
 
 #include <hdf5.h>
@@ -22,26 +22,26 @@
 
 namespace weir {
 
-/// A three-dimensional slice of a chunked dataset: its last three axes, at one position on the others; or the three
-/// before the last, which has the components of each voxel.
+/// A three-dimensional slice of a chunked dataset, at one position on the leading axes. The slice has the dataset's
+/// last three axes, or the three axes before the last if the last axis holds the components of each voxel.
 struct ChunkedSlice {
   hid_t dataset = H5I_INVALID_HID;        ///< open, chunked; outlives the reader, which does not close it
   std::string name;                       ///< "PATH: DATASET": messages begin with it
-  std::vector<std::int64_t> index;        ///< position on each leading axis, slowest first; one for each, inside
-  ScalarType type = ScalarType::float32;  ///< whose size is the stored type's
+  std::vector<std::int64_t> index;        ///< one position inside each leading axis, slowest first
+  ScalarType type = ScalarType::float32;  ///< has the size of the stored type
   bool big_endian = false;
   ValueMapping mapping;
-  std::vector<std::byte> fill;      ///< one stored value: what voxels of chunks that the file does not hold read as
-  VoxelComponents components = {};  ///< more than one: along the last axis, all of them in each chunk
-  bool all_stored = false;          ///< the file says that it holds every chunk: one that is missing is damage
+  std::vector<std::byte> fill;      ///< one stored value, read for voxels of chunks that the file does not hold
+  VoxelComponents components = {};  ///< if several: along the last axis, all in each chunk
+  bool all_stored = false;          ///< the file says that it holds every chunk, so a missing chunk is damage
 
   std::size_t voxel_bytes() const { return scalar_bytes(type) * static_cast<std::size_t>(components.count); }
 };
 
 /// What reading has done so far.
 struct ChunkCounts {
-  std::uint64_t decoded = 0;      ///< chunks, each time one is
-  std::uint64_t unallocated = 0;  ///< chunks asked for that the file does not hold, each time
+  std::uint64_t decoded = 0;      ///< decoded chunks; a chunk decoded twice counts twice
+  std::uint64_t unallocated = 0;  ///< requests for chunks that the file does not hold
   std::uint64_t bytes_read = 0;   ///< stored bytes of the chunks decoded
 };
 
@@ -49,12 +49,11 @@ struct ChunkCounts {
 /// Thread-safe.
 class ChunkReader final : private StoredChunks {
  public:
-  /// Whether all filters of a chunked dataset are ones that are run here (own_pipeline). The caller holds
-  /// the lock.
+  /// Returns whether weir itself can undo all filters of a chunked dataset (own_pipeline). The caller holds the lock.
   static bool decodes(hid_t dataset);
 
-  /// Decodes at most as many chunks at a time as ScratchPool allows for `memory` bytes, and throws what it
-  /// throws; Error(input) where a chunk has no sensible size. `slice.dataset` satisfies decodes().
+  /// Decodes at most as many chunks at a time as ScratchPool allows for `memory` bytes. Throws ScratchPool's errors,
+  /// and Error(input) if a chunk has no sensible size. `slice.dataset` satisfies decodes().
   ChunkReader(ChunkedSlice slice, std::uint64_t memory);
 
   /// Chunk extent in voxels and bytes per voxel, for the block plan; chunks begin at index 0.
@@ -63,8 +62,8 @@ class ChunkReader final : private StoredChunks {
   std::uint64_t working_bytes() const { return scratch_.bytes(); }
   ChunkCounts counts() const;
 
-  /// Reads `box` (voxels from the slice's first, inside it, not empty) into `values`, x fastest. Every
-  /// chunk it touches is decoded once. Throws Error(input), naming dataset and chunk, where a chunk cannot
+  /// Reads `box` (voxels counted from the slice's first, inside the slice, not empty) into `values`, x fastest.
+  /// Decodes every chunk that the box touches once. Throws Error(input), naming dataset and chunk, if a chunk cannot
   /// be fetched, fails its checksum, or decodes to more or fewer bytes than a chunk has.
   ConversionLoss read(const Box& box, std::span<float> values) { return boxes_.read(box, values); }
 

@@ -12,16 +12,16 @@
 namespace weir {
 namespace {
 
-/// What libhdf5 1.10 calls a failure is an answer: the index was read and does not name the chunk. Later ones
-/// say that it has 0 bytes.
+/// libhdf5 1.10 reports this as a failure, but it is an answer: the index was read and does not name the chunk. Later
+/// versions return 0 bytes for such a chunk.
 constexpr std::string_view kNotAllocated = "chunk storage is not allocated";
 
 std::string chunk_place(const std::string& name, std::span<const hsize_t> corner) {
   return cat(name, ": chunk at ", corner_text(corner));
 }
 
-// Of chunks without filters, whose length the library tells by their extents, and of which it reads as many bytes as
-// the index says: a B-tree of version 1 has a length for each. Other indices have none.
+// Checks the lengths of chunks without filters. The library tells such a chunk's length by its extents, but reads as
+// many bytes as the index says. Only a version 1 B-tree stores a length for each chunk; other indices store none.
 void check_lengths(hid_t dataset, hid_t space, const std::vector<hsize_t>& chunk, const std::string& name) {
   H5D_chunk_index_t index = H5D_CHUNK_IDX_BTREE;
   H5Dget_chunk_index_type(dataset, &index);
@@ -84,7 +84,7 @@ ChunkStore::ChunkStore(hid_t dataset, std::string name)
 std::optional<ChunkStore::Chunk> ChunkStore::fetch(std::span<const hsize_t> corner, std::span<std::byte> into) const {
   const auto where = [&] { return chunk_place(name_, corner); };
   const Hdf5ReadLock lock(crash_line_);
-  // The library keeps the place of the last chunk it looked up: both calls see the same one.
+  // The library remembers the last chunk that it looked up, so both calls see the same chunk.
   const hsize_t bytes = stored_chunk_bytes(dataset_, corner, name_);
   if (bytes == 0) return std::nullopt;
   if (bytes > into.size()) {

@@ -1,4 +1,4 @@
-// A volume that is one value everywhere, as openPMD's constant components are.
+// A volume with the same value everywhere, such as an openPMD constant component.
 #pragma once
 
 #include <memory>
@@ -7,7 +7,8 @@
 
 namespace weir {
 
-/// `value`, which is counted as one of float64, in all of info's domain; info.mapping is applied.
+/// Returns a source that is `value` in the whole domain of `info`. The value counts as float64, and info.mapping is
+/// applied.
 std::unique_ptr<VolumeSource> make_constant_source(double value, SourceInfo info);
 
 }  // namespace weir

@@ -36,7 +36,7 @@ class ExternalBoxes final : public StoredBoxes {
   }
 
  private:
-  // `at`: byte of the dataset.
+  // `at` is a byte offset in the dataset.
   void read_at(std::uint64_t at, std::span<std::byte> into) {
     std::uint64_t part_begin = 0;
     for (std::size_t i = 0; !into.empty(); part_begin += parts_[i++].bytes) {
@@ -51,7 +51,7 @@ class ExternalBoxes final : public StoredBoxes {
     }
   }
 
-  // One at a time: there may be more parts than files may be open.
+  // Keeps one part open at a time, because there may be more parts than a process may open files.
   InputFile& open_part(std::size_t i) {
     if (!file_ || open_ != i) file_ = std::make_unique<InputFile>(parts_[i].path, mode_);
     open_ = i;

@@ -22,7 +22,7 @@ class PlanarBoxes final : public StoredBoxes {
     }
     return all;
   }
-  // Parts work one at a time, and the buffer is a part of what a box takes.
+  // The parts work one at a time, so only the largest part counts. The buffer counts as part of a box's memory.
   std::uint64_t working_bytes() const override {
     std::uint64_t most = 0;
     for (const auto& part : parts_) most = std::max(most, part->working_bytes());

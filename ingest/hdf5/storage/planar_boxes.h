@@ -1,4 +1,4 @@
-// Vectors whose components are volumes of their own, one behind the other, as voxels of several numbers.
+// Joins vector components that are stored as separate volumes, one behind the other, into voxels of several numbers.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +9,8 @@
 
 namespace weir {
 
-/// Boxes of `parts.size()` numbers a voxel, side by side, the one at i from parts[i]: parts of the same chunks, one or
-/// more, of `value_bytes` a number. Each part is read once for each box.
+/// Returns boxes with `parts.size()` numbers for each voxel, side by side; number i comes from parts[i]. There are
+/// one or more parts, all with the same chunks and `value_bytes` bytes a number. Each part is read once for each box.
 std::unique_ptr<StoredBoxes> make_planar_boxes(std::vector<std::unique_ptr<StoredBoxes>> parts,
                                                std::size_t value_bytes);
 

@@ -26,7 +26,7 @@ StorageKind kind_of(hid_t creation) {
   }
 }
 
-// Names the filters, and the first one that neither weir nor the library can undo as the obstacle.
+// Records the names of the filters. The first filter that neither weir nor the library can undo becomes the obstacle.
 void look_at_filters(hid_t creation, Storage& storage) {
   const bool own = own_pipeline(creation).has_value();
   for (int i = 0; i < H5Pget_nfilters(creation); ++i) {
@@ -52,7 +52,8 @@ void look_at_fill(hid_t creation, hid_t type, Storage& storage) {
   if (H5Pget_fill_value(creation, type, storage.fill.data()) < 0) storage.fill_is_set = false;
 }
 
-// Where it is never to be written, the library leaves what is in memory.
+// Returns whether the library reads unwritten elements as the fill value. With H5D_FILL_TIME_NEVER it leaves the
+// memory as it is.
 bool gives_fill(hid_t creation) {
   H5D_fill_time_t time = H5D_FILL_TIME_NEVER;
   return H5Pget_fill_time(creation, &time) >= 0 && time != H5D_FILL_TIME_NEVER;
@@ -72,14 +73,14 @@ Storage storage_of(hid_t dataset) {
     storage.chunk.resize(static_cast<std::size_t>(rank));
     if (H5Pget_chunk(creation.get(), rank, storage.chunk.data()) != rank) storage.chunk.clear();
   }
-  // Of text and other types without a fixed size it is of no use.
+  // A fill value of text or another type without a fixed size is of no use.
   const H5T_class_t kind = H5Tget_class(type.get());
   if (kind == H5T_INTEGER || kind == H5T_FLOAT || kind == H5T_ENUM) look_at_fill(creation.get(), type.get(), storage);
   if (storage.obstacle.empty() && H5Sget_simple_extent_npoints(space.get()) > 0 &&
       (storage.kind == StorageKind::contiguous || storage.kind == StorageKind::chunked) &&
       H5Dget_storage_size(dataset) == 0) {
     hsize_t chunks = 0;
-    // A size of 0 is also what an index that cannot be read comes to.
+    // A size of 0 may also mean that the chunk index cannot be read.
     if (storage.kind == StorageKind::chunked && H5Dget_num_chunks(dataset, space.get(), &chunks) < 0) {
       storage.obstacle = cat(kUncountedChunks, ": ", hdf5_reason());
     } else {

@@ -1,5 +1,4 @@
-// How a dataset lies in its file: layout and filters, and what keeps its values
-// from being read.
+// How a dataset is stored in its file: layout, filters, and the reason if its values cannot be read.
 #pragma once
 
 #include <hdf5.h>
@@ -10,7 +9,7 @@
 
 namespace weir {
 
-/// What messages say of a dataset whose index of chunks cannot be read; the library's reason follows.
+/// The message for a dataset with an unreadable chunk index; the library's reason follows.
 inline constexpr const char* kUncountedChunks = "its chunks cannot be counted, the file is damaged or being written";
 
 enum class StorageKind {
@@ -23,14 +22,14 @@ enum class StorageKind {
 
 struct Storage {
   StorageKind kind = StorageKind::contiguous;
-  std::vector<hsize_t> chunk;        ///< elements along each axis, slowest first; empty where not chunked
+  std::vector<hsize_t> chunk;        ///< elements along each axis, slowest first; empty if not chunked
   std::vector<std::string> filters;  ///< in the order of writing: "shuffle", "gzip"
-  std::vector<std::byte> fill;       ///< one stored value: what unwritten elements read as
-  bool fill_is_set = false;          ///< whoever wrote the file chose it
+  std::vector<std::byte> fill;       ///< one stored value, read for unwritten elements
+  bool fill_is_set = false;          ///< the writer of the file chose `fill`
   std::string obstacle;              ///< no value ever written, or a filter that is not there; else empty
-  bool is_all_fill = false;          ///< no value was ever written, that is the obstacle, and `fill` is set for that
+  bool is_all_fill = false;          ///< no value was ever written (this is the obstacle), and `fill` is set
 
-  /// "contiguous", "chunked 64 x 64 x 64, shuffle, gzip".
+  /// Returns "contiguous", "chunked 64 x 64 x 64, shuffle, gzip".
   std::string text() const;
 };
 

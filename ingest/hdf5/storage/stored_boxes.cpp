@@ -18,7 +18,8 @@ constexpr std::uint64_t kBufferShare = 16;  // of --memory, for the buffer
 
 bool is_chunked(const StoredBoxes& boxes) { return boxes.chunk() != Index3{}; }
 
-// What the library keeps for the chunks of a read of so many bytes, each chunk of which has `chunk_bytes`.
+// Returns the bytes that the library keeps for the chunks of a read of `bytes` bytes; each chunk has `chunk_bytes`
+// bytes.
 std::uint64_t bytes_of_chunks(const StoredBoxes& boxes, std::uint64_t bytes, std::uint64_t chunk_bytes) {
   if (!is_chunked(boxes)) return 0;
   return std::clamp<std::uint64_t>(bytes / chunk_bytes, 1, kMostChunks) * kBytesOfChunk;
@@ -65,7 +66,7 @@ class StoredBoxSource final : public VolumeSource {
     boxes_->read(part, stored);
     bytes_read_ += stored.size();
     const Index3 e = part.extent();
-    // Runs that are contiguous in the box as well.
+    // Joins runs that are contiguous in the box as well.
     const bool rows = e.x == box.extent().x;
     const bool planes = rows && e.y == box.extent().y;
     const std::int64_t run = planes ? volume(e) : rows ? e.x * e.y : e.x;
@@ -105,7 +106,7 @@ std::unique_ptr<VolumeSource> make_stored_box_source(std::unique_ptr<StoredBoxes
                                                      bool big_endian, std::uint64_t memory, const std::string& where,
                                                      const VoxelComponents& components) {
   const std::uint64_t voxel_bytes = scalar_bytes(info.type) * static_cast<std::uint64_t>(components.count);
-  // A chunk may reach beyond the volume; what is asked for does not.
+  // A chunk may reach beyond the volume; the requested voxels do not.
   const std::uint64_t chunk_bytes =
       static_cast<std::uint64_t>(volume(min(max(boxes->chunk(), {1, 1, 1}), info.extent))) * voxel_bytes;
   const std::uint64_t ample = std::min(kAmpleBuffer, memory / kBufferShare) / voxel_bytes * voxel_bytes;

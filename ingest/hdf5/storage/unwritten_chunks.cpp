@@ -10,7 +10,8 @@
 namespace weir {
 namespace {
 
-// More are not looked up one by one, for which so many take some seconds: a damaged file may say any number.
+// The most chunks that are looked up one by one, which takes some seconds. A damaged file may state any number of
+// chunks.
 constexpr std::uint64_t kMostLookedUp = std::uint64_t{1} << 20U;
 
 std::vector<hsize_t> extent_of(hid_t space, std::size_t rank) {
@@ -20,7 +21,7 @@ std::vector<hsize_t> extent_of(hid_t space, std::size_t rank) {
   return extent;
 }
 
-// How many chunks of `chunk` elements have elements in the range; as many as 64 bits count.
+// Returns how many chunks of `chunk` elements have elements in the range, at most the largest 64-bit number.
 std::uint64_t chunks_in(const ElementRange& range, const std::vector<hsize_t>& chunk) {
   std::uint64_t count = 1;
   for (std::size_t axis = 0; axis < chunk.size(); ++axis) {
@@ -30,7 +31,8 @@ std::uint64_t chunks_in(const ElementRange& range, const std::vector<hsize_t>& c
   return count;
 }
 
-/// Of the chunks that have elements in `range` those that `counts` takes by their first element.
+/// Counts the unwritten chunks among those that have elements in `range` and that `counts` accepts by their first
+/// element.
 template <typename Counts>
 UnwrittenChunks unwritten_in(hid_t dataset, const std::vector<hsize_t>& chunk, const ElementRange& range,
                              const Counts& counts, const std::string& where) {

@@ -1,4 +1,4 @@
-// Chunks of an HDF5 dataset that nobody has written: the library gives the fill value for them, without a word.
+// Counts the chunks of an HDF5 dataset that were never written. The library silently returns the fill value for them.
 #pragma once
 
 #include <hdf5.h>
@@ -18,18 +18,19 @@ struct ElementRange {
 struct UnwrittenChunks {
   std::uint64_t count = 0;
   std::uint64_t all = 0;
-  std::vector<hsize_t> first;  ///< first element of the first of them, slowest axis first, where they were looked up
-  bool elsewhere = false;      ///< they are those of the whole dataset, and may all lie outside what was asked for
+  std::vector<hsize_t>
+      first;               ///< first element of the first unwritten chunk, slowest axis first, if chunks were looked up
+  bool elsewhere = false;  ///< counted over the whole dataset: all may lie outside the range
 };
 
-/// Of the chunks of a dataset, of `chunk` elements, that have elements in `range`, which is not empty; where these are
-/// more than 1,048,576, of all its chunks. Where the file holds all of them that costs one look. Messages begin with
-/// `where`. The caller holds Hdf5Lock. Throws Error(input).
+/// Counts the unwritten chunks, of `chunk` elements each, that have elements in `range`, which is not empty. If more
+/// than 1,048,576 chunks have elements there, counts over all chunks of the dataset. If the file holds all chunks,
+/// one look is enough. Messages begin with `where`. The caller holds Hdf5Lock. Throws Error(input).
 UnwrittenChunks unwritten_chunks(hid_t dataset, const std::vector<hsize_t>& chunk, const ElementRange& range,
                                  const std::string& where);
 
-/// The same of the chunks, of `chunk` elements, in which `selected` has elements: a selection in the dataset's space
-/// that is not empty.
+/// Counts like the function above, for the chunks that have elements in `selected`: a selection in the dataset's
+/// space that is not empty.
 UnwrittenChunks unwritten_chunks(hid_t dataset, const std::vector<hsize_t>& chunk, hid_t selected,
                                  const std::string& where);
 

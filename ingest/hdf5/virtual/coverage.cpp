@@ -8,8 +8,8 @@ namespace {
 
 using Covers = std::vector<const AxisBox*>;
 
-// Sweeps along `axis` through the edges of `covers`, which hold `point` on all axes before, and counts the elements
-// that none of them holds; `found` has the first of all.
+// Sweeps along `axis` through the edges of `covers`, which hold `point` on all axes before. Counts the elements that
+// no cover holds; `found` gets the first such element of the whole sweep.
 std::uint64_t count_gaps(const AxisBox& whole, std::size_t axis, Covers covers, std::vector<hsize_t>& point,
                          Uncovered& found) {
   if (axis == whole.lo.size()) {

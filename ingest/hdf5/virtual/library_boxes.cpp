@@ -11,7 +11,7 @@
 namespace weir {
 namespace {
 
-// A chunk before and behind a filter: the library keeps both while it runs it.
+// The library keeps a chunk before and after a filter while the filter runs.
 constexpr std::uint64_t kChunkCopies = 2;
 
 class LibraryBoxes final : public StoredBoxes {
@@ -41,7 +41,7 @@ class LibraryBoxes final : public StoredBoxes {
     const auto values = static_cast<hsize_t>(H5Sget_select_npoints(in_file.get()));
     const Hdf5Handle in_memory(H5Screate_simple(1, &values, nullptr));
     if (!fill_.empty()) repeat_value(fill_, stored);
-    // The file's own type in memory: conversion is ours.
+    // Reads with the file's own type as memory type, because weir converts the values itself.
     if (H5Dread(dataset_.get(), type_.get(), in_memory.get(), in_file.get(), H5P_DEFAULT, stored.data()) < 0) {
       throw hdf5_error(where_, cat("cannot be read at ", box_text(box), ", the file is cut short or damaged"));
     }

@@ -55,7 +55,7 @@ std::optional<std::vector<AxisBox>> selection_blocks(hid_t space, std::size_t mo
   }
   const hssize_t count = H5Sget_select_hyper_nblocks(space);
   if (count < 0 || static_cast<std::size_t>(count) > most) return std::nullopt;
-  // The corners of each block, both inside it.
+  // The first and last element of each block.
   std::vector<hsize_t> corners(static_cast<std::size_t>(count) * 2 * rank);
   if (H5Sget_select_hyper_blocklist(space, 0, static_cast<hsize_t>(count), corners.data()) < 0) return std::nullopt;
   std::vector<AxisBox> blocks;

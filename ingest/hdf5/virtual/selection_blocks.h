@@ -1,4 +1,4 @@
-// The boxes that a selection of the library is made of.
+// Splits a selection of the library into boxes.
 #pragma once
 
 #include <hdf5.h>
@@ -11,9 +11,9 @@
 
 namespace weir {
 
-/// The elements selected in `space`, a hyperslab, as boxes that do not overlap; those that touch along an axis of a
-/// regular one are joined. nullopt where there are more than `most`, or the library cannot say. The
-/// caller holds Hdf5Lock.
+/// Returns the elements selected in `space`, a hyperslab, as boxes that do not overlap. For a regular hyperslab,
+/// boxes that touch along an axis are joined. Returns nullopt if there are more than `most` boxes or the library
+/// cannot say. The caller holds Hdf5Lock.
 std::optional<std::vector<AxisBox>> selection_blocks(hid_t space, std::size_t most);
 
 }  // namespace weir

@@ -16,9 +16,9 @@ namespace {
 
 constexpr std::size_t kOpenSources = 4;           // files open at a time: there may be thousands of them
 constexpr std::uint64_t kBytesPerMapping = 4096;  // two selections and two names, about
-constexpr std::uint64_t kSourceChunkCopies = 2;   // before and behind a filter
+constexpr std::uint64_t kSourceChunkCopies = 2;   // before and after a filter
 
-// Where a box at a position of the leading axes lies in the dataset.
+// Returns the dataset's elements for a box at a position of the leading axes.
 AxisBox axis_box(const std::vector<std::int64_t>& index, const Box& box, std::int64_t components) {
   AxisBox placed;
   for (const std::int64_t i : index) {
@@ -54,7 +54,7 @@ class VirtualBoxes final : public StoredBoxes {
         space_(H5Dget_space(dataset_.get())),
         mapped_(virtual_mappings(dataset_.get(), {axis_box(index_, wanted.box, components_), wanted.need_a_source},
                                  parent, where_)) {
-    // A source that is never to be filled leaves what is in memory.
+    // If a source's fill time is "never", the library leaves the memory of unwritten elements as it is.
     if (mapped_.unmapped.count > 0 || mapped_.unwritten.count > 0) fill_ = storage_of(dataset_.get()).fill;
     for (const VirtualMapping& mapping : mapped_.mappings) {
       if (mapping.chunk.empty()) continue;
@@ -62,7 +62,7 @@ class VirtualBoxes final : public StoredBoxes {
       for (const hsize_t elements : mapping.chunk) bytes *= elements;  // the library checks: below 2^32
       chunk_bytes_ = std::max(chunk_bytes_, bytes);
     }
-    // Sources are alike as a rule: what fits the first one serves all.
+    // Sources usually have the same chunks, so the chunks of the first source serve for all.
     if (mapped_.mappings.empty() || mapped_.mappings[0].chunk.empty()) return;
     const AxisBox& bounds = mapped_.mappings[0].bounds;
     const std::size_t rank = bounds.lo.size();
@@ -97,7 +97,7 @@ class VirtualBoxes final : public StoredBoxes {
     const AxisBox placed = axis_box(index_, box, components_);
     std::vector<hsize_t> dims;
     for (std::size_t i = 0; i < placed.lo.size(); ++i) dims.push_back(placed.hi[i] - placed.lo[i]);
-    if (!fill_.empty()) repeat_value(fill_, stored);  // what no source gives a value for keeps it
+    if (!fill_.empty()) repeat_value(fill_, stored);  // elements without a source keep the fill value
     const std::vector<hssize_t> corner(placed.lo.begin(), placed.lo.end());
     for (const VirtualMapping& mapping : mapped_.mappings) {
       if (!overlap(mapping.bounds, placed)) continue;
@@ -141,8 +141,8 @@ class VirtualBoxes final : public StoredBoxes {
   Hdf5Handle type_;
   Hdf5Handle space_;
   VirtualMappings mapped_;
-  std::vector<std::byte> fill_;  ///< a stored value; empty where a source gives every element
-  std::list<OpenSource> open_;   ///< the last one used first
+  std::vector<std::byte> fill_;  ///< a stored value; empty if sources give every element
+  std::list<OpenSource> open_;   ///< the most recently used source first
   Index3 chunk_{0, 0, 0};
   Index3 chunk_origin_{0, 0, 0};
   std::uint64_t chunk_bytes_ = 0;

@@ -1,4 +1,4 @@
-// Boxes of a virtual dataset, each read from the datasets it is mapped to.
+// Reads boxes of a virtual dataset, each from the datasets that it is mapped to.
 #pragma once
 
 #include <memory>
@@ -15,19 +15,20 @@ namespace weir {
 
 struct VirtualVolume {
   std::unique_ptr<StoredBoxes> boxes;
-  Uncovered unmapped;  ///< elements of those voxels without a source, which read as the dataset's fill value
+  Uncovered unmapped;  ///< elements without a source, which read as the dataset's fill value
   UnwrittenInSources unwritten;
 };
 
-/// Of a volume, what is read; a region may lie where there are no sources.
+/// The voxels of a volume that are read. A region may lie where the volume has no sources.
 struct WantedVoxels {
   Box box;
   bool need_a_source = true;
 };
 
-/// The three axes of `dataset` (in the file `parent`) behind the leading ones, at `index`, one position per leading
-/// axis; of several `components` a voxel these are the last axis. Only boxes inside `wanted` are read: sources of
-/// others are not looked at. Throws what virtual_mappings throws. The caller holds Hdf5Lock.
+/// Returns the volume on the three axes of `dataset` (in the file `parent`) after the leading axes, at `index`, one
+/// position per leading axis. If voxels have several `components`, the last axis holds them. Only boxes inside
+/// `wanted` may be read, because sources of other boxes are not looked at. Throws the errors of virtual_mappings().
+/// The caller holds Hdf5Lock.
 VirtualVolume make_virtual_boxes(Hdf5Handle dataset, std::vector<std::int64_t> index, const WantedVoxels& wanted,
                                  std::int64_t components, const std::string& parent, const std::string& where);
 

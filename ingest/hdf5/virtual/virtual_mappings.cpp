@@ -39,12 +39,13 @@ std::string list_text(const std::vector<T>& values) {
   return text;
 }
 
-// Without a layout, h5repack copies a virtual dataset as it is: H5Ocopy copies its mappings.
+// Returns the command that makes one dataset. h5repack needs a layout: without one it copies a virtual dataset with
+// its mappings (H5Ocopy).
 std::string as_one_dataset(const std::string& file) {
   return cat("write it as one with h5repack -l CONTI ", shell_word(file), " NEW");
 }
 
-/// A hyperslab that may go on without end along one axis.
+/// A hyperslab that may be unlimited along one axis.
 struct MappedSlab {
   explicit MappedSlab(std::size_t rank) : start(rank), stride(rank), count(rank), block(rank) {}
 
@@ -62,9 +63,10 @@ struct MappedSlab {
     return slab;
   }
 
-  /// Whether elements follow each other without gaps along the endless axis.
+  /// Returns whether elements follow each other without gaps along the unlimited axis.
   bool dense() const { return block[*endless] == H5S_UNLIMITED || stride[*endless] == block[*endless]; }
-  /// Blocks that an array of `extent` elements has room for along the endless axis; of a dense one, elements.
+  /// Returns how many blocks fit in `extent` elements along the unlimited axis; for a dense hyperslab, how many
+  /// elements.
   hsize_t room(hsize_t extent) const {
     const hsize_t from = start[*endless];
     if (extent <= from) return 0;
@@ -88,7 +90,7 @@ struct MappedSlab {
   std::optional<std::size_t> endless;  ///< axis
 };
 
-/// As the file has it.
+/// A mapping as the file stores it.
 struct StoredMapping {
   std::string file;
   std::string dataset;
@@ -190,7 +192,7 @@ class MappingReader {
     }
   }
 
-  // The selection of `from`, all included, as a hyperslab of `into`.
+  // Selects in `into`, as a hyperslab, the selection of `from`, which may select all elements.
   static void select_as(hid_t from, hid_t into) {
     if (H5Sget_select_type(from) == H5S_SEL_HYPERSLABS) {
       H5Sselect_copy(into, from);
@@ -208,7 +210,7 @@ class MappingReader {
     return H5Sselect_intersect_block(space, first.data(), last.data()) > 0;
   }
 
-  /// Returns it, open.
+  /// Returns the opened source.
   Hdf5Handle look_at_source(const StoredMapping& mapping, hsize_t block, VirtualMapping& found) const {
     found.dataset = virtual_source_name(mapping.dataset, block);
     const std::string file = virtual_source_name(mapping.file, block);
@@ -225,7 +227,7 @@ class MappingReader {
     const auto refuse = [&](const std::string& what) { return error(source_text(found) + what); };
     const Hdf5Handle type(H5Dget_type(source.get()));
     const auto number = stored_type(type.get());
-    // As of such a dataset that is read alone (dataset_facts.cpp).
+    // Uses the same rule as for such a dataset that is read alone (dataset_facts.cpp).
     found.all_fill = storage.is_all_fill && number && !may_be_netcdf_fill(source.get(), *number, storage.fill);
     if (!storage.obstacle.empty() && !found.all_fill) throw refuse(storage.obstacle);
     if (storage.kind == StorageKind::mapped) {
@@ -267,7 +269,7 @@ class MappingReader {
     mappings_.push_back(std::move(found));
   }
 
-  // What of the source is not read may well be unwritten: other steps of a simulation that goes on.
+  // Elements of the source that are not read may be unwritten: for example later steps of a running simulation.
   UnwrittenInSources unwritten_in(hid_t source, const VirtualMapping& found) const {
     if (found.chunk.empty() && !found.all_fill) return {};
     std::vector<hsize_t> count;

@@ -13,13 +13,14 @@
 namespace weir {
 namespace {
 
-/// What `bytes` bytes can become by packing: what compressors make of noise, and their headers.
+/// Returns the most bytes that `bytes` bytes can take after packing: a compressor's output for noise, and its
+/// headers.
 std::size_t most_packed(ZarrPacker packer, std::size_t bytes) {
-  constexpr std::size_t kHeaders = 1024;  // gzip's may hold a file's name
+  constexpr std::size_t kHeaders = 1024;  // a gzip header may hold a file name
   return packer == ZarrPacker::crc32c ? bytes + kCrc32cBytes : bytes + bytes / 256 + kHeaders;
 }
 
-/// Before the packer at `i`.
+/// Returns the most bytes that a chunk can take before the packer at `i`.
 std::size_t most_before(const ZarrCodecs& codecs, std::size_t chunk_bytes, std::size_t i) {
   std::size_t bytes = chunk_bytes;
   for (std::size_t k = 0; k < i; ++k) bytes = most_packed(codecs.packers[k], bytes);

@@ -1,4 +1,4 @@
-// The codecs that a chunk of a Zarr array has gone through, and their undoing in memory of known size.
+// Decodes a chunk of a Zarr array: undoes its codecs in memory of known size.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace weir {
 
-/// A chunk before its codecs.
+/// The shape of a chunk before its codecs are applied.
 struct ChunkShape {
   std::vector<std::int64_t> extent;  ///< elements, slowest axis first, each >= 1
   std::size_t value_bytes = 1;       ///< 1, 2, 4 or 8
@@ -19,16 +19,16 @@ struct ChunkShape {
   std::size_t bytes() const;
 };
 
-/// The most bytes that a chunk can take at any stage of `codecs`: the size of the buffers of decode_chunk, and of what
-/// is stored.
+/// Returns the most bytes that a chunk can take at any stage of `codecs`, its stored form included. decode_chunk's
+/// buffers have this size.
 std::size_t most_stored_bytes(const ZarrCodecs& codecs, std::size_t chunk_bytes);
 
-/// The scratch that decode_chunk takes.
+/// Returns the scratch memory that decode_chunk needs.
 ScratchSize scratch_size(const ZarrCodecs& codecs, std::size_t chunk_bytes);
 
-/// Undoes the codecs of one chunk, whose first `stored` bytes of scratch.buffer are as they were stored, and returns
-/// its shape.bytes() bytes, the last axis fastest, which lie in `scratch`. Throws Error(input), without a place, where
-/// a codec fails or the size is another one in the end.
+/// Undoes the codecs of one chunk. Its stored bytes are the first `stored` bytes of scratch.buffer. Returns the
+/// chunk's shape.bytes() bytes, the last axis fastest; they lie in `scratch`. Throws Error(input), with no place in
+/// its message, if a codec fails or the decoded size is not shape.bytes().
 std::span<const std::byte> decode_chunk(const ZarrCodecs& codecs, const ChunkShape& shape, std::size_t stored,
                                         ChunkScratch& scratch);
 

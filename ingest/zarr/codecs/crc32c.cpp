@@ -9,11 +9,11 @@ namespace weir {
 namespace {
 
 constexpr std::uint32_t kPolynomial = 0x82F63B78U;  // Castagnoli's, bits reversed
-constexpr std::size_t kSlices = 8;                  // bytes at a time
+constexpr std::size_t kSlices = 8;                  // bytes processed at a time
 
 using Tables = std::array<std::array<std::uint32_t, 256>, kSlices>;
 
-/// tables[k][b]: what the byte b does to the checksum k bytes later.
+/// tables[k][b] is the effect of the byte b on the checksum k bytes later.
 constexpr Tables make_tables() {
   Tables tables{};
   for (std::uint32_t byte = 0; byte < 256; ++byte) {

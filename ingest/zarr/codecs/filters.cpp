@@ -10,7 +10,8 @@
 namespace weir {
 namespace {
 
-/// In the type of the values; an integer's sign makes no difference modulo 2^bits.
+/// Replaces each value by the sum of the values up to it, in the values' type. Unsigned T serves signed integers too,
+/// because sums are modulo 2^bits.
 template <typename T>
 void sum_up(std::span<std::byte> bytes, bool big_endian) {
   const bool swapped = big_endian != (std::endian::native == std::endian::big);
@@ -20,7 +21,7 @@ void sum_up(std::span<std::byte> bytes, bool big_endian) {
     const std::span<std::byte> stored = bytes.subspan(at, sizeof(T));
     std::ranges::copy(stored, value.begin());
     if (swapped) std::ranges::reverse(value);
-    // The first value is no sum: 0 + -0 would be 0.
+    // The first value is copied, not added to 0: 0 + -0 would be 0.
     sum = at == 0 ? std::bit_cast<T>(value) : static_cast<T>(sum + std::bit_cast<T>(value));
     value = std::bit_cast<std::array<std::byte, sizeof(T)>>(sum);
     if (swapped) std::ranges::reverse(value);

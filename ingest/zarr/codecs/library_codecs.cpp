@@ -32,7 +32,7 @@ std::size_t unpack_blosc(std::span<const std::byte> packed, std::span<std::byte>
   std::size_t stored = 0;
   std::size_t block = 0;
   blosc_cbuffer_sizes(packed.data(), &all, &stored, &block);
-  if (block > kMostBloscBlock && block > all) {  // blosc makes none larger than its buffer
+  if (block > kMostBloscBlock && block > all) {  // blosc never makes a block larger than its buffer
     throw Error(ErrorKind::input, cat("its blosc buffer of ", size, " bytes is damaged (its blocks are larger)"));
   }
   if (block > kMostBloscBlock) {

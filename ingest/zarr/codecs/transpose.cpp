@@ -7,14 +7,14 @@
 namespace weir {
 namespace {
 
-constexpr std::size_t kTile = 32;  // values along both axes that are fast on one side: their lines stay in the cache
+constexpr std::size_t kTile = 32;  // values along both axes of a tile: a tile's cache lines stay in the cache
 
-/// A plane of the axis that is fast in the chunk and the one that is fast as stored.
+/// A plane of two axes: the chunk's fastest axis, and the axis that is fastest as stored.
 struct Plane {
   std::size_t fast_extent;    ///< along the chunk's last axis
-  std::size_t stored_extent;  ///< along the axis whose stored values are neighbours
-  std::size_t fast_step;      ///< in `stored`, bytes, along the first
-  std::size_t stored_step;    ///< in `values`, bytes, along the second
+  std::size_t stored_extent;  ///< along the axis that is fastest as stored
+  std::size_t fast_step;      ///< bytes in `stored` between neighbours along the chunk's last axis
+  std::size_t stored_step;    ///< bytes in `values` between neighbours along the axis that is fastest as stored
 };
 
 template <std::size_t kBytes>
@@ -49,7 +49,7 @@ void undo_transpose(std::span<const std::byte> stored, std::span<const std::int6
                     std::span<const std::size_t> order, std::size_t value_bytes, std::span<std::byte> values) {
   const std::size_t axes = extent.size();
   const auto extent_of = [&](std::size_t axis) { return static_cast<std::size_t>(extent[axis]); };
-  std::vector<std::size_t> stored_step(axes);  // bytes, of the chunk's axes
+  std::vector<std::size_t> stored_step(axes);  // bytes, for each axis of the chunk
   std::vector<std::size_t> value_step(axes);
   std::size_t step = value_bytes;
   for (std::size_t i = axes; i-- > 0; step *= extent_of(order[i])) stored_step[order[i]] = step;
@@ -62,7 +62,7 @@ void undo_transpose(std::span<const std::byte> stored, std::span<const std::int6
   for (std::size_t axis = 0; axis < axes; ++axis) {
     if (axis != fast && axis != neighbour) others.push_back(axis);
   }
-  // Where both are one axis, a plane is one row of values.
+  // If both are the same axis, a plane is one row of values.
   const Plane plane{extent_of(fast), fast == neighbour ? 1 : extent_of(neighbour), stored_step[fast],
                     value_step[neighbour]};
   std::vector<std::size_t> at(others.size());

@@ -8,7 +8,7 @@
 namespace weir {
 namespace {
 
-// Versions up to 0.3 have names alone, of which t is the time.
+// Versions up to 0.3 have only names of axes; there "t" is the time.
 bool is_time_of_image(const ScaleAxis& axis) {
   return axis.type.empty() ? axis.name == "t" || is_time_axis({axis.name, axis.unit, {}, {}, false})
                            : axis.type == "time";

@@ -1,4 +1,4 @@
-// The axes of a Zarr array: what they are called, and where its elements lie along them.
+// The axes of a Zarr array: their names, and the positions of the array's elements along them.
 #pragma once
 
 #include <optional>
@@ -12,15 +12,15 @@
 namespace weir {
 
 struct ArrayAxes {
-  std::vector<AxisPlace> places;   ///< as many as the array has, slowest first
-  std::vector<std::string> types;  ///< of each, "space", "channel"; empty texts where the metadata do not say it
-  std::string note;                ///< which transformations of an image are not in the places; else empty
+  std::vector<AxisPlace> places;   ///< one for each axis, slowest first
+  std::vector<std::string> types;  ///< "space", "channel" for each axis; empty texts if the metadata do not say it
+  std::string note;  ///< names the transformations of an image that the places ignore; empty if there are none
 
-  /// "t 3, z 64, y 128, x 128".
+  /// Returns the names and extents as text: "t 3, z 64, y 128, x 128".
   std::string text() const;
 };
 
-/// The axes by their names alone, those of `level`, where an image has the array as one, by that.
+/// Returns the axes of `array`: by their names alone, or, if the array is the level of an image, by `level`.
 ArrayAxes array_axes(const ZarrArray& array, const std::optional<FoundLevel>& level);
 
 }  // namespace weir

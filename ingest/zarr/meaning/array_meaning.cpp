@@ -36,7 +36,7 @@ std::string shape_obstacle(const ZarrArray& array, const ArrayMeaning& meaning) 
              "); a volume has three");
 }
 
-// A series of planes looks like a volume, and its steps of time like a spacing.
+// A series of planes over time must not pass for a volume, with its time steps as a spacing.
 std::string time_obstacle(const ArrayMeaning& meaning) {
   const VolumeAxes of_space = meaning.volume_axes();
   const auto times =
@@ -59,7 +59,7 @@ void find_obstacle(const ZarrArray& array, ArrayMeaning& meaning) {
 
 std::vector<LeadingAxis> ArrayMeaning::leading_before(const ComponentAxis& vectors) const {
   std::vector<LeadingAxis> leading;
-  const std::size_t behind = kSpaceRank + (vectors.found() ? 1 : 0);  // those axes, whichever comes first
+  const std::size_t behind = kSpaceRank + (vectors.found() ? 1 : 0);  // space and components, in either order
   for (std::size_t axis = 0; axis + behind < axes.places.size(); ++axis) {
     leading.push_back({axes.places[axis].label, axes.places[axis].extent});
   }

@@ -1,4 +1,4 @@
-// What a Zarr array is as a volume: its axes, where its voxels lie, what its values mean.
+// The meaning of a Zarr array as a volume: its axes, the places of its voxels, and the meaning of its values.
 #pragma once
 
 #include <cstdint>
@@ -23,33 +23,34 @@ struct ArrayMeaning {
   std::optional<TimeValues> auxiliary_time;
   ArrayValues values;
   ComponentAxis components;  ///< the axis that --component chooses on
-  std::string obstacle;      ///< why it is no volume; empty where it is one
-  bool over_time = false;    ///< the obstacle is that a time is among its axes of space
+  std::string obstacle;      ///< why the array is no volume; empty if it is one
+  bool over_time = false;    ///< the obstacle is that one of its axes of space is a time
 
-  /// Where its axes of space end: before the components that each voxel has, where there are some.
+  /// Returns the end of the axes of space: before the last axis, if that has the components of each voxel.
   std::size_t end_of_space() const { return axes.places.size() - (components.found() && !components.leading ? 1 : 0); }
-  /// Those before the axes of space, and components, which --index takes positions on.
+  /// Returns the axes before the axes of space and components. --index gives positions on them.
   std::vector<LeadingAxis> leading() const { return leading_before(components); }
-  /// The same where `vectors` are the components.
+  /// Returns the leading axes if `vectors` were the components.
   std::vector<LeadingAxis> leading_before(const ComponentAxis& vectors) const;
-  /// The last three before end_of_space(), of an array that has them.
+  /// Returns the last three axes before end_of_space(), x first. The array must have them.
   VolumeAxes volume_axes() const;
 };
 
-/// `axes` are the array's. Its components are those that it has without doubt (component_axis).
+/// Returns the meaning of `array`; `axes` are its axes. An axis counts as components only if there is no doubt
+/// (component_axis).
 ArrayMeaning array_meaning(const ZarrArray& array, ArrayAxes axes);
 
-/// Sets the components of `meaning`, that of `array`, to those that `choice` is of, `positions` being those of --index.
-/// Throws what chosen_component_axis throws, beginning with `where`.
+/// Sets the components of `meaning`, the meaning of `array`, to the axis that `choice` refers to. `positions` is the
+/// number of positions in --index. Throws the errors of chosen_component_axis, beginning with `where`.
 void choose_component(const ZarrArray& array, const std::optional<ComponentChoice>& choice, std::size_t positions,
                       const std::string& where, ArrayMeaning& meaning);
 
-/// The positions on the leading axes: those that `index` gives, or 0 on each where each has one element alone. Throws
-/// Error(usage), beginning with `where`, where they do not fit.
+/// Returns the positions on the leading axes: `index`, or 0 on each axis if `index` is empty and each has one element
+/// only. Throws Error(usage), beginning with `where`, if they do not fit the axes.
 std::vector<std::int64_t> checked_index(const ArrayMeaning& meaning, const std::vector<std::int64_t>& index,
                                         const std::string& where);
 
-/// Puts extent, spacing, origin, labels, units and what else `meaning` says into `info`.
+/// Sets extent, spacing, origin, labels, units and the other descriptions of `meaning` in `info`.
 void describe_volume(const ZarrArray& array, const ArrayMeaning& meaning, const std::vector<std::int64_t>& index,
                      SourceInfo& info);
 

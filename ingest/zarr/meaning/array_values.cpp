@@ -18,7 +18,7 @@
 namespace weir {
 namespace {
 
-constexpr std::size_t kMostMissing = 64;  // values that stand for no data, in one attribute
+constexpr std::size_t kMostMissing = 64;  // values in one attribute that stand for missing data
 
 std::optional<StoredValue> number_of_attribute(const nlohmann::json& value) {
   if (const auto number = json_number(value)) return number;
@@ -27,7 +27,8 @@ std::optional<StoredValue> number_of_attribute(const nlohmann::json& value) {
   return value.is_string() ? parse_stored_value(value.get<std::string>()) : std::nullopt;
 }
 
-// A number, or a list of them as NetCDF's attributes are; what is none goes to `others`.
+// Returns the attribute's number, or its list of numbers, the form of NetCDF's attributes. Other values go to
+// `others`.
 std::vector<StoredValue> numbers_of_attribute(const nlohmann::json& attributes, const char* name,
                                               std::vector<nlohmann::json>& others) {
   const nlohmann::json& value = json_member(attributes, name);
@@ -44,7 +45,8 @@ std::vector<StoredValue> numbers_of_attribute(const nlohmann::json& attributes, 
   return numbers;
 }
 
-// The attribute as one finite number; `fallback` where it is absent.
+// Returns the attribute as one finite number; `fallback` if it is absent or, with an obstacle, if it is not such a
+// number.
 double packing(const nlohmann::json& attributes, const char* name, double fallback, std::string& obstacle) {
   const nlohmann::json& found = json_member(attributes, name);
   if (found.is_null()) return fallback;
@@ -72,7 +74,7 @@ std::string unused_attribute(const nlohmann::json& attributes) {
   return "";
 }
 
-// By the conventions of CF (8.1 and 2.5.1), as xarray writes them.
+// Reads the attributes by the CF conventions (8.1 and 2.5.1), as xarray writes them.
 void read_attributes(const ZarrArray& array, ArrayValues& read) {
   const nlohmann::json& attributes = array.attributes;
   const bool meant_otherwise = !unsigned_text(attributes).empty();

@@ -1,4 +1,4 @@
-// What the values of a Zarr array mean.
+// The meaning of the values of a Zarr array.
 #pragma once
 
 #include <string>
@@ -9,14 +9,14 @@
 namespace weir {
 
 struct ArrayValues {
-  ValueMapping mapping;  ///< by the attributes scale_factor, add_offset, missing_value and _FillValue
-  std::string units;     ///< by the attribute units
+  ValueMapping mapping;  ///< from the attributes scale_factor, add_offset, missing_value and _FillValue
+  std::string units;     ///< from the attribute units
   std::string long_name;
-  std::string note;      ///< attributes that nothing is made of; else empty
-  std::string obstacle;  ///< why they cannot be read, or what they mean is unknown; else empty
+  std::string note;      ///< names attributes that are not applied; empty if there are none
+  std::string obstacle;  ///< why the values cannot be read or their meaning is unknown; empty if nothing is in the way
 };
 
-/// By the conventions of CF (8.1 and 2.5.1), as xarray writes them.
+/// Returns the meaning of the values by the CF conventions (8.1 and 2.5.1), as xarray writes them.
 ArrayValues array_values(const ZarrArray& array);
 
 }  // namespace weir

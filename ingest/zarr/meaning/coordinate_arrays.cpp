@@ -18,7 +18,7 @@
 namespace weir {
 namespace {
 
-/// Of an auxiliary time: steps that one array holds.
+/// The most steps of an array that is read as an auxiliary time.
 constexpr std::size_t kMostTimes = 65536;
 constexpr std::size_t kKeptTimes = 16;
 
@@ -27,7 +27,8 @@ std::string group_of(const std::string& key) {
   return slash == std::string::npos ? std::string() : key.substr(0, slash);
 }
 
-// The node at `key` where it is an array that can be parsed as JSON; one that cannot is none of another's affairs.
+// Returns the node at `key` if it is an array whose metadata can be parsed. Damaged metadata are no error: another
+// array is read.
 std::optional<ZarrNode> array_at(ZarrStore& store, const std::string& key) {
   try {
     auto node = zarr_node(store, key);
@@ -38,7 +39,8 @@ std::optional<ZarrNode> array_at(ZarrStore& store, const std::string& key) {
   return std::nullopt;
 }
 
-// The array `name` in the nearest group around that at `key`; nullopt where there is none but that itself.
+// Returns the array `name` in the nearest group around `key`, other than the array at `key` itself; nullopt if there
+// is none.
 std::optional<ZarrNode> array_near(ZarrStore& store, const std::string& key, const std::string& name) {
   if (name.empty() || name.find('/') != std::string::npos || key.empty()) return std::nullopt;
   for (std::string group = group_of(key);; group = group_of(group)) {
@@ -50,16 +52,16 @@ std::optional<ZarrNode> array_near(ZarrStore& store, const std::string& key, con
   }
 }
 
-// An array of coordinates that can be read, and what its values mean.
+// A coordinate array that can be read, and the meaning of its values.
 struct ReadableArray {
   ZarrArray array;
   ValueMapping mapping;
 };
 
-// Throws Error(input) where it cannot be read, as names cannot.
+// Throws Error(input) if the array cannot be read, for example an array of texts.
 ReadableArray readable(const ZarrStore& store, const ZarrNode& node) {
   ZarrArray array = zarr_array(store, node);
-  array.missing_fill.reset();  // no coordinate may be missing (CF 2.5.1), and zarr-python's fill is 0
+  array.missing_fill.reset();  // coordinates are never missing (CF 2.5.1), and zarr-python's fill is 0
   ArrayValues values = array_values(array);
   const std::string where = store.shown(node.key);
   if (!values.obstacle.empty()) throw input_error(where, values.obstacle);
@@ -105,7 +107,7 @@ void place_by_array(ZarrStore& store, const ZarrNode& found, AxisPlace& axis) {
   place_by_coordinates(std::move(values), precision, axis);
 }
 
-// Empty where it is not one of small numbers, or cannot be read.
+// Returns the times in `found`; empty values if it is not a single number or a short list, or cannot be read.
 TimeValues time_in(ZarrStore& store, const ZarrNode& found) {
   const nlohmann::json& shape = json_member(found.metadata, "shape");
   const bool of_one_axis =
@@ -119,7 +121,7 @@ TimeValues time_in(ZarrStore& store, const ZarrNode& found) {
     if (std::ranges::any_of(values, [](double value) { return !std::isfinite(value); })) return time;
     time = {std::move(values), json_string(found.attributes, "units"), json_string(found.attributes, "calendar")};
   } catch (const Error& error) {
-    if (error.kind() != ErrorKind::input) throw;  // the volume does not need it
+    if (error.kind() != ErrorKind::input) throw;  // the volume can be read without its time
   }
   return time;
 }

@@ -1,5 +1,5 @@
-// Where the elements of an array lie, by the arrays beside it that are called as its axes are: as xarray writes the
-// coordinates of NetCDF and CF.
+// The positions of an array's elements, from the coordinate arrays beside it that have its axes' names: xarray writes
+// the coordinates of NetCDF and CF this way.
 #pragma once
 
 #include <cstddef>
@@ -16,19 +16,22 @@
 
 namespace weir {
 
-/// Reads coordinates, and keeps what was made of them: the arrays of one group share them. One thread at a time.
+/// Reads coordinate arrays and keeps the results, because the arrays of a group share coordinates. For one thread at
+/// a time.
 class CoordinateArrays {
  public:
-  /// `store` outlives it.
+  /// `store` must outlive this object.
   explicit CoordinateArrays(ZarrStore& store) : store_(store) {}
 
-  /// Gives `axes`, those of the array at `key` by their names, the units, places, times and notes that arrays of one
-  /// axis say which are called so and have as many elements: in the array's group, or else in the nearest group around
-  /// it. Throws Error(input) where their values are damaged; those that cannot be understood get a note.
+  /// Sets units, places, times and notes of `axes`, the axes of the array at `key`, from coordinate arrays. A
+  /// coordinate array has one axis, the axis's name and as many elements. It lies in the array's group, or otherwise
+  /// in the nearest group around it. Throws Error(input) if its values are damaged. Coordinates that cannot be
+  /// understood add a note.
   void place(const std::string& key, std::span<AxisPlace> axes);
 
-  /// The first that attribute `coordinates` (CF 5) of the array at `key` names, of units "... since ...", which can be
-  /// read and is a single one, or one for each element of an axis of time among `axes`. nullopt where it names none.
+  /// Returns an auxiliary time of the array at `key`: the first array that its attribute `coordinates` (CF 5) names,
+  /// that has units "... since ..." and can be read. It must have a single element, or one for each element of a time
+  /// axis among `axes`. Returns nullopt if there is none.
   std::optional<TimeValues> auxiliary_time(const std::string& key, const nlohmann::json& attributes,
                                            std::span<const AxisPlace> axes);
 
@@ -36,8 +39,8 @@ class CoordinateArrays {
   const AxisPlace& placed(const ZarrNode& found, const AxisPlace& axis);
 
   ZarrStore& store_;
-  std::map<std::string, AxisPlace> placed_;  ///< by the key of the array of coordinates
-  std::size_t kept_ = 0;                     ///< coordinates in them
+  std::map<std::string, AxisPlace> placed_;  ///< by the key of the coordinate array
+  std::size_t kept_ = 0;                     ///< number of coordinates in placed_
   std::map<std::string, TimeValues> times_;
 };
 

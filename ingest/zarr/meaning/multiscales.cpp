@@ -26,7 +26,8 @@ double at_or(const std::vector<double>& numbers, std::size_t i, double otherwise
   return i < numbers.size() ? numbers[i] : otherwise;
 }
 
-/// Applies a list of transformations behind those that `level` has; false where one is of another kind.
+/// Appends a list of transformations to those in `level`. Returns false if one is not identity, scale or translation
+/// by numbers.
 bool transform(const nlohmann::json& list, ScaleLevel& level) {
   if (list.is_null()) return true;
   if (!list.is_array() || list.size() > kMostImageAxes) return false;
@@ -54,7 +55,7 @@ std::vector<ScaleAxis> axes_in(const nlohmann::json& list) {
   std::vector<ScaleAxis> axes;
   if (!list.is_array() || list.size() > kMostImageAxes) return axes;
   for (const nlohmann::json& axis : list) {
-    // Version 0.3 has names alone.
+    // Version 0.3 has only names of axes.
     axes.push_back(axis.is_string()
                        ? ScaleAxis{axis.get<std::string>(), {}, {}}
                        : ScaleAxis{json_string(axis, "name"), json_string(axis, "type"), json_string(axis, "unit")});

@@ -1,5 +1,5 @@
-// What OME-Zarr (versions 0.1 to 0.5) says of an image at several scales: which arrays are its levels, and where their
-// voxels lie.
+// The multiscales metadata of OME-Zarr (versions 0.1 to 0.5): the arrays that are the levels of an image, and the
+// places of their voxels.
 #pragma once
 
 #include <map>
@@ -14,44 +14,44 @@
 namespace weir {
 
 struct ScaleAxis {
-  std::string name;  ///< "z"; empty where the metadata do not name axes
-  std::string type;  ///< "space", "time", "channel"; empty where they do not say it
-  std::string unit;  ///< "micrometer"; else empty
+  std::string name;  ///< "z"; empty if the metadata do not name axes
+  std::string type;  ///< "space", "time", "channel"; empty if the metadata do not say it
+  std::string unit;  ///< "micrometer"; empty if the metadata do not say it
 };
 
 /// One level of an image.
 struct ScaleLevel {
-  std::string path;                 ///< of its array, from the image's group, without slashes at its ends
-  std::vector<double> scale;        ///< from an index to a position, along each axis; empty: 1
-  std::vector<double> translation;  ///< of the centre of element 0; empty: 0
-  bool placed = true;  ///< false where a transformation is none of scale and translation by numbers, as many in each;
-                       ///< both are empty then
+  std::string path;                 ///< path of the level's array within the image's group, without slashes at its ends
+  std::vector<double> scale;        ///< from index to position, along each axis; empty: 1
+  std::vector<double> translation;  ///< position of the centre of element 0; empty: 0
+  bool placed = true;               ///< false: some transformation is not scale or translation by numbers, or their
+                                    ///< counts differ; both lists are empty then
 };
 
 struct Multiscale {
   std::vector<ScaleAxis> axes;
   std::vector<ScaleLevel> levels;  ///< the finest first
-  std::string document = {};       ///< key of the document that says it, ".zattrs"
+  std::string document = {};       ///< key of the document that describes the image, ".zattrs"
 };
 
-/// The images that the attributes of a group describe, transformations of all levels applied. What is no such list is
-/// left out.
+/// Returns the images that the attributes of a group describe, with the transformations applied to all levels.
+/// Entries that are not images are left out.
 std::vector<Multiscale> multiscales_in(const nlohmann::json& attributes);
 
-/// A level, and the image it is one of.
+/// A level of an image, and the image.
 struct FoundLevel {
   Multiscale image;
   std::size_t level = 0;
 };
 
-/// Finds the images that arrays are levels of; keeps what the groups say, each of which is read once. One thread at a
+/// Finds the image level that an array is. Reads the metadata of each group once and keeps them. For one thread at a
 /// time.
 class LevelFinder {
  public:
-  /// `store` outlives it.
+  /// `store` must outlive this object.
   explicit LevelFinder(ZarrStore& store) : store_(store) {}
 
-  /// That the array at `key` is: a group around it describes it. nullopt where none does.
+  /// Returns the level that the array at `key` is, as a group around it describes; nullopt if no group does.
   std::optional<FoundLevel> find(const std::string& key);
 
  private:

@@ -14,7 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where it is named by a single name, or by dots, the whole path: its end does not say what is around it.
+/// Returns the whole path if `path` is a single name or contains dots, because it does not name the directories
+/// around it.
 fs::path with_parents(const fs::path& path) {
   for (const fs::path& part : path) {
     if (part == "." || part == "..") return fs::absolute(path).lexically_normal();

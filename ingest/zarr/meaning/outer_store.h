@@ -1,4 +1,4 @@
-// The groups around an array that is named by its own path.
+// Finds the groups around an array that is given by its own path.
 #pragma once
 
 #include <memory>
@@ -9,12 +9,12 @@
 namespace weir {
 
 struct OuterStore {
-  std::unique_ptr<ZarrStore> store;  ///< nullptr where there is no group around it
-  std::string key;                   ///< of the array, there
+  std::unique_ptr<ZarrStore> store;  ///< nullptr if there is no group around the array
+  std::string key;                   ///< the array's key in `store`
 };
 
-/// Of `store`, at `path`, where that is an array in a directory: the outermost group that is a directory around it
-/// without another one between. Groups whose metadata are damaged are none.
+/// If `store`, at `path`, is an array in a directory, returns the outermost group around it. All directories from the
+/// array up to this group must be groups. A group with damaged metadata does not count as one.
 OuterStore outer_store(ZarrStore& store, const std::string& path);
 
 }  // namespace weir

@@ -21,12 +21,12 @@ nlohmann::json attributes_v2(ZarrStore& store, const std::string& key) {
   return text ? parse_zarr_json(*text, store.shown(document)) : nlohmann::json::object();
 }
 
-/// What a walk has seen so far.
+/// The state of a walk over all nodes.
 struct ZarrWalk {
   ZarrStore& store;
   std::size_t nodes = 0;
-  std::uint64_t bytes = 0;  ///< of metadata
-  std::size_t values = 0;   ///< of JSON, in the arrays
+  std::uint64_t bytes = 0;  ///< of metadata, in all nodes
+  std::size_t values = 0;   ///< of JSON, in the metadata of arrays
   std::vector<ZarrNode> arrays;
 };
 
@@ -52,7 +52,7 @@ void add_arrays(ZarrWalk& walk, const std::string& key, std::size_t depth) {
     walk.arrays.push_back(std::move(*node));
     return;
   }
-  // The root of a zip file may be a directory without metadata, in which the hierarchy lies.
+  // The root of a zip file may be a directory without metadata that holds the hierarchy.
   if (!node && depth > 1) return;
   for (const std::string& name : walk.store.groups_in(key)) add_arrays(walk, joined_key(key, name), depth + 1);
 }

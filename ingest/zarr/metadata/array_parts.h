@@ -1,4 +1,4 @@
-// What the metadata of both versions of Zarr have in common.
+// Readers for the parts of the metadata that both versions of Zarr have in common.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -12,22 +12,24 @@
 
 namespace weir {
 
-/// By its name in either version, "numcodecs." before it or not; nullopt for any other.
+/// Returns the packer with this name in either version, with or without "numcodecs." before it; nullopt for any other
+/// name.
 std::optional<ZarrPacker> parse_packer(std::string_view name);
 
-/// "." or "/". Throws Error(input) for anything else, which messages call `name`.
+/// Returns '.' or '/'. Throws Error(input) for any other `value`, which messages call `name`.
 char read_separator(const nlohmann::json& value, const char* name, const std::string& where);
 
-/// Throws Error(input) where `chunk`, which messages call `name`, has not as many axes as `shape`.
+/// Throws Error(input) if `chunk`, which messages call `name`, does not have as many axes as `shape`.
 void require_same_axes(const std::vector<std::int64_t>& shape, const std::vector<std::int64_t>& chunk, const char* name,
                        const std::string& where);
 
-/// Of a list of as many texts, or nulls, as there are axes; anything else names none.
+/// Sets array.axis_names from `names`, a list of one text or null for each axis. Anything else leaves the axes
+/// without names.
 void read_axis_names(const nlohmann::json& names, ZarrArray& array);
 
-/// "WHERE: its type is TYPE; a volume has ...".
+/// Returns the error "WHERE: its type is TYPE; a volume has ...".
 Error unsupported_type(const std::string& where, std::string_view type);
-/// Of a `role` ("codec", "compressor") that is not read here.
+/// Returns the error for a codec `name` that is not supported; `role` is "codec" or "compressor".
 Error unsupported_codec(const std::string& where, std::string_view role, std::string_view name);
 
 }  // namespace weir

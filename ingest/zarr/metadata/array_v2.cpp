@@ -13,7 +13,7 @@
 namespace weir {
 namespace {
 
-// numpy's "<f4" and "|u1".
+// Reads a type in numpy's notation, for example "<f4" or "|u1".
 void read_type(const nlohmann::json& dtype, ZarrArray& array, const std::string& where) {
   if (dtype.is_array()) throw unsupported_type(where, "a structure");
   const std::string text = dtype.is_string() ? dtype.get<std::string>() : json_text(dtype);
@@ -36,7 +36,8 @@ void read_compressor(const nlohmann::json& compressor, ZarrArray& array, const s
   array.codecs.packers.push_back(*packer);
 }
 
-// Of a delta of any other type, and of other filters, the number of bytes of a value changes, or how it is rounded.
+// Only a delta of one type as wide as the array's is read: other deltas and filters change the number of bytes of a
+// value, or round it.
 ZarrFilter read_delta(const nlohmann::json& filter, const ZarrArray& array, const std::string& where) {
   const std::string dtype = json_string(filter, "dtype");
   const std::string astype = json_string(filter, "astype");
@@ -110,14 +111,15 @@ ZarrArray parse_zarr_v2(const nlohmann::json& metadata, nlohmann::json attribute
   array.fill_text = json_text(fill);
   if (!fill.is_null()) array.fill = fill_bytes(fill, array.type, array.codecs.big_endian, where);
   array.attributes = std::move(attributes);
-  // As xarray names them.
+  // xarray stores the names of the axes in this attribute.
   const nlohmann::json& dimensions = json_member(array.attributes, "_ARRAY_DIMENSIONS");
   read_axis_names(dimensions, array);
-  // xarray writes _FillValue as fill_value, null where there is none, and reads it so (open_store_variable in
-  // xarray/backends/zarr.py). Of others, whose default is 0, it is a value.
+  // xarray writes _FillValue as fill_value, null if there is none, and reads it back the same way
+  // (open_store_variable in xarray/backends/zarr.py). Other writers use 0 by default, so there the fill value is an
+  // ordinary value.
   if (dimensions.is_array() && json_member(array.attributes, "_FillValue").is_null()) {
     array.missing_fill = number_in_fill(fill);
-    // As it is stored: fewer bits than the text has may be left of it.
+    // The missing value must equal the stored value, which may have fewer bits than the text.
     const bool rounded = array.type == ScalarType::float16 || array.type == ScalarType::bfloat16;
     if (array.missing_fill && rounded) {
       float value = 0;

@@ -45,7 +45,7 @@ ScalarType read_type(const nlohmann::json& type, const std::string& where) {
   const std::string name = type.is_string() ? type.get<std::string>() : extension_name(type);
   if (name == "bool") return ScalarType::uint8;  // one byte, 0 or 1
   const auto known = parse_scalar(name);
-  // By its full name, not one of numpy's or C's.
+  // Version 3 has only full names, not numpy's or C's.
   if (!known || scalar_name(*known) != name) throw unsupported_type(where, name.empty() ? json_text(type) : name);
   return *known;
 }
@@ -69,7 +69,7 @@ ZarrChunkKeys read_keys(const nlohmann::json& encoding, const std::string& where
   return keys;
 }
 
-// "dimension_names": one name or null for each axis, or none at all.
+// Throws Error(input) unless `names`, the member dimension_names, is null or a list of one name or null for each axis.
 void require_axis_names(const nlohmann::json& names, std::size_t axes, const std::string& where) {
   const auto is_name = [](const nlohmann::json& name) { return name.is_string() || name.is_null(); };
   if (names.is_null()) return;

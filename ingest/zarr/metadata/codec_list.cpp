@@ -20,7 +20,7 @@ const nlohmann::json& require_list(const nlohmann::json& codecs, const char* nam
                                " codecs; the file is damaged"));
 }
 
-// From the order that `inner` is in to the one before: both steps in one.
+// Appends the transpose `order` to the earlier transposes in `inner`, so that `inner` is all steps in one.
 void transpose_by(const nlohmann::json& order, std::size_t axes, std::vector<std::size_t>& inner,
                   const std::string& where) {
   std::vector<std::size_t> step;
@@ -55,7 +55,7 @@ bool read_endian(const nlohmann::json& configuration, std::size_t value_bytes, c
   throw input_error(where, cat("endian is ", json_text(endian), ", and must be \"little\" or \"big\""));
 }
 
-/// A chain without shards: transposes, bytes, packers.
+/// Reads a chain of codecs without shards: transposes, bytes, packers.
 ZarrCodecs read_chain(const nlohmann::json& list, std::size_t axes, std::size_t value_bytes, const std::string& where) {
   ZarrCodecs codecs;
   bool bytes = false;
@@ -83,12 +83,13 @@ ZarrCodecs read_chain(const nlohmann::json& list, std::size_t axes, std::size_t 
   return codecs;
 }
 
-/// `codecs` are those of an object, or of a chunk in a shard, that is a shard itself.
+/// Returns whether `codecs`, the list of a stored object or of a chunk in a shard, makes it a shard.
 bool is_sharded(const nlohmann::json& codecs) {
   return codecs.size() == 1 && extension_name(codecs.front()) == kSharding;
 }
 
-/// Of shards of `shard` elements; their chunks may be shards too, of which nothing is read here.
+/// Reads the sharding of shards of `shard` elements. If their chunks are shards too, this function does not read their
+/// codecs.
 ZarrSharding read_sharding(const nlohmann::json& configuration, const std::vector<std::int64_t>& shard,
                            std::size_t value_bytes, const std::string& where) {
   ZarrSharding sharding;

@@ -8,15 +8,17 @@
 
 namespace weir {
 
-/// Of an extension point, {"name": "gzip", "configuration": {...}} or "gzip" alone; empty where it has none.
+/// Returns the name of an extension point, {"name": "gzip", "configuration": {...}} or "gzip" alone; empty if it has
+/// none.
 std::string extension_name(const nlohmann::json& extension);
 
-/// Levels of shards that are read.
+/// The most levels of shards inside shards that are read.
 inline constexpr std::size_t kMostShardLevels = 4;
 
-/// Fills array.codecs and array.shards from the list `codecs`; array.type and array.chunk are known. Throws
-/// Error(input), beginning with `where`, for a codec that is not read here, one out of place or with a configuration
-/// that does not fit; other codecs beside sharding_indexed, and more than kMostShardLevels in each other, are not read.
+/// Sets array.codecs and array.shards from the list `codecs`; array.type and array.chunk must be set already. Throws
+/// Error(input), beginning with `where`, for a codec that is not supported, is out of place or has an invalid
+/// configuration. Other codecs beside sharding_indexed, and more than kMostShardLevels levels of shards, are not
+/// supported.
 void read_codecs(const nlohmann::json& codecs, ZarrArray& array, const std::string& where);
 
 }  // namespace weir

@@ -29,7 +29,7 @@ std::vector<std::byte> bytes_as(const StoredValue& value) {
   return std::visit([](auto v) { return bytes_of(static_cast<T>(v)); }, value);
 }
 
-/// In this machine's order; `type` holds `value`.
+/// Returns `value` as bytes of `type` in this machine's order. `type` must be able to hold `value`.
 std::vector<std::byte> native_bytes(ScalarType type, const StoredValue& value) {
   switch (type) {
     case ScalarType::uint8:
@@ -60,7 +60,7 @@ std::vector<std::byte> native_bytes(ScalarType type, const StoredValue& value) {
   return {};
 }
 
-/// "0x7fc00000": the bits of a value of `size` bytes, the highest first.
+/// Parses text like "0x7fc00000", the bits of a value of `size` bytes, and returns the bytes, the highest first.
 std::optional<std::vector<std::byte>> hexadecimal(std::string_view text, std::size_t size) {
   if (!text.starts_with("0x") || text.size() != 2 + 2 * size) return std::nullopt;
   text.remove_prefix(2);
@@ -72,7 +72,7 @@ std::optional<std::vector<std::byte>> hexadecimal(std::string_view text, std::si
   return bytes;
 }
 
-/// The `size` bytes that `text` encodes (RFC 4648, 4); nullopt where it encodes others.
+/// Returns the `size` bytes that `text` encodes (RFC 4648, section 4); nullopt if it does not encode `size` bytes.
 std::optional<std::vector<std::byte>> base64(std::string_view text, std::size_t size) {
   constexpr std::string_view kAlphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   while (text.ends_with('=')) text.remove_suffix(1);
@@ -99,7 +99,7 @@ std::vector<std::byte> fill_bytes(const nlohmann::json& fill, ScalarType type, b
   const std::size_t size = scalar_bytes(type);
   const auto number = number_in_fill(fill);
   if (number && holds(type, *number)) {
-    // No integer holds NaN and infinities.
+    // holds() is false for an integer type and a NaN or an infinity.
     std::vector<std::byte> bytes = native_bytes(type, *number);
     if (big_endian != kNativeIsBig) std::reverse(bytes.begin(), bytes.end());
     return bytes;
@@ -123,7 +123,7 @@ std::optional<StoredValue> number_in_fill(const nlohmann::json& fill) {
 }
 
 std::optional<double> double_in_base64(const nlohmann::json& value) {
-  constexpr std::size_t kDigits = 11;  // and one '='
+  constexpr std::size_t kDigits = 11;  // followed by one '='
   const std::string text = value.is_string() ? value.get<std::string>() : std::string();
   if (text.find('=') != kDigits || text.size() != kDigits + 1) return std::nullopt;
   auto bytes = base64(text, sizeof(double));

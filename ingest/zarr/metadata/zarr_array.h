@@ -1,4 +1,5 @@
-// An array of Zarr, version 2 or 3, as its metadata describes it. Axes in the array's order, slowest first.
+// The description of a Zarr array, version 2 or 3, that its metadata gives. Axes are in the array's order, slowest
+// first.
 #pragma once
 
 #include <cstddef>
@@ -14,42 +15,43 @@
 
 namespace weir {
 
-/// What packs or checks the bytes of a chunk.
+/// A codec that compresses or checks the bytes of a chunk.
 enum class ZarrPacker { zlib, gzip, zstd, blosc, crc32c };
 
-/// A filter of version 2, which rearranges values before they are packed, and keeps their number of bytes.
+/// A filter of version 2. It rearranges the values before they are packed, and keeps their number of bytes.
 struct ZarrFilter {
   enum class Kind { shuffle, delta } kind = Kind::shuffle;
-  std::size_t value_bytes = 1;          ///< of shuffle, >= 1
-  ScalarType type = ScalarType::uint8;  ///< of delta: an integer, float32 or float64, as wide as the array's
-  bool big_endian = false;              ///< of delta
+  std::size_t value_bytes = 1;          ///< for shuffle, >= 1
+  ScalarType type = ScalarType::uint8;  ///< for delta: an integer, float32 or float64, as wide as the array's type
+  bool big_endian = false;              ///< for delta
 };
 
 /// How the values of a chunk become the bytes that are stored.
 struct ZarrCodecs {
-  /// Axis i of what is stored is axis transpose[i] of the chunk; empty: the chunk's own order.
+  /// Axis i of the stored chunk is axis transpose[i] of the chunk; empty: the chunk's own order.
   std::vector<std::size_t> transpose;
   bool big_endian = false;
-  std::vector<ZarrPacker> packers;       ///< in the order of writing
-  std::vector<ZarrFilter> filters = {};  ///< in the order of writing, before the packers
+  std::vector<ZarrPacker> packers;       ///< in the order in which the writer applies them
+  std::vector<ZarrFilter> filters = {};  ///< in the order in which the writer applies them, before the packers
 };
 
-/// Chunks that lie together in one object, a shard, with an index of their places. They may be shards themselves.
+/// Sharding: chunks lie together in one object, a shard, with an index of their places. The chunks may be shards
+/// themselves.
 struct ZarrSharding {
-  std::vector<std::int64_t> chunk;  ///< elements of each inner chunk; divides the shard's
-  ZarrCodecs codecs;                ///< of an inner chunk that is no shard
+  std::vector<std::int64_t> chunk;  ///< elements of each inner chunk; divides the shard's shape
+  ZarrCodecs codecs;                ///< codecs of an inner chunk that is not a shard
   bool index_big_endian = false;
-  bool index_checksum = false;  ///< a crc32c behind the index
-  bool index_first = false;     ///< else at the shard's end
+  bool index_checksum = false;  ///< a crc32c follows the index
+  bool index_first = false;     ///< true: the index is at the shard's start; false: at its end
 };
 
-/// How the key of a chunk is made of its position in the grid.
+/// How the key of a chunk is built from its position in the grid.
 struct ZarrChunkKeys {
   bool prefix = false;      ///< "c" stands before the numbers, as in version 3
-  char separator = '.';     ///< between all parts
-  std::size_t unnamed = 0;  ///< positions in front that are not in the key, of axes that the array does not have
+  char separator = '.';     ///< between all parts of the key
+  std::size_t unnamed = 0;  ///< leading positions that the key omits: of axes that the array does not have
 
-  /// "0.0.1" or "c/0/0/1"; "0" or "c" where there are no positions.
+  /// Returns the key, "0.0.1" or "c/0/0/1"; "0" or "c" if there are no positions.
   std::string key(std::span<const std::int64_t> position) const;
 };
 
@@ -57,27 +59,28 @@ struct ZarrArray {
   std::vector<std::int64_t> shape;  ///< elements, each >= 0
   std::vector<std::int64_t> chunk;  ///< elements of each stored object, each >= 1; as many axes as shape
   ScalarType type = ScalarType::float32;
-  ZarrCodecs codecs;                 ///< of a stored object without shards
-  std::vector<ZarrSharding> shards;  ///< of a stored object, of the chunks in it that are shards, and so on
+  ZarrCodecs codecs;                 ///< codecs of a stored object, if there are no shards
+  std::vector<ZarrSharding> shards;  ///< first of a stored object, then of the chunks in it that are shards, and so on
   ZarrChunkKeys keys;
-  std::optional<std::vector<std::byte>> fill;  ///< one value, in the byte order of values(); none: it is null
+  std::optional<std::vector<std::byte>> fill;  ///< one value, in the byte order of values(); nullopt: it is null
   std::string fill_text;                       ///< as the metadata writes it
-  /// The fill value where it stands for no data: xarray writes _FillValue so in version 2.
+  /// The fill value, if it stands for missing data: xarray writes _FillValue this way in version 2.
   std::optional<StoredValue> missing_fill = {};
-  std::vector<std::string> axis_names;  ///< as many as axes; empty texts where there are none
-  nlohmann::json attributes;            ///< of the user
+  std::vector<std::string> axis_names;  ///< one text for each axis; empty if the axis has no name
+  nlohmann::json attributes;            ///< the user attributes
 
-  /// The elements that are decoded together, and how: of an inner chunk where there are shards.
+  /// The shape of the elements that are decoded together, and their codecs: those of an inner chunk if there are
+  /// shards.
   const std::vector<std::int64_t>& unit() const { return shards.empty() ? chunk : shards.back().chunk; }
   const ZarrCodecs& values() const { return shards.empty() ? codecs : shards.back().codecs; }
 
-  /// "chunked 64 x 64 x 64 in shards of 256 x 256 x 256, blosc, crc32c".
+  /// Returns the layout as text: "chunked 64 x 64 x 64 in shards of 256 x 256 x 256, blosc, crc32c".
   std::string layout_text() const;
 };
 
-/// "shuffle".
+/// Returns the name of the filter, for example "shuffle".
 const char* filter_name(ZarrFilter::Kind kind);
-/// "zstd".
+/// Returns the name of the packer, for example "zstd".
 const char* packer_name(ZarrPacker packer);
 
 }  // namespace weir

@@ -14,10 +14,11 @@ namespace {
 constexpr std::size_t kMostShown = 60;
 constexpr std::size_t kMostAxes = 32;
 
-/// Levels of lists and objects in each other: copies of a value go as deep as it does.
+/// The most levels of nested lists and objects. Copying a value recurses as deeply as the value is nested.
 constexpr int kMostNesting = 64;
 
-/// `text` with the numbers that are no JSON in quotes. Throws where it is nested deeper than metadata are.
+/// Returns `text` with NaN, Infinity and -Infinity, which JSON does not have, in quotes. Throws Error(input) if
+/// `text` is nested too deeply.
 std::string with_quoted_numbers(std::string_view text, const std::string& where) {
   constexpr std::array<std::string_view, 3> kWords{"-Infinity", "Infinity", "NaN"};
   std::string out;
@@ -47,7 +48,7 @@ std::string with_quoted_numbers(std::string_view text, const std::string& where)
   return out;
 }
 
-/// Builds a document value by value, so that it ends at the limit, and leaves out the consolidated metadata.
+/// Builds a document value by value, so that it can stop at the limit, and leaves out the consolidated metadata.
 class ZarrDocument final : public nlohmann::json_sax<nlohmann::json> {
  public:
   explicit ZarrDocument(const std::string& where) : where_(where) {}
@@ -80,7 +81,7 @@ class ZarrDocument final : public nlohmann::json_sax<nlohmann::json> {
   }
 
  private:
-  /// Where `value` lies from now on; nullptr in what is left out.
+  /// Stores `value` in the document and returns its place; returns nullptr if it is left out.
   nlohmann::json* place(nlohmann::json value) {
     if (std::exchange(left_out_, false) || (!open_.empty() && open_.back() == nullptr)) return nullptr;
     if (++values_ > kMostMetadataValues) {
@@ -112,7 +113,7 @@ class ZarrDocument final : public nlohmann::json_sax<nlohmann::json> {
   std::vector<nlohmann::json*>
       open_;  ///< lists and objects that have not ended, the outermost first; nullptr: left out
   std::string key_;
-  bool left_out_ = false;  ///< the value of key_
+  bool left_out_ = false;  ///< the value of key_ is left out
   std::size_t values_ = 0;
 };
 
@@ -135,7 +136,7 @@ std::size_t json_values(const nlohmann::json& value) {
 
 std::string json_text(const nlohmann::json& value) {
   std::string text;
-  if (value.is_structured()) {  // dump() goes as deep as the value does
+  if (value.is_structured()) {  // dump() would recurse as deeply as the value is nested
     text = value.is_array() ? cat("a list of ", value.size()) : cat("an object of ", value.size());
     return text;
   }

@@ -13,36 +13,36 @@
 
 namespace weir {
 
-/// Larger documents are refused before they are read.
+/// The most bytes of a metadata document. Larger documents are refused before they are read.
 inline constexpr std::uint64_t kMostMetadataBytes = std::uint64_t{16} << 20U;
 
-/// Of numbers, texts, lists and objects in a document: each takes some 100 bytes, up to 50 times what it has in the
-/// file.
+/// The most values (numbers, texts, lists and objects) of a document. Each value takes some 100 bytes of memory, up
+/// to 50 times its size in the file.
 inline constexpr std::size_t kMostMetadataValues = 100000;
 
-/// The JSON object that `text` holds, without its member consolidated_metadata: copies of what is in a group. NaN,
-/// Infinity and -Infinity, which Python writes though JSON has none, are read as the texts "NaN", "Infinity" and
-/// "-Infinity". Throws Error(input), beginning with `where`, where it is no JSON, with the byte, nested deeper than
-/// metadata are, of more than kMostMetadataValues values, and where it is no object.
+/// Returns the JSON object in `text`, without its member consolidated_metadata, which only copies the metadata inside
+/// a group. NaN, Infinity and -Infinity, which Python writes although JSON does not have them, become the texts
+/// "NaN", "Infinity" and "-Infinity". Throws Error(input), beginning with `where`, if `text` is not JSON (the message
+/// names the byte) or not an object, is nested too deeply, or has more than kMostMetadataValues values.
 nlohmann::json parse_zarr_json(std::string_view text, const std::string& where);
 
-/// How many values `value` is, itself among them.
+/// Returns the number of values in `value`, including `value` itself.
 std::size_t json_values(const nlohmann::json& value);
 
-/// A value of a document as a message shows it: at most 60 characters.
+/// Returns `value` as text for a message: about 60 characters at most.
 std::string json_text(const nlohmann::json& value);
 
-/// The member `key` of `object`; null where there is none or `object` is no object.
+/// Returns the member `key` of `object`; null if there is no such member or `object` is not an object.
 const nlohmann::json& json_member(const nlohmann::json& object, const char* key);
 
-/// The text that the member `key` holds, empty where it is none.
+/// Returns the text of the member `key`; empty if the member is not a text.
 std::string json_string(const nlohmann::json& object, const char* key);
 
-/// The number that `value` is, or NaN where it is the text "NaN"; nullopt for anything else.
+/// Returns `value` as a number, NaN if it is the text "NaN", and nullopt for anything else.
 std::optional<StoredValue> json_number(const nlohmann::json& value);
 
-/// The whole numbers of the list `value`, each from `least` on, which messages call `name`. Throws Error(input),
-/// beginning with `where`, where it is no list of such.
+/// Returns the whole numbers of the list `value`, each >= `least`. Messages call the list `name`. Throws
+/// Error(input), beginning with `where`, if `value` is not a list of such numbers or has too many of them.
 std::vector<std::int64_t> json_extents(const nlohmann::json& value, const char* name, std::int64_t least,
                                        const std::string& where);
 

@@ -7,7 +7,7 @@
 namespace weir {
 namespace {
 
-/// What chunks can grow by on their way through codecs stays below 4 GiB too, which is what zlib counts.
+/// Leaves room for what a chunk can grow by in its codecs: zlib counts at most 4 GiB.
 constexpr std::uint64_t kLargestChunk = (std::uint64_t{1} << 32U) - (std::uint64_t{1} << 26U);
 
 Index3 divided(const Index3& a, const Index3& b) { return {a.x / b.x, a.y / b.y, a.z / b.z}; }
@@ -27,7 +27,8 @@ void check_chunk_bytes(const std::vector<std::int64_t>& elements, std::size_t va
   }
 }
 
-/// Chunks of `unit` in a shard of `chunk`; at most those that 63 bits count.
+/// Returns the number of chunks of `unit` elements in a shard of `chunk` elements. Throws Error(input) if it exceeds
+/// kLargestChunk.
 std::uint64_t count_inner(const std::vector<std::int64_t>& chunk, const std::vector<std::int64_t>& unit,
                           const std::string& where) {
   std::uint64_t count = 1;

@@ -9,7 +9,7 @@
 namespace weir {
 namespace {
 
-/// Copies the first `width` of every `step` bytes of `from` to every `room` bytes from `to` on.
+/// Copies the first `width` of every `step` bytes of `from` to `to`, `room` bytes apart.
 void scatter(std::span<const std::byte> from, std::size_t step, std::size_t width, std::size_t voxels, std::byte* to,
              std::size_t room) {
   for (std::size_t i = 0; i < voxels; ++i) std::memcpy(to + i * room, from.data() + i * step, width);

@@ -1,4 +1,4 @@
-// The chunks of a volume whose voxels have several numbers, which may lie in several chunks each.
+// The chunks of a volume with several numbers per voxel. The numbers of a voxel may lie in several chunks.
 #pragma once
 
 #include <atomic>
@@ -20,65 +20,66 @@
 
 namespace weir {
 
-/// Some of the numbers of each voxel.
+/// Some of the numbers of each voxel: those that lie in one chunk.
 struct VoxelPart {
-  ChunkGeometry geometry;   ///< of the chunks they lie in
-  std::size_t numbers = 1;  ///< that lie beside each other there
-  std::size_t used = 1;     ///< of them, from the first on
+  ChunkGeometry geometry;   ///< of the chunks with these numbers
+  std::size_t numbers = 1;  ///< of a voxel that lie side by side in its chunk
+  std::size_t used = 1;     ///< how many of these are read, from the first on
 };
 
-/// All that are read of each voxel.
+/// All numbers that are read of each voxel.
 struct VoxelParts {
-  std::vector<VoxelPart> parts;  ///< one or more, of the same voxels in each chunk, in the order of the components
-  VoxelComponents components;    ///< beside each other once they are gathered
+  std::vector<VoxelPart> parts;  ///< one or more, in component order; all have the same voxels in each chunk
+  VoxelComponents components;    ///< side by side, after gathering
 
-  /// Whether a chunk of the one part is not what is wanted as it is.
+  /// Returns whether chunks must be gathered: there are several parts, or only some numbers of the one part are used.
   bool gathers() const { return parts.size() > 1 || parts.front().used != parts.front().numbers; }
-  /// Of a chunk of them, gathered; 0 where nothing is.
+  /// Returns the bytes of one gathered chunk; 0 if nothing is gathered.
   std::size_t gathered_bytes() const;
 };
 
-/// Where `choice` among the components of `array`, along `axis`, lies; of an array without any its only numbers.
-/// `index` has a position on each axis before those of space and components. Throws what ChunkGeometry throws.
+/// Returns the parts of `array` that `choice` needs, a choice among the components along `axis`. An array without
+/// components has one part, its only numbers. `index` has a position on each axis before the axes of space and
+/// components. Throws the errors of ChunkGeometry.
 VoxelParts voxel_parts(const ZarrArray& array, const std::vector<std::int64_t>& index, const ComponentAxis& axis,
                        const std::optional<ComponentChoice>& choice, const std::string& where);
 
-/// Thread-safe. A chunk that holds several parts is decoded once for all of them.
+/// Decodes and gathers chunks. Thread-safe. A chunk that holds several parts is decoded once for all of them.
 class GatheredChunks final : public StoredChunks {
  public:
-  /// `objects.store` outlives it. Throws what ZarrChunks throws.
+  /// `objects.store` must outlive this object. Throws the errors of ZarrChunks.
   GatheredChunks(const ChunkObjects& objects, const ZarrArray& array, const VoxelParts& parts, std::uint64_t memory,
                  const std::atomic<bool>* cancel);
 
-  /// Of all objects, each once.
+  /// The digest, bytes and newest mtime of all objects, each object counted once.
   std::string digest() const;
   std::uint64_t object_bytes() const;
   std::int64_t mtime_ns() const;
-  /// As ZarrChunks says it.
+  /// See ZarrChunks.
   std::string key_by_other_separator() const;
   UnstoredChunks count_unstored(const Box& voxels);
   std::uint64_t working_bytes() const;
   std::uint64_t bytes_read() const;
 
-  /// Throws what ZarrChunks::decode throws.
+  /// Throws the errors of ZarrChunks::decode.
   std::span<const std::byte> decode(const Index3& chunk, ChunkScratch& scratch) override;
 
  private:
   struct Part {
-    std::size_t chunks;  ///< which of chunks_
+    std::size_t chunks;  ///< index in chunks_
     std::size_t first_byte;
     std::size_t numbers;
     std::size_t used;
   };
 
-  /// Those of chunks_ that lie in objects of their own.
+  /// Returns the entries of chunks_ that lie in different objects.
   std::vector<const ZarrChunks*> of_each_object() const;
 
   std::size_t value_bytes_;
   std::size_t gathered_bytes_;
-  std::size_t voxel_bytes_ = 0;  ///< gathered
+  std::size_t voxel_bytes_ = 0;  ///< of a gathered voxel
   std::vector<std::byte> fill_;  ///< one value
-  std::uint64_t store_bytes_;    ///< that the store itself holds
+  std::uint64_t store_bytes_;    ///< bytes that the store itself holds
   std::vector<std::unique_ptr<ZarrChunks>> chunks_;
   std::vector<Part> parts_;
 };

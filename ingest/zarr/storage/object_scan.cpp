@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint64_t kBitsShare = 16;  // of --memory
 constexpr std::int64_t kObjectsBetweenLooks = 1024;
 
-/// Of objects(), which may be more than 63 bits count.
+/// Returns the number of `objects`. Throws Error(usage) if it exceeds `most`; it may exceed 63 bits.
 std::uint64_t count_objects(const Index3& objects, std::uint64_t most, const ChunkObjects& of) {
   std::uint64_t count = 1;
   for (const std::int64_t along : {objects.x, objects.y, objects.z}) {

@@ -10,7 +10,7 @@ namespace weir {
 namespace {
 
 constexpr std::uint64_t kIndexShare = 16;  // of --memory
-constexpr std::uint64_t kIndexCopies = 2;  // as it is stored, and its places
+constexpr std::uint64_t kIndexCopies = 2;  // the index as it is stored, and its places
 
 }  // namespace
 
@@ -45,7 +45,8 @@ std::shared_ptr<OpenShard> OpenShards::load(const std::string& key, ShardBytes s
 }
 
 std::shared_ptr<const OpenShard> OpenShards::get(const std::string& key, const std::function<ShardBytes()>& open) {
-  // One thread reads an index; those that want the same wait for it, and reading one takes little time.
+  // The lock is held while an index is read, so that threads that want the same shard wait for it. Reading an index
+  // is quick.
   const std::lock_guard lock(mutex_);
   const auto found = std::find_if(kept_.begin(), kept_.end(), [&](const auto& shard) { return shard->key == key; });
   if (found != kept_.end()) {

@@ -1,4 +1,4 @@
-// Shards whose indices are kept while their chunks are read.
+// A cache of open shards and their indices, kept while chunks are read.
 #pragma once
 
 #include <cstddef>
@@ -16,29 +16,30 @@
 
 namespace weir {
 
-/// The bytes of a shard: an object, or a part of one.
+/// The place of a shard's bytes: an object, or a part of an object.
 struct ShardBytes {
   std::shared_ptr<ZarrObject> object;
   std::uint64_t offset = 0;
   std::uint64_t bytes = 0;
-  std::string shown;  ///< messages begin with it
+  std::string shown;  ///< name of the shard, with which messages begin
 };
 
 struct OpenShard {
   std::string key;
-  std::shared_ptr<ZarrObject> object;  ///< nullptr: it is a part of one
-  std::vector<ShardPlace> places;      ///< in the object
+  std::shared_ptr<ZarrObject> object;  ///< nullptr: the shard is a part of an object
+  std::vector<ShardPlace> places;      ///< offsets count from the start of the object
 };
 
-/// Those of one level. Thread-safe.
+/// The open shards of one level. Thread-safe.
 class OpenShards {
  public:
-  /// What shards are; those that are parts don't hold their objects open, which the shards around them do.
+  /// Whether shards are whole objects or parts of objects. Parts do not keep their object open; the outermost shard
+  /// does.
   enum class Kind { objects, parts };
 
-  /// Keeps those that were asked for last: as many as a sixteenth of `memory` bytes has room for, at most
-  /// kMostOpenShards. `chunks` lie in each. Throws Error(usage), beginning with `where`, where one index takes
-  /// more than that.
+  /// Keeps the shards that were used last: as many as a sixteenth of `memory` bytes has room for, at most
+  /// kMostOpenShards. Each shard has `chunks` chunks. Throws Error(usage), beginning with `where`, if a single index
+  /// needs more than a sixteenth of `memory`.
   OpenShards(Kind kind, const ZarrSharding& sharding, std::uint64_t chunks, std::uint64_t memory,
              const std::string& where);
 
@@ -46,8 +47,8 @@ class OpenShards {
 
   std::uint64_t working_bytes() const { return most_ * index_bytes_ * 2; }
 
-  /// The shard `key`, which open() opens where it is not kept. Throws what parse_shard_index throws, and Error(input)
-  /// where the shard is shorter than its index.
+  /// Returns the shard `key`; calls open() and reads its index if it is not kept. Throws the errors of
+  /// parse_shard_index, and Error(input) if the shard is shorter than its index.
   std::shared_ptr<const OpenShard> get(const std::string& key, const std::function<ShardBytes()>& open);
 
  private:
@@ -58,7 +59,7 @@ class OpenShards {
   std::uint64_t index_bytes_;
   std::size_t most_;
   std::mutex mutex_;
-  std::list<std::shared_ptr<const OpenShard>> kept_;  ///< the one asked for last is first
+  std::list<std::shared_ptr<const OpenShard>> kept_;  ///< most recently used first
 };
 
 }  // namespace weir

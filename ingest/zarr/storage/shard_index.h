@@ -1,4 +1,4 @@
-// Where the chunks of a shard lie in it.
+// The index of a shard: the places of its chunks.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@ namespace weir {
 
 /// A chunk's bytes in its shard.
 struct ShardPlace {
-  static constexpr std::uint64_t kNone = ~std::uint64_t{0};  ///< of both: the chunk is not stored
+  static constexpr std::uint64_t kNone = ~std::uint64_t{0};  ///< as offset and as bytes: the chunk is not stored
 
   std::uint64_t offset = kNone;
   std::uint64_t bytes = kNone;
@@ -21,12 +21,12 @@ struct ShardPlace {
   bool stored() const { return offset != kNone || bytes != kNone; }
 };
 
-/// Bytes of the index of a shard of `chunks`.
+/// Returns the bytes of the index of a shard with `chunks` chunks.
 std::uint64_t shard_index_bytes(const ZarrSharding& sharding, std::uint64_t chunks);
 
-/// The places that `index`, of shard_index_bytes, has, the last axis's chunks beside each other. Throws Error(input),
-/// beginning with `where`, where its checksum is another one and where a place is not inside the shard's `shard_bytes`
-/// or reaches into the index.
+/// Returns the places in `index`, which has shard_index_bytes(), the last axis fastest. Throws Error(input),
+/// beginning with `where`, if the checksum does not match, or if a place is not inside the shard's `shard_bytes` or
+/// overlaps the index.
 std::vector<ShardPlace> parse_shard_index(const ZarrSharding& sharding, std::span<std::byte> index,
                                           std::uint64_t shard_bytes, const std::string& where);
 

@@ -65,7 +65,7 @@ void ZarrChunks::add_unstored(const Box& chunks, UnstoredChunks& unstored) const
   unstored.count += static_cast<std::uint64_t>(chunks.voxels());
 }
 
-// Shard by shard, each of which is opened once, however many lie in those around it.
+// Counts shard by shard, so that each inner shard is opened only once for all chunks in it.
 void ZarrChunks::count_unstored_in(const OpenShard& outer, const OpenShard& around, const Box& chunks,
                                    std::vector<std::size_t>& path, UnstoredChunks& unstored) {
   const std::size_t level = path.size();

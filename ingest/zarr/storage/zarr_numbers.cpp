@@ -16,18 +16,19 @@
 namespace weir {
 namespace {
 
-constexpr std::uint64_t kIndexMemory = std::uint64_t{128} << 20U;  ///< an index of a shard may have a sixteenth of it
+constexpr std::uint64_t kIndexMemory = std::uint64_t{128} << 20U;  ///< a shard index may take a sixteenth of it
 
 void add_axes_in_front(std::size_t count, std::vector<std::int64_t>& elements) {
   elements.insert(elements.begin(), count, 1);
 }
 
-/// The same array with axes of one element in front, which its keys do not name: a volume, as chunks are read of.
+/// Returns the array as a volume, which the chunk readers need: with leading axes of one element that its keys do not
+/// name.
 ZarrArray as_volume(ZarrArray array) {
   const std::size_t missing = kSpaceAxes - array.shape.size();
   add_axes_in_front(missing, array.shape);
   add_axes_in_front(missing, array.chunk);
-  array.codecs.transpose.clear();  // there is one order of one axis
+  array.codecs.transpose.clear();  // a single axis has only one order
   for (ZarrSharding& shard : array.shards) {
     add_axes_in_front(missing, shard.chunk);
     shard.codecs.transpose.clear();

@@ -1,4 +1,4 @@
-// The numbers of a small Zarr array of one axis or none: coordinates, a time.
+// Reads the numbers of a small Zarr array with one axis or none, for example coordinates or a time.
 #pragma once
 
 #include <string>
@@ -10,8 +10,9 @@
 
 namespace weir {
 
-/// All numbers of the array at `key`, after `mapping`, NaN where one is missing or its chunk is not stored and has no
-/// fill value. `array` has at most one axis, and chunks that memory has room for. Throws what ZarrChunks throws.
+/// Returns all numbers of the array at `key`, after `mapping`. A number is NaN if it is missing, or if its chunk is
+/// not stored and there is no fill value. `array` has at most one axis, and chunks that fit in memory. Throws the
+/// errors of ZarrChunks.
 std::vector<double> zarr_numbers(ZarrStore& store, const std::string& key, ZarrArray array,
                                  const ValueMapping& mapping);
 

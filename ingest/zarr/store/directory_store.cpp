@@ -38,7 +38,8 @@ class DirectoryStore final : public ZarrStore {
   std::string file_of(const std::string& key) const override { return shown(key); }
   bool is_one_file() const override { return false; }
 
-  // Of an array with many chunks that are not stored, most calls find nothing: that takes one question.
+  // In an array with many chunks that are not stored, most calls find nothing. Such a call makes only one system
+  // call.
   ZarrFound find(const std::string& key) override {
     const std::string path = shown(key);
     struct stat status {};

@@ -1,4 +1,4 @@
-// A Zarr hierarchy as a directory with a file for each object.
+// A Zarr hierarchy that is a directory with one file for each object.
 #pragma once
 
 #include <memory>
@@ -8,7 +8,8 @@
 
 namespace weir {
 
-/// Keys with "." or ".." in them are of no object: nothing outside `directory` is opened but by symbolic links in it.
+/// Returns a store of the files in `directory`. A key with "." or ".." in it finds no object, so that only symbolic
+/// links can lead out of `directory`.
 std::unique_ptr<ZarrStore> make_directory_store(const std::string& directory);
 
 }  // namespace weir

@@ -1,4 +1,4 @@
-// The store of a Zarr hierarchy by its path.
+// Opens the store of a Zarr hierarchy by its path.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,9 @@
 
 namespace weir {
 
-/// The store at `path`: a directory, a file in it that says what it is (kDirectoryHeads), or a zip file, whose
-/// directory takes at most a sixteenth of `memory` bytes. Throws Error(input) where it cannot be read.
+/// Returns the store at `path`: a directory, one of its metadata files (kDirectoryHeads), or a zip file. The
+/// directory of a zip file may take at most a sixteenth of `memory` bytes. Throws Error(input) if the store cannot be
+/// read.
 std::unique_ptr<ZarrStore> open_zarr_store(const std::string& path, std::uint64_t memory);
 
 }  // namespace weir

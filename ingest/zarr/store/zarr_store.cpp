@@ -10,7 +10,8 @@ std::optional<std::string> ZarrStore::text(const std::string& key) {
   const std::unique_ptr<ZarrObject> object = open(key);
   if (!object) return std::nullopt;
   if (object->size() > kMostMetadataBytes) {
-    // A group's may hold the metadata of all that is in it; those of an array alone are short.
+    // A group's document may hold the metadata of everything inside the group. The document of a single array is
+    // short.
     throw input_error(shown(key),
                       cat("has ", object->size(), " bytes, more than the ", kMostMetadataBytes,
                           " that metadata may have; if it is a group's, ",

@@ -22,8 +22,8 @@ constexpr std::size_t kEndBytes = 22;
 constexpr std::size_t kEnd64Bytes = 56;
 constexpr std::size_t kLocator64Bytes = 20;
 constexpr std::size_t kMostComment = 65535;
-constexpr std::uint16_t kExtra64 = 1;             // the extra field that has numbers of 64 bits
-constexpr std::uint64_t kSeeExtra = 0xFFFFFFFFU;  // of a number that is there
+constexpr std::uint16_t kExtra64 = 1;             // id of the extra field that has 64-bit numbers
+constexpr std::uint64_t kSeeExtra = 0xFFFFFFFFU;  // in place of a number that is in the extra field
 
 std::uint64_t little_endian(std::span<const std::byte> bytes, std::size_t at, std::size_t count) {
   std::uint64_t value = 0;
@@ -35,14 +35,14 @@ Error damaged_zip(const std::string& where, const std::string& what) {
   return input_error(where, cat(what, "; the zip file is cut short or damaged"));
 }
 
-/// Where the directory lies.
+/// The place of the directory in the file.
 struct ZipCentral {
   std::uint64_t offset = 0;
   std::uint64_t bytes = 0;
   std::uint64_t entries = 0;
 };
 
-/// From the end record of 64 bits, which a locator right before `end` names; nullopt where there is none.
+/// Reads the 64-bit end record, which a locator right before `end` points at; returns nullopt if there is no locator.
 std::optional<ZipCentral> find_central64(const ZipBytes& file, std::uint64_t end, const std::string& where) {
   if (end < kLocator64Bytes) return std::nullopt;
   std::array<std::byte, kLocator64Bytes> locator{};
@@ -78,7 +78,7 @@ ZipCentral find_central(const ZipBytes& file, const std::string& where) {
   throw damaged_zip(where, "has no directory of a zip file at its end");
 }
 
-/// Replaces the numbers that are in the extra field of 64 bits.
+/// Replaces the numbers of `entry` that are stored in the 64-bit extra field.
 void read_extra64(std::span<const std::byte> extra, ZipEntry& entry, const std::string& where) {
   while (extra.size() >= 4) {
     const std::uint64_t id = little_endian(extra, 0, 2);
@@ -111,7 +111,7 @@ bool begins_as_zip(std::span<const std::byte> head) {
 
 ZipEntries read_zip_directory(const ZipBytes& file, std::uint64_t memory, const std::string& where) {
   const ZipCentral central = find_central(file, where);
-  // The numbers of entries that a record of 16 bits gives may have wrapped: the bytes bound them.
+  // A 16-bit record may have a wrapped count of entries, so the directory's bytes bound the count too.
   const std::uint64_t most = central.bytes / kCentralBytes;
   const std::uint64_t needed = 2 * central.bytes + std::min(central.entries, most) * kZipEntryBytes;
   if (needed > memory) {
@@ -162,7 +162,7 @@ std::uint64_t zip_entry_begin(const ZipBytes& file, std::string_view name, const
   }
   std::string found(static_cast<std::size_t>(name_bytes), '\0');
   if (!found.empty()) file.read(entry.header + kLocalBytes, std::as_writable_bytes(std::span(found)));
-  // Of an entry that is read in parts no checksum tells it.
+  // A wrong header must be found here: an entry that is read in parts is not checked against its CRC-32.
   if (found != name) throw damaged_zip(where, cat("has the header of another entry at ", entry.header));
   return begin;
 }

@@ -19,7 +19,7 @@ namespace {
 constexpr std::uint64_t kDirectoryShare = 16;  // of --memory
 constexpr std::size_t kInputBytes = 64 << 10U;
 
-/// Closes a decoder on every way out.
+/// A zlib decoder that is closed on every way out of its scope.
 class RawInflater {
  public:
   RawInflater() {

@@ -1,4 +1,4 @@
-// A Zarr hierarchy in a zip file, read in place.
+// A Zarr hierarchy in a zip file, which is read in place.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,9 @@
 
 namespace weir {
 
-/// Stored entries are read in parts, deflated ones as a whole: both are checked against their CRC-32 where they are
-/// read as a whole. Throws what read_zip_directory throws; of `memory`, the directory may take a sixteenth.
+/// Returns a store of the entries of the zip file `path`. Stored entries can be read in parts, deflated entries only
+/// as a whole. A read of a whole entry is checked against its CRC-32. The zip file's directory may take a sixteenth
+/// of `memory` bytes. Throws the errors of read_zip_directory.
 std::unique_ptr<ZarrStore> make_zip_store(const std::string& path, std::uint64_t memory);
 
 }  // namespace weir

@@ -109,7 +109,7 @@ TEST(NiftiSource, LengthUnit_IsOfAllAxes) {
   }
 }
 
-/// Two volumes of 4 x 3 x 1 voxels, half a unit of time apart, the first one at 3.
+/// A header of two volumes of 4 x 3 x 1 voxels, half a unit of time apart, the first at time 3.
 NiftiBytes two_times(int version, bool big_endian, std::int32_t units) {
   NiftiBytes header(version, big_endian);
   if (version == 1) {
@@ -265,7 +265,7 @@ TEST(NiftiSource, GarbageAndBombsAreRefused) {
   EXPECT_EQ(refusal(path), path + ": is no NIfTI file: its first four bytes are neither 348 nor 540");
 }
 
-// What nibabel writes: the values as it reads them back go beside each file as float32, x fastest.
+// Tests files that nibabel writes. The values that nibabel reads back go beside each file as float32, x fastest.
 TEST(NiftiSource, ReadsWhatNibabelWrites) {
   if (!python_has("nibabel, numpy")) GTEST_SKIP() << "python3 with nibabel is missing";
   const Scratch scratch;

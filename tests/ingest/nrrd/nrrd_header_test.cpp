@@ -23,7 +23,7 @@ std::string refusal(const std::string& text, bool whole = true) {
 
 std::string with(const std::string& field) { return kMinimal + field + "\n\n"; }
 
-/// `text` with the line that begins with `name` replaced by `line`, or taken out where that is empty.
+/// Returns `text` with the line that begins with `name` replaced by `line`, or removed if `line` is empty.
 std::string replaced(std::string text, const std::string& name, const std::string& line) {
   const std::size_t start = text.find(name);
   text.replace(start, text.find('\n', start) + 1 - start, line.empty() ? "" : line + "\n");

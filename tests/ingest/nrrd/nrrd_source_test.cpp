@@ -18,7 +18,7 @@ std::vector<std::uint8_t> ramp() {
   return values;
 }
 
-/// A header of 4 x 3 x 2 uint8 values with more fields, blank line included.
+/// Returns a header of 4 x 3 x 2 uint8 values with more fields, including the blank line.
 std::string header(const std::string& fields = "", const std::string& encoding = "raw") {
   return "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 3 2\nencoding: " + encoding + "\n" + fields + "\n";
 }
@@ -86,7 +86,7 @@ TEST(NrrdSource, SpacingsAndAxisRangesGiveThePlacement) {
   EXPECT_EQ(ranges.origin, (std::array<double, 3>{1, 0, 10}));
 }
 
-// The axis that the ranges 20 to 0 and the space direction -1 both describe.
+// The ranges 20 to 0 and the space direction -1 describe the same axis.
 TEST(NrrdSource, FallingAxisMins_PlaceTheVoxels) {
   const Scratch scratch;
   const auto open = [&](const std::string& fields) {

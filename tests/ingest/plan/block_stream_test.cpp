@@ -22,7 +22,8 @@ class NoLeaves final : public HeldLeaves {
 };
 const NoLeaves kNoLeaves;
 
-/// Values are their linear index; can fail at one read or from one layer on, and remembers who read and into where.
+/// A source whose values are their linear index. It can fail at one read or from one layer on, and records who read
+/// and into which memory.
 class CountingSource final : public VolumeSource {
  public:
   explicit CountingSource(const Index3& extent) { info_.extent = extent; }
@@ -333,7 +334,7 @@ TEST(BlockStream, CancelDuringAtRest_CallsAtRestOnceMore) {
   EXPECT_EQ(worked, 3U);
 }
 
-// Groups of 64 Mi voxels, here of two blocks; a group that has begun is finished.
+// Reads groups of 64 Mi voxels, here of two blocks; a group that has begun is finished.
 TEST(BlockStream, InPlace_CallsAtRestAndCancelsBetweenGroups) {
   class Empty final : public VolumeSource {
    public:

@@ -11,7 +11,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Reads four bytes a voxel; opening it took 100.
+/// A source that reads four bytes a voxel; opening it took 100 bytes.
 class CountingSource final : public VolumeSource {
  public:
   CountingSource() { info_.extent = {1000, 1, 1}; }

@@ -59,7 +59,7 @@ TEST_F(ReversedSourceTest, WithoutAReversedAxisItIsTheSourceItself) {
   EXPECT_EQ(reverse_axes(std::move(plain), {}).get(), before);
 }
 
-/// Says that it lies in chunks.
+/// A source that says it is stored in chunks.
 class ChunkedVolume final : public VolumeSource {
  public:
   explicit ChunkedVolume(std::unique_ptr<VolumeSource> source) : source_(std::move(source)) {}

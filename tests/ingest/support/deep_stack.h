@@ -1,18 +1,18 @@
-// A stack that is used up, as by a library that follows a circle.
+// Overflows the stack, as a library does that follows a circular reference.
 #pragma once
 
 #include <sys/resource.h>
 
 namespace weir {
 
-/// Never returns from 1: the bound is there for compilers, which warn of a recursion without one.
+/// Never returns when called with 1. The bound exists because compilers warn of a recursion without a bound.
 inline int call_itself(unsigned depth) {
   volatile char room[4096];
   room[0] = static_cast<char>(depth);
   return depth == 0 ? 0 : call_itself(depth + 1) + room[0];
 }
 
-/// Never returns. The main thread's stack ends at 8 MiB, where it has no end.
+/// Never returns. An unlimited main stack is first limited to 8 MiB.
 inline int use_up_stack() {
   rlimit stack{};
   ::getrlimit(RLIMIT_STACK, &stack);

@@ -1,4 +1,4 @@
-// Files of a header and values, for the tests of the formats that are such.
+// Writes files of a header and values, for the tests of such formats.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 
 namespace weir {
 
-/// The values as a file of that byte order stores them.
+/// Returns the values as a file of that byte order stores them.
 template <typename T>
 std::vector<std::byte> stored(const std::vector<T>& values, bool big_endian = false) {
   std::vector<std::byte> bytes(values.size() * sizeof(T));
@@ -35,7 +35,7 @@ inline std::string write_headed(const Scratch& scratch, const std::string& name,
   return scratch.write(name, bytes);
 }
 
-/// The ends of T's range, -1 or its like, and 0, 1, 2, ...: as many as asked for.
+/// Returns `count` values 0, 1, 2, ..., of which the first few are replaced by the ends of T's range and -1.
 template <typename T>
 std::vector<T> telling_values(std::size_t count) {
   std::vector<T> values(count);

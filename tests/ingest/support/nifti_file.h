@@ -1,4 +1,4 @@
-// NIfTI headers made by hand, in either version and byte order.
+// Builds NIfTI headers by hand, in either version and byte order.
 #pragma once
 
 #include <algorithm>
@@ -12,8 +12,7 @@
 
 namespace weir {
 
-/// A header of 4 x 3 x 2 uint8 values with nothing else said; fields are set by their byte offsets in nifti1.h and
-/// nifti2.h.
+/// A header of 4 x 3 x 2 uint8 values and nothing else. Fields are set by their byte offsets in nifti1.h and nifti2.h.
 class NiftiBytes {
  public:
   explicit NiftiBytes(int version, bool big_endian = false)
@@ -41,7 +40,7 @@ class NiftiBytes {
     bytes_.replace(at, stored.size(), stored);
     return *this;
   }
-  /// Values of one type from `at` on.
+  /// Sets values of one type from `at` on.
   template <typename T>
   NiftiBytes& set_all(std::size_t at, const std::vector<T>& values) {
     for (std::size_t i = 0; i < values.size(); ++i) set(at + i * sizeof(T), values[i]);
@@ -52,7 +51,7 @@ class NiftiBytes {
     return *this;
   }
 
-  /// The header and its four bytes of extension flags.
+  /// Returns the header and its four bytes of extension flags.
   const std::string& bytes() const { return bytes_; }
 
  private:

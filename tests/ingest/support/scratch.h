@@ -1,5 +1,4 @@
-// What the tests of this folder share: a directory of their own, files of known
-// bytes, and the message of an expected error.
+// Helpers of this folder's tests: a temporary directory, files of known bytes, and the message of an expected error.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -16,7 +15,7 @@
 
 namespace weir {
 
-/// A directory of the test's own and files in it.
+/// A temporary directory for one test, and files in it.
 class Scratch {
  public:
   std::string path(const std::string& name) const { return directory_ / name; }
@@ -27,7 +26,7 @@ class Scratch {
     EXPECT_TRUE(file.good()) << path(name);
     return path(name);
   }
-  /// `header` bytes of 0xEE, then the values as they lie in memory.
+  /// Writes `header` bytes of 0xEE, then the values as they lie in memory.
   template <typename T>
   std::string write_values(const std::string& name, const std::vector<T>& values, std::size_t header = 0) const {
     std::vector<std::byte> bytes(header, std::byte{0xEE});

@@ -1,4 +1,4 @@
-// A source whose every answer is another one than VolumeSource's own.
+// A source that overrides every function of VolumeSource with a distinct answer, to test classes that forward calls.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace weir {
 
-/// All that calls of a TellingSource were given and answered with pointers.
+/// Records the boxes that a TellingSource was asked for, and holds the objects whose addresses it returns.
 struct Told {
   class Held final : public HeldLeaves {
    public:
@@ -37,14 +37,14 @@ struct Told {
   ResidentVolume* resident() { return reinterpret_cast<ResidentVolume*>(&device); }  // an address to compare, no more
 };
 
-/// 16 x 8 x 8 voxels; each way of reading fills its values with a number of its own.
+/// A source of 16 x 8 x 8 voxels; each way of reading fills the values with its own number.
 class TellingSource final : public VolumeSource {
  public:
   static constexpr float kRead = 1;
   static constexpr float kAlone = 2;
   static constexpr float kRepeated = 3;
 
-  /// `told` must outlive it.
+  /// `told` must outlive the source.
   explicit TellingSource(Told& told) : told_(told) { info_.extent = {16, 8, 8}; }
 
   const SourceInfo& info() const override { return info_; }
@@ -54,7 +54,7 @@ class TellingSource final : public VolumeSource {
   ConversionLoss read_alone(const Box& box, std::span<float> values) override { return fill(box, values, kAlone); }
   ResidentVolume* resident() override { return told_.resident(); }
   const CellPlaces* places() const override { return &told_.places; }
-  /// The lower half of `box` along x.
+  /// Returns the lower half of `box` along x.
   std::vector<Box> voxels_with_values(const Box& box) const override {
     told_.asked.push_back(box);
     return {{box.lo, {(box.lo.x + box.hi.x) / 2, box.hi.y, box.hi.z}}};

@@ -18,7 +18,7 @@ namespace {
 
 using test::StockNvdb;
 
-/// Every voxel of `box` as the stock accessor has it.
+/// Returns every voxel of `box` as the stock accessor reads it.
 std::vector<float> expected_values(const StockNvdb& stock, const Box& box) {
   std::vector<float> values;
   for (std::int64_t z = box.lo.z; z < box.hi.z; ++z) {
@@ -56,7 +56,7 @@ TEST(NvdbSource, ReadsEveryTypeAsTheStockAccessorDoes) {
   }
 }
 
-/// The file of a stock grid, whose head gives `number` as its class and `background`.
+/// Returns the file of a stock grid with `number` as its class in the head, and with `background`.
 std::vector<std::byte> classed(GridType type, std::uint32_t number, float background) {
   auto bytes = StockNvdb(type).file();
   const auto grid = NvdbGrid::open(bytes, "a.nvdb").grid_offset();

@@ -1,4 +1,4 @@
-// What `weir convert` says to bad input and what it leaves behind: nothing. Each refusal is compared whole: exit
+// Tests how `weir convert` refuses bad input, and that it leaves nothing behind. Each refusal is compared whole: exit
 // code, the one line on stderr, an empty stdout, and every directory it could have written to.
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -21,7 +21,7 @@ class BadInput : public ::testing::Test {
     fs::create_directory(out_);
   }
 
-  /// A raw volume of `values`, written to in/NAME.
+  /// Writes a raw volume of `values` to in/NAME.
   std::string volume(const std::string& name, const std::vector<float>& values) {
     std::string bytes(values.size() * sizeof(float), '\0');
     std::memcpy(bytes.data(), values.data(), bytes.size());
@@ -195,7 +195,7 @@ TEST_F(BadInput, OutputDirectoryReadOnly) {
         path, {"--work-dir", in_.string()}, 5,
         out() + ".partial: cannot create: " + reason + "; check the permissions or choose another place");
   };
-  if (geteuid() == 0) {  // to whom permissions mean nothing
+  if (geteuid() == 0) {  // root may write despite permissions
     ScopedMount mount(out_, 1 << 20);
     if (!mount.refused().empty()) GTEST_SKIP() << mount.refused();
     mount.make_read_only();

@@ -1,4 +1,4 @@
-// What weir compare reports beside the error: what float32 lost, and what of a volume is not defined.
+// Tests what weir compare reports beside the error: what float32 lost, and which figures of a volume are not defined.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace {
 
 class CompareReport : public testing::Test {
  protected:
-  // A lossless file of `raw`, `nvdb_`.
+  // Converts `raw` to a lossless file, `nvdb_`.
   void convert(const std::string& raw) const {
     const CommandResult made =
         run_weir({"convert", raw, "-o", nvdb_, "--lossless", "--nonfinite", "keep", "--overwrite"});
@@ -37,7 +37,7 @@ class CompareReport : public testing::Test {
   std::string nvdb_ = directory_ / "a.nvdb";
 };
 
-// 2^53 + 0 .. 4095: float32 keeps nothing of the difference.
+// The values 2^53 + 0 .. 4095: float32 keeps nothing of their difference.
 TEST_F(CompareReport, WhatFloat32Rounds_IsInTheJson) {
   std::string bytes;
   for (std::int64_t i = 0; i < 4096; ++i) {

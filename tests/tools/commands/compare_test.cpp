@@ -1,4 +1,4 @@
-// weir compare from outside, on files that the command itself made.
+// Tests weir compare from outside, on files that the command itself made.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -35,7 +35,7 @@ TEST(Compare, LosslessFile) {
             "lossless: all 116550 finite voxels read bit for bit\n");
 }
 
-// What stands behind `key` and blanks in a line of its own.
+// Returns the text behind `key` and blanks, on its line.
 std::string line_of(const std::string& text, const std::string& key) {
   const std::size_t at = ("\n" + text).find("\n" + key + ' ');
   if (at == std::string::npos) return "no line " + key;
@@ -88,7 +88,8 @@ TEST(Compare, VoxelSizeOfTheVolume_CountsWithoutASidecar) {
   EXPECT_EQ(run_weir({"compare", volume.raw, volume.nvdb}).err, "") << "no length counts";
 }
 
-// -Infinity in the file where the source is 2, and 1 in 100 voxels more: the error is over the other 1799.
+// The file has -Infinity where the source is 2, and in 1 of 100 further voxels; the error is over the other 1799
+// voxels.
 TEST(Compare, VoxelsThatTheFileReadsAsInfinite_AreLeftOutOfTheError) {
   const TemporaryDirectory directory;
   const std::string raw = directory / "a_20x10x9_float32.raw";
@@ -252,7 +253,8 @@ TEST(Compare, NonFiniteVoxelsAreCounted) {
       << help;
 }
 
-// The contract gives compare the input options of convert; these two are read, and say nothing of the error.
+// The contract gives compare the input options of convert; the two options here are accepted and do not change the
+// error.
 TEST(Compare, PolicyAndSceneOfTheConversion_ChangeNoFigure) {
   const ConvertedPair volume("some-nan", "97x10x10_float32", {"--lossless", "--nonfinite", "background"});
   const std::string plain = run_weir({"compare", volume.raw, volume.nvdb}).out;

@@ -1,4 +1,4 @@
-// weir convert --backend: what it refuses, and that the choice leaves no trace in the record.
+// Tests what weir convert --backend refuses, and that the choice leaves no trace in the record.
 #include <gtest/gtest.h>
 
 #include <string>

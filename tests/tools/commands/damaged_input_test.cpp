@@ -1,4 +1,4 @@
-// Commands that make a new file of a volume whose bytes are not those that were certified.
+// Tests commands that make a new file of a volume whose bytes differ from the certified bytes.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 class DamagedInput : public ConvertedVolume {
  protected:
-  // One bit, in the middle of the leaves.
+  // Flips one bit in the middle of the leaves.
   void damage() const {
     std::string file = read_file(volume_);
     char& byte = file[file.size() / 2];

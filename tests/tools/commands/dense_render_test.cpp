@@ -1,4 +1,4 @@
-// weir render --volume dense from outside: a source and its lossless file are one picture.
+// Tests weir render --volume dense from outside: a source and its lossless file give the same picture.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -14,7 +14,7 @@ namespace {
 
 class DenseRender : public ::testing::Test {
  protected:
-  /// The bytes of a linear picture, or what went wrong.
+  /// Returns the bytes of a linear picture, or the error message.
   std::string picture(const std::vector<std::string>& input, const std::vector<std::string>& look) const {
     const std::string image = directory_ / "a.exr";
     std::filesystem::remove(image);
@@ -69,7 +69,7 @@ TEST_F(DenseRender, HardVolumes) {
         "background", "signed", "hot-voxel", "plateau", "checkerboard", "nearly-constant", "noise"}) {
     expect_same_pictures(sample(kind, "21x37x18_float32"), {"--nonfinite", "keep"}, looks);
   }
-  // The root of a file with infinities names no finite range, so the scene does.
+  // The root of a file with infinities names no finite range, so the scene names one.
   const std::string scene = directory_ / "s.toml";
   write_file(scene, "[volume]\nrange = [0, 1]\n");
   expect_same_pictures(sample("some-nan", "21x37x18_float32"), {"--nonfinite", "keep"},
@@ -91,7 +91,7 @@ TEST_F(DenseRender, PlacedAndCutByTheInputOptions) {
   std::vector<std::string> dense{raw, "--volume", "dense"};
   dense.insert(dense.end(), cut.begin(), cut.end());
   EXPECT_TRUE(picture({directory_ / "v.nvdb"}, {}) == picture(dense, {}));
-  // Raw bytes without a name that says what they are; and voxels that stand for no data become the background.
+  // Raw bytes whose name does not describe them; voxels without data become the background.
   std::filesystem::rename(raw, directory_ / "plain");
   const std::vector<std::string> shape{"--dims",    "40,30,20", "--type",           "int16",
                                        "--missing", "0",        "--missing-policy", "background"};
@@ -136,7 +136,7 @@ TEST_F(DenseRender, Refusals) {
   EXPECT_FALSE(std::filesystem::exists(image));
 }
 
-// A sparse file: nothing of it is read before the memory is asked for.
+// A sparse file: the memory is checked before anything of it is read.
 TEST_F(DenseRender, VolumeLargerThanMemory_IsRefused) {
   const std::string raw = directory_ / "a_65536x65536x256_uint8.raw";
   { std::ofstream{raw}; }

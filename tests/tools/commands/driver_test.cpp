@@ -1,4 +1,5 @@
-// What needs a library of others, where weir's part for it (ingest/drivers) is missing, broken or of another build.
+// Tests commands that need a library of others when weir's driver for it (ingest/drivers) is missing, broken or of
+// another build.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -64,7 +65,7 @@ TEST_F(Driver, NoSharedObject_IsSaid) {
 }
 
 TEST_F(Driver, OfAnotherBuild_IsSaid) {
-  // A shared object without the entry: any library of the system.
+  // A shared object without the entry point: any library of the system.
   const CommandResult found = run_command({"sh", "-c", "ls /lib/*/libm.so.6 /lib64/libm.so.6 2>/dev/null | head -1"});
   std::filesystem::copy_file(found.out.substr(0, found.out.find('\n')), drivers_ + "/weir_hdf5.so");
   EXPECT_EQ(refusal({"convert", hdf5_}),

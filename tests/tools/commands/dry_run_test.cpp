@@ -1,4 +1,4 @@
-// weir convert --dry-run: what it says, that it leaves nothing, and that it fails as the conversion does.
+// Tests what weir convert --dry-run prints, that it leaves nothing, and that it fails as the conversion does.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -109,7 +109,7 @@ TEST_F(DryRunTest, Lines_SayWhatItComesTo) {
   EXPECT_TRUE(std::regex_match(said.out, form)) << said.out;
 }
 
-// 2^53 .. 2^53 + 4095: float32 has one value in 2^30 there.
+// The values 2^53 .. 2^53 + 4095: float32 has one value in 2^30 there.
 TEST_F(DryRunTest, WhatFloat32Rounds_IsSaidAsOfTheConversion) {
   std::string bytes;
   for (std::int64_t i = 0; i < 4096; ++i) {

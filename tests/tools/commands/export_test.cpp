@@ -1,4 +1,4 @@
-// weir export from outside: volumes that weir made, read by OpenVDB and by its stock tool.
+// Tests weir export from outside: volumes that weir made, read by OpenVDB and by its stock tool.
 #include <gtest/gtest.h>
 
 #include <algorithm>

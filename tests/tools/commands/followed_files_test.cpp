@@ -1,5 +1,5 @@
-// Files that a source names: any on the command line, with a notice where one is elsewhere; with --within, and in a
-// watch, those below a directory only.
+// Tests files that a source names. On the command line any file is read, with a notice if it lies elsewhere; with
+// --within and in a watch, only files below a directory are read.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -24,7 +24,7 @@ class FollowedFiles : public ::testing::Test {
     }
   }
 
-  /// Converts run/a.mhd, whose values are in the file named `data`.
+  /// Converts run/a.mhd; its values are in the file named `data`.
   CommandResult convert(const std::string& data, const std::vector<std::string>& options = {}) const {
     write_file(
         header_,

@@ -1,4 +1,5 @@
-// Files that are not weir's own, nor its outputs: no command replaces or removes them, whatever --overwrite says.
+// Tests that no command replaces or removes files that are neither weir's own nor its outputs, whatever --overwrite
+// says.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -17,7 +18,7 @@ class ForeignFiles : public ::testing::Test {
  protected:
   static constexpr std::size_t kVoxels = std::size_t{16} * 16 * 16;
 
-  /// `arguments` fail with 2 and that line, and every file below the directory is as it was.
+  /// Expects that `arguments` fail with exit code 2 and `line`, and that every file below the directory is unchanged.
   void expect_refused(const std::vector<std::string>& arguments, const std::string& line) const {
     SCOPED_TRACE(line);
     const auto names = list_directory(directory_.path());

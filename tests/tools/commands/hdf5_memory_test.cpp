@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::uint64_t kMiB = std::uint64_t{1} << 20U;
 
-/// Axes in the file's order, slowest first.
+/// Extents in the file's axis order, slowest first.
 struct ChunkedVolume {
   std::string name;
   std::vector<hsize_t> extent;
@@ -34,7 +34,7 @@ struct ChunkedVolume {
 
 std::ostream& operator<<(std::ostream& out, const ChunkedVolume& v) { return out << v.name; }
 
-/// One stored chunk of ramps and plateaus; the same everywhere but for a value that tells the chunk.
+/// Returns a stored chunk of ramps and plateaus; only one value differs between chunks and identifies the chunk.
 std::vector<std::byte> stored_chunk(hsize_t elements, std::uint32_t number) {
   std::vector<float> values(elements);
   for (hsize_t i = 0; i < elements; ++i) values[i] = static_cast<float>((i >> 6U) % 1000) + static_cast<float>(number);
@@ -47,8 +47,8 @@ std::vector<std::byte> stored_chunk(hsize_t elements, std::uint32_t number) {
   return stored;
 }
 
-/// A volume made without deflating every chunk of it: seven different ones take turns. Returns the bytes they
-/// take in the file.
+/// Writes a volume without deflating every chunk: seven different chunks take turns. Returns the bytes of the chunks
+/// in the file.
 std::uint64_t write_volume(const std::string& path, const ChunkedVolume& volume) {
   const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
   const hid_t space = H5Screate_simple(3, volume.extent.data(), nullptr);
@@ -99,7 +99,7 @@ TEST_P(Hdf5Memory, StaysUnderTheCeiling) {
   EXPECT_LT(convert.peak_rss_bytes, volume.memory_bytes);
   EXPECT_EQ(std::filesystem::file_size(output), bytes / 8);
   EXPECT_EQ(convert.err.find("times in a pass") != std::string::npos, volume.decodes_twice) << convert.err;
-  // Two passes that decode each chunk once: it is fetched as stored, and no more often.
+  // Two passes decode each chunk once: it is fetched as stored, and no more often.
   const auto bytes_read = nlohmann::json::parse(convert.out)["timing"]["bytes_read"].get<std::uint64_t>();
   if (volume.decodes_twice) {
     EXPECT_GT(bytes_read, 2 * stored);
@@ -143,7 +143,8 @@ TEST(Hdf5KeptValues, AreDecodedOnceUnderTheCeiling) {
   EXPECT_EQ(kept["file"]["digest"], not_kept["file"]["digest"]);
 }
 
-// Of a filter that the library undoes: it keeps some kilobytes for each chunk of a read, and these have 64 bytes.
+// Tests a filter that the library undoes: the library keeps some kilobytes for each chunk of a read, and these chunks
+// have 64 bytes.
 TEST(Hdf5SmallChunksMemory, StaysUnderTheCeiling) {
   if (kSanitized) GTEST_SKIP() << kSanitizedSkip;
   const TemporaryDirectory directory;
@@ -157,7 +158,8 @@ TEST(Hdf5SmallChunksMemory, StaysUnderTheCeiling) {
     H5Pset_chunk(creation, 3, kChunk.data());
     H5Pset_scaleoffset(creation, H5Z_SO_INT, 0);
     const hid_t dataset = H5Dcreate2(file, "density", H5T_STD_U8LE, space, H5P_DEFAULT, creation, H5P_DEFAULT);
-    // In parts, since what the library takes for one counts as memory of the processes that this one starts.
+    // Written in parts, because the library's memory for one write counts as memory of the processes that this process
+    // starts.
     constexpr std::array<hsize_t, 3> kPart{4, 64, 256};
     const hid_t in_memory = H5Screate_simple(3, kPart.data(), nullptr);
     std::vector<std::uint8_t> values(kPart[0] * kPart[1] * kPart[2]);

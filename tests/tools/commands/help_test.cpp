@@ -1,4 +1,4 @@
-// The ways to ask for help.
+// Tests the ways to ask for help.
 #include <gtest/gtest.h>
 
 #include <string>

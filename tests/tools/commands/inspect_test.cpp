@@ -1,4 +1,4 @@
-// weir inspect as a user runs it.
+// Tests weir inspect as a user runs it.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -113,7 +113,7 @@ TEST_F(Inspect, HistogramWithoutSidecar_IsOfTheFiniteValues) {
   }
 }
 
-// As a writer leaves it that computes no statistics.
+// A file as left by a writer that computes no statistics.
 TEST_F(Inspect, FileWithoutStatistics_HasTheRangeOfItsBlocks) {
   fs::remove(sidecar_path(volume_));
   const auto range = [&] {

@@ -1,5 +1,5 @@
-// The memory ceiling of the whole process, from outside: a volume eight times as
-// large as --memory, read from the cache and past it. The kernel's figure counts.
+// Tests the memory ceiling of the whole process from outside: a volume eight times as large as --memory, read from the
+// page cache and past it. The kernel's figure counts.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -54,7 +54,7 @@ TEST(Memory, ATwoGibibyteVolumeStaysUnderTheCeiling) {
   EXPECT_EQ(measured["max_abs"].get<double>(), certified["max_abs"].get<double>());
 }
 
-// The least --memory there is, and one thread: again and again, as the process is not laid out the same each time.
+// Uses the least --memory and one thread, repeatedly, because the memory layout of the process differs each time.
 TEST(Memory, SmallVolumesConvertInTheLeastCeiling) {
   if (kSanitized) GTEST_SKIP() << kSanitizedSkip;
   const TemporaryDirectory directory;
@@ -72,7 +72,7 @@ TEST(Memory, SmallVolumesConvertInTheLeastCeiling) {
   }
 }
 
-// Of a file much larger than the ceiling, which is mapped for it.
+// The file is much larger than the ceiling and is mapped to certify the gradient.
 TEST(Memory, TheGradientIsCertifiedInTheLeastCeiling) {
   if (kSanitized) GTEST_SKIP() << kSanitizedSkip;
   const TemporaryDirectory directory;
@@ -84,7 +84,7 @@ TEST(Memory, TheGradientIsCertifiedInTheLeastCeiling) {
   EXPECT_LT(result.peak_rss_bytes, 64 * kMiB);
 }
 
-// A volume of one layer has one layer of macrocells, here of 7.6 MiB: no more of them are held, and counted.
+// A volume of one layer has one layer of macrocells, here of 7.6 MiB; no more are held and counted.
 TEST(Memory, AFlatVolumeConvertsInTheLeastCeiling) {
   if (kSanitized) GTEST_SKIP() << kSanitizedSkip;
   const TemporaryDirectory directory;

@@ -1,4 +1,4 @@
-// A scene whose opacity has a band that lies between two entries of its table: whoever runs convert or render is told.
+// Tests that convert and render warn of a scene whose opacity has a band between two entries of its table.
 #include <gtest/gtest.h>
 
 #include "format/base/text.h"

@@ -1,4 +1,4 @@
-// What a conversion says of axes that are not those of the file's world.
+// Tests what a conversion says of axes that are not those of the file's world.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>

@@ -1,4 +1,4 @@
-// What commands make of --output.
+// Tests how commands read --output.
 #include <gtest/gtest.h>
 
 #include <filesystem>

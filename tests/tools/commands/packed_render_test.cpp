@@ -1,4 +1,4 @@
-// weir render and play of packed files whose decoded voxels are several times as large as --memory.
+// Tests weir render and play on packed files whose decoded voxels are several times as large as --memory.
 #include <gtest/gtest.h>
 
 #include <cstdint>

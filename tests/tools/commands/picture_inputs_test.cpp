@@ -1,4 +1,4 @@
-// Pictures that would take the place of what they are made from.
+// Tests that a picture cannot replace one of its own inputs.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// The memory that a picture takes beside its volume, which docs/limits.md tells: no picture is held twice.
+// Tests the memory that a picture takes beside its volume, as docs/limits.md states it: no picture is held twice.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ constexpr std::uint64_t kProgram = 48 << 20U;  // code, volume and what the test
 
 class PictureMemory : public ConvertedVolume {
  protected:
-  /// Bytes a pixel, at most, that weir took.
+  /// Returns an upper bound of the bytes per pixel that weir took.
   static std::uint64_t taken(std::vector<std::string> arguments) {
     arguments.insert(arguments.end(),
                      {"--size", "4096x2048", "--mode", "mip", "--spp", "1", "--backend", "cpu", "--quiet"});

@@ -1,4 +1,4 @@
-// weir play from outside: frames are those of weir render, in order, complete or absent.
+// Tests weir play from outside: frames are those of weir render, in order, complete or absent.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -17,7 +17,7 @@ namespace {
 
 class Play : public ::testing::Test {
  protected:
-  /// A lossless file of `kind`; each `seed` is another volume.
+  /// Makes a lossless file of `kind`; each `seed` gives another volume.
   std::string make(const std::string& name, const std::string& kind, int seed,
                    const std::string& shape = "40x36x32") const {
     const std::string raw = directory_ / (kind + "_" + shape + "_float32.raw");
@@ -31,7 +31,7 @@ class Play : public ::testing::Test {
     return arguments;
   }
   std::string frame(const std::string& name) const { return read_file(out_ + "/" + name); }
-  /// The picture of one step, looked at as the series is.
+  /// Returns the picture of one step, rendered with the look of the series.
   std::string rendered(const std::string& volume, const std::string& range) const {
     write_file(directory_ / "fixed.toml", "[camera]\nframe = \"volume\"\n");
     const std::string image = directory_ / "one.png";
@@ -95,7 +95,8 @@ TEST_F(Play, RawWritesTheRgbBytesOfEveryFrame) {
   EXPECT_EQ(gray.out, std::string(3600, gray.out[0]));
 }
 
-// The range is the union's, so that a value has one colour in all frames; the scene's own wins.
+// The range is the union of all ranges, so that a value has one colour in all frames; a range in the scene takes
+// precedence.
 TEST_F(Play, RangeIsTakenFromTheWholeSeriesUnlessGiven) {
   const std::string ramp = make("a.nvdb", "gradient", 1);
   const std::string half = make("b.nvdb", "constant", 1);
@@ -122,7 +123,7 @@ TEST_F(Play, StepsOfDifferentSizes_GiveAWarning) {
   EXPECT_EQ(list_directory(out_).size(), 2U);
 }
 
-// Both are looked at across 16 voxels; the first is no longer in any direction, the second 64.
+// Both volumes are seen through 16 voxels; the first has no longer direction, the second extends to 64.
 TEST_F(Play, StepsOfDifferentSizes_HaveOneExtinction) {
   const std::string first = make("a.nvdb", "constant", 1, "16x16x16");
   const std::string second = make("b.nvdb", "constant", 1, "16x16x64");
@@ -137,7 +138,7 @@ TEST_F(Play, StepsOfDifferentSizes_HaveOneExtinction) {
   const std::size_t frame = std::size_t{8} * 8 * 3;
   ASSERT_EQ(result.out.size(), 2 * frame);
   EXPECT_EQ(result.out.substr(0, frame), result.out.substr(frame));
-  // 1 - exp(-1) in sRGB, but for where the samples begin.
+  // 1 - exp(-1) in sRGB, except for the offset at which the samples begin.
   EXPECT_NEAR(static_cast<unsigned char>(result.out[(4 * 8 + 4) * 3]), 207, 4);
 }
 
@@ -243,7 +244,7 @@ TEST_F(Play, Interrupt_LeavesOnlyCompleteFrames) {
   }
 }
 
-// An encoder that goes away ends it: exit code and message of an I/O failure.
+// An encoder that goes away ends weir play with exit code and message of an I/O failure.
 TEST_F(Play, AClosedPipeIsAnError) {
   make("s_1.nvdb", "noise", 1);
   make("s_2.nvdb", "noise", 2);

@@ -1,5 +1,5 @@
-// What a process may be denied: file size, open files, memory for all processors, a terminal. One line, the exit code
-// of its kind, nothing left.
+// Tests limits of a process: file size, open files, memory for all processors, a terminal. Each failure prints one
+// line, has the exit code of its kind and leaves nothing.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,7 +37,7 @@ class ProcessLimits : public ::testing::Test {
   }
   std::vector<std::string> left() const { return list_directory(directory_ / "out"); }
 
-  /// A library that changes functions of the system's for a command which is run with it.
+  /// Makes a library that replaces system functions in a command which is run with it.
   std::vector<std::string> preload(const std::string& source) const {
     const std::string library = directory_ / "instead.so";
     write_file(directory_ / "instead.c", source);
@@ -169,7 +169,7 @@ TEST_F(ProcessLimits, Threads_AreFewerOrAClearError) {
         << fewer.err;
     EXPECT_TRUE(read_file(output_) == bytes) << threads;
   }
-  // Read ahead, in several blocks.
+  // Reads ahead, in several blocks.
   const auto read_ahead = [&](int threads) {
     return run_with(threads,
                     {"convert", volume(200), "-o", output_, "--overwrite", "--threads", "8", "--direct-io", "on"});
@@ -204,7 +204,7 @@ TEST_F(ProcessLimits, Threads_AreFewerOrAClearError) {
 
 TEST_F(ProcessLimits, ThreadsThatRunOutDuringAConversion_CostNothing) {
   if (kSanitized) GTEST_SKIP() << kSanitizedSkip;
-  // After those that a conversion of one thread starts to see how many it may have; oneTBB is left its own.
+  // Counted after the threads that a conversion of one thread starts to find its limit; oneTBB keeps its own threads.
   const std::string counted = std::to_string(2 * kIoThreads + 2);
   CommandOptions denied;
   denied.environment = preload(

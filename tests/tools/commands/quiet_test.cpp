@@ -1,4 +1,4 @@
-// --quiet, of every command.
+// Tests --quiet for every command.
 #include <gtest/gtest.h>
 
 #include <string>

@@ -1,5 +1,5 @@
-// weir render from outside: pictures, exit codes, messages, and what a failure leaves behind; and the majorants of
-// a file that weir wrote.
+// Tests weir render from outside: pictures, exit codes, messages, and what a failure leaves behind; also the majorants
+// of a file that weir wrote.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -74,7 +74,7 @@ TEST_F(Render, SameBytesForAnyThreadsAndOtherForAnotherSeed) {
   EXPECT_NE(one, bytes({"--seed", "6"}));
 }
 
-// Where the root names an infinity, the certificate's range is that of the colours, and of the warning.
+// If the root names an infinity, colours and warnings use the certificate's range.
 TEST_F(Render, KeptInfinity_LeavesTheRangeOfTheOtherValues) {
   std::vector<float> values(20 * 20 * 20);
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = 1000.0F + static_cast<float>(i % 20);
@@ -310,7 +310,7 @@ TEST_F(Render, InterruptLeavesNothing) {
   }
 }
 
-// Whole numbers are exact in 8 bits: a quantised file is the same picture, in its macrocells and in every tap.
+// Whole numbers are exact in 8 bits, so a quantised file gives the same picture, with equal macrocells and look-ups.
 TEST_F(Render, QuantisedFilesOfTheSameValuesGiveTheSamePicture) {
   const std::string raw = directory_ / "c_70x60x50_uint8.raw";
   ASSERT_EQ(run_weir({"sample", "cloud", "-o", raw}).exit_code, 0);
@@ -363,7 +363,7 @@ TEST_F(Render, QuantisedFilesAtAHighRateGiveNearlyThePicture) {
   }
 }
 
-// The macrocells of the file are bounds of what any filter sees in them, tiles, kept leaves and all.
+// The file's macrocells bound what any filter reads in them, in tiles and in kept leaves.
 TEST_F(Render, MajorantsFromTheFileBoundEveryLookup) {
   for (const std::string rate : {"1.2", "1.7", "2.5"}) {
     ASSERT_EQ(run_weir({"convert", directory_ / "c_70x60x50_float32.raw", "--rate", rate, "-o", volume_, "--overwrite"})

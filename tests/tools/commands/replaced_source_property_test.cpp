@@ -1,5 +1,5 @@
-// A certificate is of the volume that it names: over random kills, and sources that are replaced between runs and while
-// one is at work, with sizes and times that look the same. WEIR_PROPERTY_VOLUMES sets how many runs.
+// Tests that a certificate belongs to the volume that it names, over random kills and over sources that are replaced
+// between runs and during a run, with equal sizes and times. WEIR_PROPERTY_VOLUMES sets the number of runs.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -42,7 +42,7 @@ class ReplacedSourceProperty : public ::testing::Test {
 
   int draw(int below) { return static_cast<int>(random_() % static_cast<std::uint64_t>(below)); }
 
-  // As `cp -p` and `rsync -t` do it: the size and the time of modification stay.
+  // Replaces the source as `cp -p` and `rsync -t` do: size and modification time stay.
   void replace_source() {
     const std::string& content = contents_[static_cast<std::size_t>(draw(static_cast<int>(contents_.size())))];
     if (draw(2) == 0) {
@@ -59,7 +59,7 @@ class ReplacedSourceProperty : public ::testing::Test {
   }
 
   Json record() const { return Json::parse(read_file(output_ + ".json")); }
-  // What the certificate says is what a comparison with the source as it is now finds.
+  // Returns whether the certificate equals a comparison with the present source.
   bool certifies_source() const {
     const CommandResult compared = run_weir({"compare", source_, output_, "--json"});
     EXPECT_EQ(compared.exit_code, 0) << compared.err;
@@ -96,7 +96,7 @@ TEST_F(ReplacedSourceProperty, AnyKillAndReplacement_NeverCertifiesAnotherVolume
     const CommandResult result = child.wait();
     SCOPED_TRACE(cat("run ", run, ", fate ", fate, ": ", result.err));
     if (result.exit_code == 128 + SIGKILL) {
-      // Complete, or not there: what was committed before, or by this run.
+      // The output is complete or absent; it was committed before or by this run.
       if (fs::exists(output_) && fs::exists(output_ + ".json")) {
         EXPECT_EQ(run_weir({"verify", output_}).exit_code, 0);
       }
@@ -109,7 +109,7 @@ TEST_F(ReplacedSourceProperty, AnyKillAndReplacement_NeverCertifiesAnotherVolume
     }
     ASSERT_EQ(result.exit_code, 0);
     ++ended;
-    if (fate != 2) {  // else it may have been replaced after the last look at it
+    if (fate != 2) {  // otherwise it may have been replaced after the last look at it
       EXPECT_TRUE(certifies_source());
     }
   }

@@ -1,4 +1,4 @@
-// `weir convert --skip-done`: what it leaves alone, what it makes anew, what it refuses.
+// Tests what `weir convert --skip-done` leaves alone, makes anew and refuses.
 #include "tools/report/finished_output.h"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ class SkipDone : public testing::Test {
     return run_weir(arguments);
   }
 
-  /// Whether the run left the very file that was there.
+  /// Returns whether the run left the existing file in place.
   bool leaves_it(const std::vector<std::string>& more = {}) const {
     const auto before = fs::last_write_time(output_);
     const CommandResult result = convert(more);
@@ -103,7 +103,7 @@ TEST_F(SkipDone, OptionsThatSayWhatIsMeantWithoutThem_AreSkipped) {
       << whole.err;
 }
 
-// A name of another spelling, and a position counted from the end or named, are the same volume.
+// Another spelling of the name, and a position that is named or counted from the end, mean the same volume.
 TEST_F(SkipDone, TheSameDatasetAndPosition_AreSkippedHoweverTheyAreGiven) {
   if (!python_has("netCDF4, numpy")) GTEST_SKIP() << "python3 with netCDF4 is missing";
   ASSERT_TRUE(run_python(R"(
@@ -197,7 +197,7 @@ TEST_F(SkipDone, OpacityOfTheSceneChanged_ConvertsAgain) {
   EXPECT_FALSE(leaves_it({"--scene", scene})) << "nobody knows what the scene said";
 }
 
-// Of the same size, and older than another file of the volume.
+// The changed file has the same size and is older than another file of the volume.
 TEST_F(SkipDone, OneOfSeveralSourceFilesChanged_ConvertsAgain) {
   const TemporaryDirectory beside;
   const auto rewrite = [&](const std::string& path, char fill) {
@@ -242,7 +242,7 @@ TEST_F(SkipDone, DamagedOrMissingOutput_IsConvertedAgain) {
   EXPECT_FALSE(leaves_it()) << "damaged head";
 }
 
-// As a kill leaves it between the end of a conversion and the removal of what it was made from.
+// The state after a kill between the end of a conversion and the removal of its working files.
 TEST_F(SkipDone, RemovesWhatAKilledConversionLeftBesideIt) {
   ASSERT_EQ(convert().exit_code, 0);
   const auto leave = [&] {
@@ -335,7 +335,7 @@ TEST_F(SkipDone, Series_ConvertsOnlyTheMissingSteps) {
   EXPECT_EQ(fs::last_write_time(directory_ / "out/s_1_40x32x24_uint8.nvdb"), kept);
 }
 
-// The lines for the program that started convert, on a descriptor of its choice.
+// Tests the lines for the program that started convert, on a descriptor of its choice.
 TEST_F(SkipDone, AnnouncesOutputsToItsCaller) {
   const std::string lines = directory_ / "lines";
   for (const bool skipped : {false, true}) {

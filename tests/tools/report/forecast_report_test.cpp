@@ -7,7 +7,7 @@
 namespace weir::forecast_report_test {
 namespace {
 
-// Of a sixteenth of 1024^3 voxels, in eight parts.
+// Returns a forecast from a sixteenth of 1024^3 voxels, in eight parts.
 Forecast sampled() {
   Forecast f;
   f.sampled_voxels = std::uint64_t{1} << 26U;
@@ -143,7 +143,7 @@ TEST(ForecastReport, WithAScene_TellsTheErrorOfWhatItShows) {
   EXPECT_EQ(forecast_json(f, source(), options)["visible"].dump(),
             R"({"share":0.125,"lossless":false,"psnr_db":{"value":71.5,"low":70.25,"high":72.0},"rmse":0.001,)"
             R"("max_abs":null})");
-  // A PSNR that is asked for is that of what is shown.
+  // A requested PSNR is that of what the scene shows.
   options.budget.kind = Budget::Kind::psnr;
   EXPECT_NE(forecast_text(f, source(), options).find("  shown     PSNR about 71.5 dB, RMSE 0.001"), std::string::npos);
   EXPECT_EQ(forecast_json(f, source(), options)["visible"]["psnr_db"]["low"], nullptr);

@@ -11,7 +11,7 @@
 namespace weir::input_listing_test {
 namespace {
 
-/// Runs the only command that inspect prints with `words`; the sidecar of what it makes.
+/// Runs the only command that inspect prints for `words`, and returns the sidecar of its output.
 nlohmann::json converted_as_printed(const std::vector<std::string>& words) {
   const CommandResult shown = run_weir(words);
   EXPECT_EQ(shown.exit_code, 0) << shown.err;

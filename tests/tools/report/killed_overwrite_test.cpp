@@ -1,5 +1,5 @@
-// An --overwrite that was killed between its renames: no command takes the new sidecar for that of the old volume,
-// though size and head checksum agree.
+// Tests an --overwrite that was killed between its renames: no command takes the new sidecar for that of the old
+// volume, even though size and head checksum agree.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -41,7 +41,7 @@ TEST_F(KilledOverwriteTest, SkipDone_ConvertsAgainAndLeavesTheNewPair) {
   EXPECT_NE(run_weir(command).err.find("done already"), std::string::npos);
 }
 
-// Killed a moment later: before it removed the old sidecar.
+// The process was killed a moment later, before it removed the old sidecar.
 TEST_F(KilledOverwriteTest, SkipDone_OfTheNewVolume_IsDoneAndRemovesWhatIsLeft) {
   fs::rename(killed_.partial, killed_.output);
   std::vector<std::string> command = killed_.command();
@@ -66,8 +66,8 @@ TEST_F(KilledOverwriteTest, Inspect_TakesNoSidecarOfAnotherVolume) {
   EXPECT_TRUE(inspect_takes_the_sidecar(killed_.output)) << "its own";
 }
 
-// What a running --overwrite keeps there, or one that was killed before its commit: no reason to read all of a large
-// file.
+// A lock or an unfinished volume, from a running --overwrite or one killed before its commit, is no reason to read a
+// whole large file.
 TEST_F(KilledOverwriteTest, BesideALockOrAnUnfinishedVolume_TheHeadTells) {
   fs::remove(killed_.previous);
   std::string sidecar = killed_.old_sidecar;
@@ -79,7 +79,7 @@ TEST_F(KilledOverwriteTest, BesideALockOrAnUnfinishedVolume_TheHeadTells) {
     write_file(killed_.partial, lock);
     EXPECT_TRUE(inspect_takes_the_sidecar(killed_.output)) << lock.size();
   }
-  // Another volume, of another head.
+  // Another volume, with another head.
   std::string previous = killed_.old_sidecar;
   const std::string head = "\"head_checksum\": \"";
   const std::size_t at = previous.find(head) + head.size();
@@ -101,7 +101,7 @@ TEST_F(KilledOverwriteTest, Verify_SaysWhichSidecarIsTheVolumesOwn) {
   EXPECT_EQ(mended.exit_code, 0) << mended.err;
 }
 
-// It is not the volume's own either: nobody knows whose it is.
+// The other sidecar is not the volume's own either, so nobody knows whose it is.
 TEST_F(KilledOverwriteTest, Verify_OfADamagedVolume_NamesNoOtherSidecar) {
   std::string damaged = killed_.old_volume;
   damaged[damaged.size() / 2] = static_cast<char>(damaged[damaged.size() / 2] ^ 1);

@@ -13,7 +13,7 @@
 namespace weir::map_warning_test {
 namespace {
 
-// The file's bytes with another matrix in double, row-major.
+// Returns the file's bytes with another matrix of doubles, row-major.
 std::string with_matrix(std::string bytes, std::uint64_t grid, const std::array<double, 9>& matrix) {
   std::memcpy(bytes.data() + grid + nvdb::grid::kMap + 88, matrix.data(), sizeof(matrix));
   return bytes;

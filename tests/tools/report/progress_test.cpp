@@ -13,7 +13,7 @@
 namespace weir::progress_test {
 namespace {
 
-/// A temporary stream and a clock that the test turns.
+/// A temporary stream, and a clock that the test sets.
 struct Stage {
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> out{std::tmpfile(), std::fclose};
   double now_s = 100.0;

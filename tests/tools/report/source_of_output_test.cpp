@@ -1,4 +1,4 @@
-// `weir convert --skip-done`: of which source a result counts as the result.
+// Tests for `weir convert --skip-done` to which source a result belongs.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -33,7 +33,7 @@ class SourceOfOutput : public testing::Test {
   std::string output_ = directory_ / "v.nvdb";
 };
 
-// Two runs of a simulation have files of the same names, which a copy may have given the same times.
+// Two runs of a simulation have files of the same names; a copy may also give them the same times.
 TEST_F(SourceOfOutput, FileOfThatNameInAnotherDirectory_IsAnotherSource) {
   const auto convert_in = [&](const std::string& directory) {
     const fs::path run = directory_.path() / directory;
@@ -89,7 +89,7 @@ TEST_F(SourceOfOutput, DirectoryThatIsRenamed_HasTheSameSource) {
   EXPECT_NE(again.err.find("done already"), std::string::npos) << again.err;
 }
 
-// As "latest", which leads to another step from time to time.
+// The path is like "latest", a link that leads to another step from time to time.
 TEST_F(SourceOfOutput, AbsolutePathThatLeadsToAnotherFile_IsConvertedAgain) {
   const auto lead_to = [&](const std::string& directory) {
     fs::create_directories(directory_.path() / directory);

@@ -1,4 +1,4 @@
-// weir jobs, status and retry as a user runs them, against a service that converts nothing.
+// Tests weir jobs, status and retry as a user runs them, against a service that converts nothing.
 #include "tools/service/service_client.h"
 
 #include <gtest/gtest.h>
@@ -169,7 +169,7 @@ TEST_F(ServiceCommands, AskAtTheUnixSocket) {
   EXPECT_EQ(run_weir({"retry", "2", "--address", "unix:" + socket}).out,
             "job 2 is tried again: /scratch/run 1/2.raw\n");
   EXPECT_EQ(run_weir({"retry", "1", "--config", config}).out, "job 1 is tried again: /scratch/run 1/1.raw\n");
-  ::chmod(socket.c_str(), 0);  // who may not control may look
+  ::chmod(socket.c_str(), 0);  // a user who may not control may still look
   EXPECT_EQ(run_weir({"jobs", "--config", config, "--state", "failed"}).exit_code, 0);
   const CommandResult refused = weir(served, {"retry", "3"});
   EXPECT_EQ(refused.exit_code, 2);
@@ -274,7 +274,7 @@ TEST_F(ServiceCommands, FindTheServiceOfAConfiguration) {
             "weir: the configuration listens on any free port and has no port_file; give --address\n");
 }
 
-// As where the service hangs with its file server.
+// As if the service hung with its file server.
 TEST_F(ServiceCommands, InterruptBeforeTheAnswer_EndsTheCommand) {
   boost::asio::io_context io;
   boost::asio::ip::tcp::acceptor silent(io, {boost::asio::ip::make_address("127.0.0.1"), 0});
@@ -287,7 +287,7 @@ TEST_F(ServiceCommands, InterruptBeforeTheAnswer_EndsTheCommand) {
   EXPECT_EQ(result.err, cat("weir: ", address, ": interrupted before it answered\n"));
 }
 
-// Something else may listen there.
+// Another program may listen at the address.
 TEST_F(ServiceCommands, AnswerOfAnotherServer_IsReported) {
   boost::asio::io_context io;
   HttpResponse response{200, "text/html", "<html>", {}};

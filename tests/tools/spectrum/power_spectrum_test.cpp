@@ -43,7 +43,7 @@ class PowerSpectrumTest : public testing::Test {
     return open_array(array);
   }
 
-  /// Of `source` and a file that reads `kept`.
+  /// Returns the spectrum of `source` and of a file with the values `kept`.
   PowerSpectrum of(const Field& source, const Field& kept, const CompareOptions& options = {}) const {
     const std::vector<float> kept_values = values_of(kept);
     ConversionOptions lossless;
@@ -62,7 +62,7 @@ class PowerSpectrumTest : public testing::Test {
   std::array<double, 3> spacing_{1, 1, 1};
 };
 
-// Uncorrelated, of variance 1.
+// Returns uncorrelated noise of variance 1.
 double noise(const Index3& i) {
   auto bits = static_cast<std::uint64_t>(i.x + 1000 * i.y + 1000000 * i.z) + 1;
   for (int round = 0; round < 3; ++round) {  // splitmix64
@@ -80,7 +80,7 @@ double total(const PowerSpectrum& spectrum) {
   return sum;
 }
 
-// Hann's window has two thirds of a wave's power at its own frequency and a sixth at each one beside it.
+// Hann's window puts two thirds of a wave's power at its own frequency and a sixth at each neighbour.
 TEST_F(PowerSpectrumTest, AWaveIsInTheShellOfItsNumber) {
   extent_ = {160, 70, 64};
   spacing_ = {0.5, 0.5, 0.5};
@@ -151,7 +151,7 @@ TEST_F(PowerSpectrumTest, OfAFileThatHalvesAllValues) {
   }
 }
 
-// Half the wave number along an axis whose voxels are twice as long.
+// Along an axis with voxels twice as long, the wave number is half as large.
 TEST_F(PowerSpectrumTest, WaveNumbersAreOfTheWorld) {
   spacing_ = {1, 1, 2};
   const PowerSpectrum found =
@@ -165,7 +165,7 @@ TEST_F(PowerSpectrumTest, WaveNumbersAreOfTheWorld) {
   }
 }
 
-// Of the longest axis: two planes do not make one shell of all wave numbers.
+// The shell width follows the longest axis: two planes do not merge all wave numbers into one shell.
 TEST_F(PowerSpectrumTest, ShellsOfAThinVolumeAreAsNarrowAsItsLongestAxisHasThem) {
   extent_ = {128, 128, 2};
   const PowerSpectrum found =

@@ -21,7 +21,7 @@ Image chart_of(const PowerSpectrum& spectrum) {
   return test::picture_of(spectrum_chart(spectrum, "a.nvdb", PlotFormat::png));
 }
 
-/// Rows of pixels of `ink` below the legend: the first one and the last one.
+/// Returns the first and last row with pixels of `ink` below the legend.
 std::pair<std::int64_t, std::int64_t> rows_of(const Image& image, const Float3& ink) {
   std::pair<std::int64_t, std::int64_t> rows{-1, -1};
   for (std::int64_t y = 70; y < image.height; ++y) {
@@ -33,7 +33,7 @@ std::pair<std::int64_t, std::int64_t> rows_of(const Image& image, const Float3& 
   return rows;
 }
 
-// Shares from 1e-4 to 1 over the rows 532 to 88: 111 to a power of ten.
+// Shares from 1e-4 to 1 cover rows 532 to 88: 111 rows per power of ten.
 TEST(SpectrumPlot, CurvesLieAtTheirShares) {
   PowerSpectrum spectrum;
   spectrum.shells = {{0.01, 1, 100, 100, 0.01}, {0.1, 1, 10, 1, 1e-3}};

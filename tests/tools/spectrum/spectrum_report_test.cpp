@@ -5,8 +5,8 @@
 namespace weir::spectrum_report_test {
 namespace {
 
-/// Shells of 1, 2 and 3 cycles in four world units, of power 1, whose errors are `errors`; the second and the third
-/// begin 0.05 below.
+/// Returns shells of 1, 2 and 3 cycles in four world units, with power 1 and the given errors. The second and third
+/// shell begin 0.05 below their wave number.
 PowerSpectrum spectrum_of(const std::vector<double>& errors) {
   PowerSpectrum spectrum;
   spectrum.block = {64, 64, 32};

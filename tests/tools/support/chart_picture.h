@@ -1,4 +1,4 @@
-// A chart's pixels.
+// Reads the pixels of a chart.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace weir::test {
 
-/// Of the bytes of a PNG file.
+/// Returns the picture in the bytes of a PNG file.
 inline Image picture_of(const std::string& png) {
   const TemporaryDirectory directory;
   write_file(directory / "a.png", png);

@@ -1,4 +1,4 @@
-// A small volume made by the real `weir convert`, for tests of what reads it.
+// A small volume made by the real `weir convert`, for tests of code that reads volumes.
 #pragma once
 
 #include <gtest/gtest.h>

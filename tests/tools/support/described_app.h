@@ -1,4 +1,4 @@
-// A small command line with every shape of option, for the tests of what is written from one.
+// A small command line with every shape of option, for tests of the texts that are generated from a command line.
 #pragma once
 
 #include <CLI/CLI.hpp>

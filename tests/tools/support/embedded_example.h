@@ -1,4 +1,4 @@
-// examples/embed, built as a user would build it, and a file for its programs to sample.
+// Builds examples/embed as a user would, and makes a file for its programs to sample.
 #pragma once
 
 #include <string>
@@ -10,15 +10,15 @@ namespace weir {
 
 class EmbeddedExample {
  public:
-  /// Configured with these options, by the tools that weir is built with; what goes wrong fails the test.
+  /// Configures and builds with `options`, with the tools that weir is built with; any failure fails the test.
   explicit EmbeddedExample(const std::vector<std::string>& options);
 
-  /// A volume of 16^3 voxels, x + 20 y + 400 z: linear, so that every trilinear value is exact.
+  /// Returns the path of a volume of 16^3 voxels, x + 20 y + 400 z: linear, so that every trilinear value is exact.
   std::string file() const { return directory_ / "a.nvdb"; }
   CommandResult run(const std::string& program, std::vector<std::string> arguments) const;
-  /// Whether the example's build has this program.
+  /// Returns whether the example's build has `program`.
   bool has(const std::string& program) const;
-  /// What the configuration printed.
+  /// Returns what the configuration printed.
   const std::string& configuration() const { return configuration_; }
 
  private:

@@ -16,7 +16,7 @@ Image psnr_plot(const SweepReport& report, SweepAxis axis) {
   return test::picture_of(psnr_chart(report, axis, PlotFormat::png));
 }
 
-// 10^3 voxels, so that 125 bytes are a bit a voxel.
+// A report of 10^3 voxels, so that 125 bytes are one bit per voxel.
 SweepReport report_of(const std::vector<SweepRow>& rows) {
   SweepReport report;
   report.source = "some/where/volume_10x10x10_uint8.raw";
@@ -43,7 +43,7 @@ std::int64_t pixels_of(const Image& image, const Float3& ink) {
   return std::count(image.pixels.begin(), image.pixels.end(), ink);
 }
 
-// The axes of these: x from 1 to 10 bits over the pixels 112 to 872, PSNR from 20 to 100 dB over 532 to 101.
+// The axes of this chart: x from 1 to 10 bits over pixels 112 to 872, PSNR from 20 to 100 dB over 532 to 101.
 TEST(SweepPlot, PointsAreDrawnAtTheirValues) {
   const Image image = psnr_plot(report_of({row("auto", 125, 20), row("auto", 1250, 100)}), SweepAxis::bits_per_voxel);
   EXPECT_EQ(image.width, 900);
@@ -96,7 +96,7 @@ TEST(SweepPlot, MethodsHaveDifferentColours) {
   EXPECT_GT(pixels_of(image, ink_of(102, 51, 153)), 10);
 }
 
-// Ranges whose ticks could loop, divide by zero or overflow; volumes without anything to show.
+// Ranges with ticks that could loop, divide by zero or overflow, and volumes with nothing to show.
 TEST(SweepPlot, Extremes) {
   SweepRow no_psnr = row("auto", 125, 20);
   no_psnr.result->error.psnr_db.reset();

@@ -74,7 +74,7 @@ TEST(SweepReport, NoteOfWhatFloat32Loses_WhereThatCounts) {
   EXPECT_EQ(loss_note(result), "");
 }
 
-// A volume of one value of which something was lost.
+// A volume of one value that lost something.
 TEST(SweepReport, InfiniteNmse) {
   SweepReport report = sample_report();
   report.rows[0].result->error.nmse = std::numeric_limits<double>::infinity();

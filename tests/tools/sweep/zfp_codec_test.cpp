@@ -46,7 +46,7 @@ TEST(ZfpCodec, BlockBitsAreTheMostThatFitTheBytes) {
   }
 }
 
-// The library's own use: one field, one stream.
+// Uses the library directly: one field, one stream.
 TEST(ZfpCodec, EqualsTheZfpLibraryOnTheWholeVolume) {
   const Index3 extent{19, 14, 10};
   std::vector<float> values = waves(extent);

@@ -33,7 +33,7 @@ class ZfpTrialTest : public testing::Test {
   std::unique_ptr<FileSystem> files_ = make_posix_file_system();
 };
 
-// What the codec gives for the whole array at once.
+// Returns the error when the codec takes the whole array at once.
 Certificate in_one_piece(VolumeSource& source, unsigned bits) {
   const Index3 extent = source.info().extent;
   std::vector<float> values(static_cast<std::size_t>(volume(extent)));
@@ -73,7 +73,7 @@ TEST_F(ZfpTrialTest, PiecewiseErrorEqualsThatInOnePiece) {
   }
 }
 
-// Some blocks, some pieces each, and a piece cut in x.
+// The volumes have several blocks with several pieces each, and a piece cut in x.
 TEST_F(ZfpTrialTest, SameErrorWhateverMemoryThreadsAndBlocks) {
   for (const Index3 extent : {Index3{201, 150, 99}, Index3{40000, 21, 4}}) {
     const auto source = open_synthetic("turbulence", {extent, 1});
@@ -86,7 +86,7 @@ TEST_F(ZfpTrialTest, SameErrorWhateverMemoryThreadsAndBlocks) {
   }
 }
 
-// ZFP's blocks begin at the region's corner, wherever in the file's leaves that lies.
+// ZFP's blocks begin at the region's corner, wherever that lies in the source's leaves.
 TEST_F(ZfpTrialTest, RegionErrorEqualsThatInOnePiece) {
   const auto region = crop_source(open_synthetic("turbulence", {{70, 60, 50}, 1}), {{3, 5, 9}, {64, 52, 50}});
   expect_equal(run(*region, 100).error, in_one_piece(*region, 100));

@@ -22,7 +22,7 @@ std::string failed_names(const Sidecar& sidecar) {
   return names;
 }
 
-// Of a volume that is not lossless.
+// Returns a sidecar of a volume that is not lossless.
 Sidecar with_error(Sidecar sidecar) {
   const double range = sidecar.value_range[1] - sidecar.value_range[0];
   sidecar.error = {0.25, 0.5, 0.25 / range / range, 20 * std::log10(range / 0.5), 3, false};
@@ -133,7 +133,7 @@ TEST_F(CertificateCheck, BudgetThatTheFileDoesNotMeet_Fails) {
   EXPECT_EQ(failed("rate", 1e6), "sidecar budget.requested of kind rate\n");
 }
 
-// What a scene shows is what it was promised for.
+// The budget of a scene is met by what the scene shows.
 TEST_F(CertificateCheck, BudgetOfAScene_IsMetByWhatItShows) {
   Sidecar changed = with_error(sidecar());
   changed.visible = Sidecar::Visible{"a.toml", 1, 1, changed.error, ""};
@@ -173,7 +173,7 @@ TEST_F(CertificateCheck, VolumeWithoutAFiniteValue_HasNoRange) {
   }
 }
 
-// A sidecar has null, which is read as NaN, for what is not finite.
+// A sidecar has null for a figure that is not finite; it is read as NaN.
 TEST_F(CertificateCheck, ErrorThatIsNotFinite_ContradictsNothing) {
   Sidecar changed = with_error(sidecar());
   changed.error.max_abs = std::nan("");

@@ -12,7 +12,7 @@ namespace {
 
 using LosslessCheck = ConvertedVolume;
 
-// The checks that fail of what `change` makes of the sidecar; "none made" where there are none.
+// Returns the checks that fail after `change` was applied to the sidecar; "none made" if there are no checks.
 std::string failed_of(const NvdbFile& file, Sidecar sidecar, const std::function<void(Sidecar&)>& change) {
   change(sidecar);
   const auto checks = check_lossless(take_census(file.grid(), {}), file.grid().background(), sidecar);

@@ -93,7 +93,7 @@ TEST_F(PackedCensusTest, MacrocellThatDoesNotHold_IsReported) {
   EXPECT_EQ(floor_div(*take_census(grid, {}).outside_macrocell, 16), (Index3{16, 2, 3}));
 }
 
-// Bounds of a cell's own voxels alone: a filtered look-up at its border reads what lies around it, too.
+// The bounds are only of a cell's own voxels, but a filtered look-up at its border also reads the voxels around it.
 TEST_F(PackedCensusTest, MacrocellsWithoutTheirApron_AreReported) {
   EXPECT_FALSE(take_census(grid_, {}).outside_apron);
   const MacrocellView cells = grid_.macrocells();

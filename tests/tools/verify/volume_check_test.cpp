@@ -19,7 +19,7 @@ std::string failed_names(const std::vector<VolumeCheck>& checks) {
   return names;
 }
 
-// Every key of the sidecar that verify compares, changed alone, fails that check alone.
+// Changing any single key of the sidecar that verify compares fails exactly that check.
 TEST_F(VolumeCheckTest, EachKeyOfTheSidecarIsCompared) {
   const NvdbFile file = open();
   const TreeCensus census = take_census(file.grid(), {});

@@ -1,5 +1,5 @@
-// What is seen of the other file where two that lie otherwise are compared: the value of the same place, not of the
-// same index, and the same clip box.
+// Tests two compared files that lie differently: the other file shows the value of the same place, not of the same
+// index, and the same clip box.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -19,8 +19,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-// Fields x + 100 y + 10000 z of the place (x, y, z): of 64^3 voxels of edge 1, and of 32^3 or fewer of edge 2, whose
-// first centre is at (0.5, 0.5, 0.5), so that 32^3 fill the same space.
+// Fields x + 100 y + 10000 z of the place (x, y, z): 64^3 voxels of edge 1, and 32^3 or fewer of edge 2. The first
+// centre of the latter is at (0.5, 0.5, 0.5), so that 32^3 fill the same space.
 class ComparedValue : public testing::Test {
  protected:
   static double field(const Double3& at) { return at[0] + 100 * at[1] + 10000 * at[2]; }
@@ -46,7 +46,7 @@ class ComparedValue : public testing::Test {
     return directory_ / name;
   }
 
-  /// The answer of the voxel with the largest value of a side along x at y = 20, z = 40 of the world.
+  /// Returns the answer for the voxel of the largest value on one side, along x at y = 20, z = 40 of the world.
   static Json probe(const std::string& file, const std::string& against, int side = 0, const std::string& volume = "") {
     ServedView served(file, against);
     ViewClient client(served.port());
@@ -57,8 +57,8 @@ class ComparedValue : public testing::Test {
     return client.text("value").value();
   }
 
-  /// Of the pixels of both pictures, where the region of `file` is white before black: how many are white in the first,
-  /// in the second, and in one alone.
+  /// Returns how many pixels are white in the first picture, in the second, and in only one of them. The region of
+  /// `file` is white on black.
   std::array<int, 3> white_pixels(const std::string& file, const std::string& against,
                                   const std::string& region) const {
     ServedView served(file, against);

@@ -5,7 +5,7 @@
 namespace weir::frame_pace_test {
 namespace {
 
-/// After `frames` pictures of a machine that takes `sample_s` for each sample of a pixel and `fixed_s` for each
+/// Returns the pace after `frames` pictures of a machine that takes `sample_s` per pixel sample and `fixed_s` per
 /// picture.
 FramePace settled(double sample_s, double fixed_s, int frames = 30, int viewers = 1) {
   FramePace pace;

@@ -16,7 +16,7 @@ namespace {
 using Texts = std::map<ViewerId, std::vector<std::string>>;
 using std::chrono::milliseconds;
 
-/// Counts that last until they are let go or cancelled.
+/// Counts that last until the test lets them go or they are cancelled.
 class HistogramCountsTest : public testing::Test {
  protected:
   std::string count(const HistogramQuestion& question, const std::atomic<bool>& cancel) {

@@ -1,4 +1,4 @@
-// What weir view refuses for want of memory, before anybody looks.
+// Tests what weir view refuses for lack of memory before the page is served.
 #include "tools/view/memory_check.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// The page of weir view in a real browser; the steps are in page_test.py beside this. WEIR_PAGE_SCREENSHOTS=DIRECTORY
-// keeps pictures of it.
+// Tests the page of weir view in a real browser; the steps are in page_test.py. WEIR_PAGE_SCREENSHOTS=DIRECTORY keeps
+// screenshots.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -28,7 +28,7 @@ class ViewPageTest : public testing::Test {
     }
   }
 
-  /// A cloud of 64^3 voxels as DIRECTORY/NAME.
+  /// Makes a cloud of 64^3 voxels as DIRECTORY/NAME.
   std::string cloud(const std::string& name, const std::string& rate = "8", const std::string& seed = "1") {
     const std::string raw = directory_ / ("c" + seed + "_64x64x64_float32.raw");
     if (!std::filesystem::exists(raw)) {

@@ -1,4 +1,4 @@
-// The camera of whoever points at a picture is the picture's, whatever it frames.
+// Tests that the camera for probing equals the picture's camera, whatever it frames.
 #include "tools/view/picture_cameras.h"
 
 #include <gtest/gtest.h>
@@ -45,7 +45,7 @@ TEST_F(PictureCamerasTest, Content_IsWhatTheSceneShows) {
     expect_framed(scene, kContent);
   }
   scene.mode = RenderMode::iso;
-  scene.volume.iso = 1e6;  // that nothing has
+  scene.volume.iso = 1e6;  // a value that no voxel has
   expect_framed(scene, kAll);
 }
 
@@ -93,7 +93,7 @@ TEST_F(PictureCamerasTest, CellsOfAFile_AreThoseOfThatFile) {
   expect_framed(scene, kContent);
 }
 
-// Along -y, at the middle of what is framed.
+// Looks along -y, at the middle of the framed box.
 TEST_F(PictureCamerasTest, Probe_HonoursTheFrame) {
   ServedView served(volume_);
   ViewClient client(served.port());

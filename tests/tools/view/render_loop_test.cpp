@@ -1,4 +1,4 @@
-// How the pages' pictures share one thread: who makes room for whom, and that nobody waits for ever.
+// Tests how the pages' pictures share one thread: who makes room for whom, and that nobody waits for ever.
 #include "tools/view/render_loop.h"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ class NoVolume : public LoadedVolume {
   LoadSummary summary_;
 };
 
-// A picture of mode path takes what slow() takes, which throws where it is cancelled; all others are there at once.
+// A picture of mode path takes as long as slow(), which throws if it is cancelled; all other pictures are immediate.
 class SlowPathBackend : public Backend {
  public:
   std::string_view name() const override { return "slow"; }
@@ -93,7 +93,7 @@ class RenderLoopTest : public testing::Test {
                                [](ViewerId, std::int64_t, const std::string& message) { ADD_FAILURE() << message; }});
   }
 
-  /// Whether a picture of that viewer comes before the test is given up.
+  /// Returns whether a picture of the viewer comes before the test's time is up.
   bool gets_a_picture(ViewerId id) {
     std::unique_lock lock(mutex_);
     return changed_.wait_for(lock, std::chrono::seconds(30), [&] { return frames_[id] > 0; });
@@ -101,7 +101,7 @@ class RenderLoopTest : public testing::Test {
   void wait_for_slow_call() const {
     while (backend_.slow_calls == 0) std::this_thread::sleep_for(milliseconds(1));
   }
-  /// Every picture of that viewer is taken at once, and another asked for.
+  /// Takes every picture of the viewer at once and asks for another.
   void always_ask(ViewerId id, bool moving) {
     asking_.emplace(id, moving);
     on_frame = [this, &loop = *loop_](ViewerId of, const FrameHeader& header) {
@@ -118,7 +118,7 @@ class RenderLoopTest : public testing::Test {
   VolumeShelf shelf_{backend_, 1};
   StepList steps_{{file_}};
   std::function<void(ViewerId, const FrameHeader&)> on_frame;
-  std::map<ViewerId, bool> asking_;  // whether it moves
+  std::map<ViewerId, bool> asking_;  // by viewer: whether the view moves
   std::vector<std::uint64_t> kept_;
   std::mutex mutex_;
   std::condition_variable changed_;
@@ -161,7 +161,7 @@ TEST_F(RenderLoopTest, PassThatMadeRoom_GoesOnWithWhatWasKept) {
   EXPECT_EQ(kept_, (std::vector<std::uint64_t>{0, 1, 2, 3}));
 }
 
-// As a device has it: its turns grow until a pass ends within one.
+// As on a device, nothing can be kept: the turns grow until a pass ends within one turn.
 TEST_F(RenderLoopTest, PassOfWhichNothingIsKept_EndsAllTheSame) {
   backend_.slow = [](const SampleOptions& sampling) {
     const auto end = std::chrono::steady_clock::now() + 3 * RenderLoop::kSlice / 2;
@@ -178,7 +178,7 @@ TEST_F(RenderLoopTest, PassOfWhichNothingIsKept_EndsAllTheSame) {
 }
 
 TEST_F(RenderLoopTest, ViewersThatAlwaysMove_LetAStillOneRefine) {
-  // Whoever moves asks in the middle of the pass, too.
+  // The moving viewer also asks in the middle of the pass.
   backend_.slow = [&loop = *loop_](const SampleOptions& sampling) {
     loop.show(1, view(RenderMode::mip, true));
     if (*sampling.cancel) throw Error(ErrorKind::interrupted, "interrupted");

@@ -1,4 +1,4 @@
-// A ViewServer on a free loopback port, run by a thread of its own.
+// A ViewServer on a free loopback port, run by its own thread.
 #pragma once
 
 #include <boost/asio/executor_work_guard.hpp>

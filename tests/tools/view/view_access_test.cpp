@@ -1,4 +1,4 @@
-// Who may look at what weir view serves.
+// Tests who may look at the files that weir view serves.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -18,7 +18,7 @@ using Json = nlohmann::json;
 
 class ViewAccessTest : public ConvertedVolume {
  protected:
-  /// What a client with these headers is answered.
+  /// Returns the answer to a client with these headers.
   static std::string answer_to(const ServedView& served, const ClientHeaders& headers) {
     return upgrade_answer(served.port(), headers);
   }

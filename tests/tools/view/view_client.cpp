@@ -41,7 +41,8 @@ void ViewClient::show(std::int64_t id, bool moving, const nlohmann::json& more) 
   send(view);
 }
 
-// Runs the read until it is done or the time is over; then the connection is broken, since a message may be half read.
+// Reads until a message is complete or the time is over. After a timeout the connection is broken, because a message
+// may be half read.
 std::optional<ViewClient::Message> ViewClient::read(std::chrono::milliseconds wait) {
   if (broken_) return std::nullopt;
   boost::beast::flat_buffer buffer;

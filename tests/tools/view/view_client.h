@@ -1,4 +1,4 @@
-// One viewer without a browser: a WebSocket client that blocks, with a limit of time on each call.
+// A viewer without a browser: a blocking WebSocket client with a time limit on each call.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -29,24 +29,24 @@ struct ReceivedFrame {
 
 class ViewClient {
  public:
-  /// Throws where the server refuses it.
+  /// Connects. Throws if the server refuses.
   explicit ViewClient(std::uint16_t port, const ClientHeaders& headers = {});
 
   void send(const nlohmann::json& message) { send_text(message.dump()); }
   void send_text(const std::string& text);
-  /// Of a 64 x 48 picture; `more` takes the place of members.
+  /// Sends a view of a 64 x 48 picture; `more` replaces members of the message.
   void show(std::int64_t id, bool moving, const nlohmann::json& more = {});
   void taken(const ReceivedFrame& frame) { send({{"type", "shown"}, {"frame", frame.header["frame"]}}); }
-  /// The next picture; texts before it go to `texts`. None where none comes within `wait`.
+  /// Returns the next picture; texts before it go to `texts`. nullopt if none comes within `wait`.
   std::optional<ReceivedFrame> frame(std::chrono::milliseconds wait = std::chrono::seconds(20));
-  /// The next text of that type, those of other types and pictures are thrown away.
+  /// Returns the next text of `type`; other texts and pictures are thrown away.
   std::optional<nlohmann::json> text(const std::string& type,
                                      std::chrono::milliseconds wait = std::chrono::seconds(20));
-  /// Takes pictures until one of the view has `samples` a pixel; that one.
+  /// Takes pictures until one of `view` has `samples` per pixel, and returns that picture.
   std::optional<ReceivedFrame> refined(std::int64_t view, int samples);
-  /// Whether the server ends the connection within `wait`.
+  /// Returns whether the server ends the connection within `wait`.
   bool ended(std::chrono::milliseconds wait = std::chrono::seconds(10));
-  /// The connection's own bytes, past the protocol.
+  /// Returns the raw connection below the protocol.
   boost::asio::ip::tcp::socket& raw() { return stream_.next_layer(); }
 
   std::vector<nlohmann::json> texts;
@@ -63,10 +63,10 @@ class ViewClient {
   bool broken_ = false;
 };
 
-/// What the server answers to a request for a WebSocket: "101", or the status and the body of its refusal.
+/// Returns the server's answer to a request for a WebSocket: "101", or the status and body of its refusal.
 std::string upgrade_answer(std::uint16_t port, const ClientHeaders& headers);
 
-/// The status and body of GET `target`, over a connection of its own.
+/// Returns status and body of GET `target`, over a separate connection.
 std::pair<int, std::string> get(std::uint16_t port, const std::string& target, const ClientHeaders& headers = {},
                                 const std::string& authorization = "");
 

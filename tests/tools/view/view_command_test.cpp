@@ -1,4 +1,4 @@
-// weir view from outside: its address, its end, and what it refuses.
+// Tests weir view from outside: its address, its end, and what it refuses.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 
 class ViewCommandTest : public ConvertedVolume {
  protected:
-  /// The port of a running command, from the address that it prints.
+  /// Returns the port of a running command, from the address that it prints.
   static std::uint16_t port_of(ChildProcess& child) {
     for (int i = 0; i < 600 && child.out_so_far().find('\n') == std::string::npos; ++i) {
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
@@ -48,7 +48,7 @@ TEST_F(ViewCommandTest, Signal_EndsItCleanly) {
   }
 }
 
-// Its anonymous memory now, in MiB: what no page of a file can be taken back for.
+// Returns the anonymous memory of a process in MiB, which cannot be dropped like pages of a file.
 std::uint64_t anonymous_mib(pid_t process) {
   const std::string status = read_file(cat("/proc/", process, "/status"));
   const std::size_t at = status.find("RssAnon:");

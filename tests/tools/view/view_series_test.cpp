@@ -1,4 +1,4 @@
-// The server of weir view with several files: steps, steps that come, and two files beside each other.
+// Tests the server of weir view with several files: steps, new steps, and two files side by side.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,7 +20,7 @@ using std::chrono::milliseconds;
 
 class ViewSeriesTest : public ConvertedVolume {
  protected:
-  /// A volume of 24 x 20 x 16 values from 0 to `most`, the second of them infinite where that is asked for.
+  /// Makes a volume of 24 x 20 x 16 values from 0 to `most`; the second value is infinite if `infinite`.
   std::string ramp(const std::string& name, float most, bool infinite = false) {
     const std::string raw = directory_ / "w_24x20x16_float32.raw";
     std::vector<float> values(24 * 20 * 16);

@@ -1,4 +1,4 @@
-// The server of weir view over loopback, with clients that are no browsers.
+// Tests the server of weir view over loopback, with clients that are no browsers.
 #include "tools/view/view_server.h"
 
 #include <gtest/gtest.h>

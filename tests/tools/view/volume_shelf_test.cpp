@@ -1,4 +1,4 @@
-// Which volumes the viewers' shelf keeps, and what goes where there is no room.
+// Tests which volumes the viewers' shelf keeps, and which volumes are dropped if there is no room.
 #include "tools/view/volume_shelf.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ class CountedVolume : public LoadedVolume {
   LoadSummary summary_;
 };
 
-// There is room for a number of volumes.
+// A back end that has room for a fixed number of volumes.
 class NarrowBackend : public Backend {
  public:
   std::string_view name() const override { return "narrow"; }
@@ -88,7 +88,7 @@ TEST_F(VolumeShelfTest, NoRoomAtAll_IsAnErrorAndTheNextTryWorks) {
   EXPECT_NE(shelf.get(files_[0]), nullptr);
 }
 
-// The step that is seen stays, whatever becomes of the next one.
+// The step that is shown stays, whatever happens to the next step.
 TEST_F(VolumeShelfTest, NoRoomForWhatIsLoadedAhead_NothingGoes) {
   VolumeShelf shelf(backend_, 2);
   backend_.room = 1;

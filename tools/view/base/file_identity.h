@@ -1,4 +1,4 @@
-// Which file has a path now, so that what is kept of the one before is not taken for it.
+// Identifies the file that a path names now, so that data kept of an earlier file are not used for it.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace weir {
 
-/// Another text where the file was replaced, cut or written to. A file that is not there has one, too.
+/// Returns a text that changes when the file is replaced, cut or written to. A missing file has an identity too.
 inline std::string file_identity(const std::string& path) {
   const FileState now = look_at_file(path);
   return cat(now.device, ' ', now.inode, ' ', now.bytes, ' ', now.mtime_ns, ' ', path);

@@ -1,4 +1,4 @@
-// The files that values are looked up in, mapped and checked once for several look-ups. Any thread may ask.
+// The files in which values are looked up, each mapped and checked once for several look-ups. Any thread may ask.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace weir {
 
 class OpenFiles {
  public:
-  /// The file that has the path now. Throws as NvdbFile.
+  /// Returns the file that the path names now. Throws as NvdbFile.
   std::shared_ptr<const NvdbFile> get(const std::string& path) {
     const std::string identity = file_identity(path);
     {
@@ -42,7 +42,7 @@ class OpenFiles {
   static constexpr std::size_t kMost = 4;
 
   std::mutex mutex_;
-  std::list<Entry> files_;  // used last first
+  std::list<Entry> files_;  // most recently used first
 };
 
 }  // namespace weir

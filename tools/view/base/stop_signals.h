@@ -1,4 +1,4 @@
-// The signals that end a server, of which a second one ends it at once.
+// The signals that end a server. A second signal ends it at once.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -9,8 +9,9 @@ namespace weir {
 
 class StopSignals {
  public:
-  /// Calls `stop` on the io_context's thread at the first SIGINT, SIGTERM or, but under nohup, SIGHUP. From then on
-  /// they have their default effect: what `stop` waits for, as a volume that is being loaded, may take long.
+  /// Calls `stop` on the io_context's thread at the first SIGINT, SIGTERM or SIGHUP (SIGHUP not under nohup). After
+  /// that the signals have their default effect, because `stop` may have to wait long, for instance for a volume that
+  /// is being loaded.
   StopSignals(boost::asio::io_context& io, std::function<void()> stop);
 
  private:

@@ -1,4 +1,4 @@
-// A directory of one's own for a while.
+// A temporary directory that only its owner uses.
 #pragma once
 
 #include <stdlib.h>
@@ -14,14 +14,15 @@ namespace weir {
 
 class TemporaryFolder {
  public:
-  /// Made in `parent`, or where temporary files are where that is empty. Throws Error(io).
+  /// Creates the directory in `parent`, or in the directory for temporary files if `parent` is empty. Throws
+  /// Error(io).
   explicit TemporaryFolder(const std::string& parent = "") {
     std::string name =
         (std::filesystem::path(parent.empty() ? temporary_directory() : parent) / "weir-view-XXXXXX").string();
     if (::mkdtemp(name.data()) == nullptr) throw io_error(name, "make a directory", errno);
     path_ = name;
   }
-  /// Removed with all that is in it.
+  /// Removes the directory with its content.
   ~TemporaryFolder() {
     std::error_code ignored;
     std::filesystem::remove_all(path_, ignored);

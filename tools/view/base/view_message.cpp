@@ -21,7 +21,8 @@ const nlohmann::json& value_of(const nlohmann::json& message, const char* key) {
   return *found;
 }
 
-// Of an integer of either sign, where it lies in [low, high]. As a double it would be rounded above 2^53.
+// Returns the integer, signed or unsigned, if it lies in [low, high]. The value is not compared as a double, which
+// would round it above 2^53.
 std::optional<std::int64_t> integer_within(const nlohmann::json& value, std::int64_t low, std::int64_t high) {
   if (!value.is_number_integer()) return std::nullopt;
   const auto within = [&](auto number) {
@@ -112,7 +113,7 @@ struct MessageName {
   std::optional<std::int64_t> id;
 };
 
-// The members on the way to where the text is no JSON.
+// Reads "type" and "id" from a text, up to the point where it is no JSON.
 MessageName read_name(std::string_view text_of_message) {
   using Event = nlohmann::json::parse_event_t;
   MessageName name;

@@ -1,5 +1,5 @@
-// The scene of a conversion as a file without a name, which leaves nothing behind however this process ends. Others of
-// the same user read it as long as the object is there.
+// The scene of a conversion in an unnamed file, so that nothing is left behind however this process ends. Other
+// processes of the same user can read it while the object exists.
 #pragma once
 
 #include <sys/mman.h>
@@ -17,7 +17,7 @@ namespace weir {
 
 class KeptScene {
  public:
-  /// The path of a new file with that text, in place of the one before. Throws Error(io).
+  /// Writes `text` to a new file, which replaces the previous one, and returns its path. Throws Error(io).
   std::string write(const std::string& text) {
     file_.reset(::memfd_create("scene.toml", MFD_CLOEXEC));
     std::string path = cat("/proc/", ::getpid(), "/fd/", file_.get());

@@ -20,10 +20,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// No option, whatever it begins with.
+// Returns `path` so that it cannot be taken for an option.
 std::string as_path(const std::string& path) { return path.starts_with('-') ? "./" + path : path; }
 
-// Of a directory, and of the one file of several that has the path, no more is recorded that can be seen at a glance.
+// Returns whether the file at `path` matches the sidecar. For a directory, and for one file among several, the sidecar
+// records nothing more that can be checked quickly.
 bool is_source_of(const std::string& path, const Sidecar& sidecar) {
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0) return false;
@@ -34,8 +35,9 @@ bool is_source_of(const std::string& path, const Sidecar& sidecar) {
 }
 
 std::string named_source(const std::string& volume, const Sidecar& sidecar) {
-  // Where it was then, if that is one file, of which more is known than its name; else relative to where the conversion
-  // was started, which may well be where this program was, or moved with the volume.
+  // Tries the place of that time first, if it is one file about which more than its name is known. Then tries the
+  // recorded path relative to this process, which may have the same working directory, and relative to the volume, if
+  // both were moved.
   const std::string& recorded = sidecar.source.path;
   const fs::path real = sidecar.source.real_path;
   std::error_code not_there;
@@ -48,10 +50,11 @@ std::string named_source(const std::string& volume, const Sidecar& sidecar) {
                               sidecar.source.mtime, "; put it there, or convert it again from where it is"));
 }
 
-// How the volume was read. What was typed may have chosen several: "*", "time=*"; the sidecar says which one this is.
+// Returns the value of an option with which the volume was read. The typed option may have chosen several volumes
+// ("*", "time=*"), so the sidecar's fields come first.
 std::string recorded_option(const Sidecar& sidecar, const std::string& key) {
   const auto& given = sidecar.weir.options;
-  const bool lengths = given.contains("magnitude");  // of several datasets
+  const bool lengths = given.contains("magnitude");  // the magnitude of several datasets
   if (key == "dataset") return lengths ? "" : sidecar.source.dataset;
   if (key == "component") return lengths ? "" : sidecar.source.component;
   if (key == "index") return index_text(sidecar.source.index);
@@ -59,7 +62,7 @@ std::string recorded_option(const Sidecar& sidecar, const std::string& key) {
   return found == given.end() ? "" : found->second;
 }
 
-// "STEM_scene.nvdb" in `directory`, or the first of "STEM_scene_2.nvdb" and so on where that is taken.
+// Returns "STEM_scene.nvdb" in `directory`, or if it is taken the first free of "STEM_scene_2.nvdb" and so on.
 std::string free_output(const fs::path& directory, const std::string& stem) {
   for (int number = 1;; ++number) {
     const std::string path = (directory / cat(stem, "_scene", number == 1 ? "" : cat('_', number), ".nvdb")).string();

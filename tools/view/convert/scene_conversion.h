@@ -1,4 +1,4 @@
-// The conversion that keeps what a scene shows: `weir convert SOURCE --scene SCENE`, for people to read, or to be run.
+// The conversion that keeps what a scene shows: `weir convert SOURCE --scene SCENE`, to be shown or to be run.
 #pragma once
 
 #include <string>
@@ -10,20 +10,20 @@
 namespace weir {
 
 struct SceneConversion {
-  std::vector<std::string> arguments;  ///< without the program; the last is the scene's path
+  std::vector<std::string> arguments;  ///< without the program; the last argument is the scene's path
   std::string output;                  ///< path
-  std::string text;                    ///< the command for a shell, with the scene as "scene.toml", the last word
+  std::string text;                    ///< the command for a shell; its last word is "scene.toml" for the scene
 };
 
-/// From `source`, of which `volume` is a preview, to "NAME_scene.nvdb" beside it; where `source` is empty, from the one
-/// that `sidecar` names, a relative path as it leads from here or from the volume's directory, to a file beside the
-/// volume. A name that is taken is numbered, NAME_scene_2.nvdb. The source is read as the sidecar says. Throws
-/// Error(input) where it is not there, of another size or written to since, and where the volume is one level of
-/// several.
+/// Returns the conversion for a scene. If `volume` is a preview of `source`, converts `source` to "NAME_scene.nvdb"
+/// beside the source. If `source` is empty, converts the source that `sidecar` names (a relative path starts here or
+/// in the volume's directory) to a file beside the volume. A taken name is numbered, NAME_scene_2.nvdb. The source is
+/// read as the sidecar says. Throws Error(input) if the source is missing, has another size or was written to since,
+/// or if the volume is one level of several.
 SceneConversion scene_conversion(const std::string& volume, const std::string& source, const Sidecar& sidecar,
                                  const ConvertRequest& request);
 
-/// The program's name and arguments, with the scene at that path.
+/// Returns the program's name and arguments, with `scene` as the scene's path.
 std::vector<std::string> conversion_command(const SceneConversion& conversion, const std::string& scene);
 
 }  // namespace weir

@@ -21,7 +21,7 @@ void SceneConverter::start(const SceneConversion& conversion, const std::string&
   worker_ = std::make_unique<WorkerProcess>(
       io_, WorkerCommand{program_, arguments, 5, IoClass::none}, [](std::string_view) {},
       [this, output = conversion.output, ended = std::move(ended)](const WorkerEnd& end) mutable {
-        const std::string path = std::move(output);  // what is captured may go with the worker
+        const std::string path = std::move(output);  // moved out first: the captures may be destroyed with the worker
         const Ended tell = std::move(ended);
         const std::string message = end.exit_code == 0 ? "" : worker_reason("convert", end);
         worker_.reset();

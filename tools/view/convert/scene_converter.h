@@ -1,5 +1,5 @@
-// Runs one conversion for a scene at a time, as a process of its own; what it was made for is known to the viewer that
-// asked. Lives on the io_context's thread.
+// Runs one conversion for a scene at a time, as a separate process. The viewer that asked keeps track of what it asked
+// for. Lives on the io_context's thread.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -16,16 +16,17 @@ class WorkerProcess;
 
 class SceneConverter {
  public:
-  /// `message` is the reason where it failed, one line; empty where `output` is there.
+  /// `message` is the reason of a failure, one line; empty if `output` was made.
   using Ended = std::function<void(const std::string& output, const std::string& message)>;
 
   /// `program` is the path of weir.
   SceneConverter(boost::asio::io_context& io, std::string program);
-  /// A conversion that still runs is killed; its partial files are kept to be resumed.
+  /// Kills a conversion that still runs; its partial files are kept, so that it can be resumed.
   ~SceneConverter();
 
   bool running() const { return worker_ != nullptr; }
-  /// Throws Error(io) where it cannot be started, Error(usage) where one runs.
+  /// Starts the conversion. Throws Error(io) if the process cannot be started, Error(usage) if a conversion is
+  /// running.
   void start(const SceneConversion& conversion, const std::string& scene_text, Ended ended);
 
  private:

@@ -17,11 +17,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kMostKept = 256;  // answers, some 300 bytes each
-constexpr int kNice = 10;               // pictures come first
+constexpr std::size_t kMostKept = 256;  // number of answers, some 300 bytes each
+constexpr int kNice = 10;               // rendering has priority
 constexpr std::chrono::milliseconds kReapWait{100};
-constexpr std::chrono::milliseconds kSettle{200};  // of a question, before a process is started for it
-constexpr std::chrono::milliseconds kGrace{500};   // for one that is given up to remove what it keeps on disk
+constexpr std::chrono::milliseconds kSettle{200};  // how long a question must stand before a process is started
+constexpr std::chrono::milliseconds kGrace{500};   // time for a stopped process to remove its files
 
 Json failure(const std::string& message) { return {{"state", "failed"}, {"message", message}}; }
 
@@ -43,7 +43,7 @@ Json figures_of(const Json& found) {
           {"total_s", found.at("time").is_null() ? Json() : found.at("time").at("total_s")}};
 }
 
-// Of what `weir convert --dry-run --json` printed.
+// Returns the answer from the output of `weir convert --dry-run --json`.
 Json answer_of(const std::string& text) {
   try {
     return figures_of(Json::parse(text));
@@ -52,7 +52,7 @@ Json answer_of(const std::string& text) {
   }
 }
 
-// Its reader can set what the share comes from, and not --memory.
+// Rewords a failure about memory: the reader can set what the share comes from, but not --memory.
 std::string reason_of(const WorkerEnd& end) {
   constexpr std::string_view kRemedy = "give at least ";
   const std::string reason = worker_reason("convert", end);
@@ -109,10 +109,10 @@ void SceneForecasts::next() {
       if (!error && alive.lock() && !worker_) start(key);
     });
   }
-  for (const auto& [viewer, text] : std::exchange(due_, {})) told_(viewer, text);  // last: it may forget the viewer
+  for (const auto& [viewer, text] : std::exchange(due_, {})) told_(viewer, text);  // last: may forget the viewer
 }
 
-// Where that fails there is an answer, too.
+// Starts the forecast. A failure to start also gives an answer.
 void SceneForecasts::start(const std::string& key) {
   const auto asked =
       std::find_if(waiting_.begin(), waiting_.end(), [&](const auto& each) { return each.second.key == key; });
@@ -122,7 +122,7 @@ void SceneForecasts::start(const std::string& key) {
   try {
     std::vector<std::string> arguments =
         conversion_command(asked->second.conversion, kept_scene_.write(asked->second.scene_text));
-    // An output of before is not in the way of a forecast.
+    // An existing output must not prevent a forecast.
     arguments.insert(arguments.end(), {"--overwrite", "--dry-run", "--json", "--quiet"});
     arguments.insert(arguments.end(), options_.begin(), options_.end());
     worker_ = std::make_unique<WorkerProcess>(
@@ -134,7 +134,7 @@ void SceneForecasts::start(const std::string& key) {
   }
 }
 
-// One that was given up says nothing of its question, which may have been asked again meanwhile.
+// A stopped process says nothing about its question, which may have been asked again since.
 void SceneForecasts::ended(const WorkerEnd& end) {
   worker_.reset();
   if (end.exit_code == 0) {
@@ -157,7 +157,7 @@ void SceneForecasts::answer(const std::string& key, const Json& found) {
   });
 }
 
-// What failed may succeed the next time.
+// Keeps a result. Failures are not kept, because they may succeed the next time.
 void SceneForecasts::keep(const std::string& key, const Json& found) {
   if (answers_.size() >= kMostKept) answers_.clear();
   answers_[key] = found;

@@ -1,7 +1,7 @@
-// What conversions for scenes would come to: `weir convert --dry-run`, as a process of its own, one at a time. A page's
-// newest question counts, once it has stood for a moment; one that nobody waits for any more is given up, and the next
-// one begins when its process has ended. What was found is kept for whoever asks the same; a failure is not. Lives on
-// the io_context's thread.
+// Forecasts conversions for scenes with `weir convert --dry-run`, a separate process, one at a time. Only a page's
+// newest question counts, after it has stood for a moment. A forecast that nobody waits for any more is stopped, and
+// the next one begins when its process has ended. Results are kept for later equal questions; failures are not. Lives
+// on the io_context's thread.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -30,20 +30,20 @@ class SceneForecasts {
   /// `answer` is {"type": "forecast", "id", "state": "done" or "failed", ...}: docs/view.md.
   using Told = std::function<void(ViewerId viewer, const nlohmann::ordered_json& answer)>;
 
-  /// `program` is the path of weir, `options` more options of its convert.
+  /// `program` is the path of weir, `options` are further options for its convert.
   SceneForecasts(boost::asio::io_context& io, std::string program, std::vector<std::string> options, Told told);
-  /// Kills the one that runs.
+  /// Kills a running forecast.
   ~SceneForecasts();
 
-  /// Answers in any case, by `told`, unless another question of that viewer comes before or it is forgotten.
+  /// Always answers by `told`, unless that viewer asks another question first or is forgotten.
   void ask(ViewerId viewer, std::int64_t id, const SceneConversion& conversion, const std::string& scene_text);
   void forget(ViewerId viewer);
 
  private:
   struct Question {
-    std::chrono::steady_clock::time_point asked;  // those asked first are answered first
+    std::chrono::steady_clock::time_point asked;  // questions are answered in the order in which they were asked
     std::int64_t id = 0;
-    std::string key;  // what is asked, as a text
+    std::string key;  // the question as a text
     SceneConversion conversion;
     std::string scene_text;
   };
@@ -60,13 +60,13 @@ class SceneForecasts {
   const std::vector<std::string> options_;
   const Told told_;
   std::map<ViewerId, Question> waiting_;
-  std::vector<std::pair<ViewerId, nlohmann::ordered_json>> due_;  // answers that are told next
-  std::map<std::string, nlohmann::ordered_json> answers_;         // by key
+  std::vector<std::pair<ViewerId, nlohmann::ordered_json>> due_;  // answers to be told next
+  std::map<std::string, nlohmann::ordered_json> answers_;         // answers by key
   KeptScene kept_scene_;
-  std::string running_;  // key of what the worker finds
-  bool ending_ = false;  // it was given up
+  std::string running_;  // key of the question that the worker answers
+  bool ending_ = false;  // the running forecast is being stopped
   boost::asio::steady_timer settle_;
-  std::shared_ptr<int> alive_ = std::make_shared<int>(0);  // a timer that has fired may still be waiting
+  std::shared_ptr<int> alive_ = std::make_shared<int>(0);  // for a timer that has fired but not run yet
   std::unique_ptr<WorkerProcess> worker_;
 };
 

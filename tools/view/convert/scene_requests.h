@@ -1,4 +1,4 @@
-// What pages ask of the conversion for a scene: its command, what that would come to, and its run. Lives on the
+// Answers what pages ask about the conversion for a scene: its command, its forecast, and its run. Lives on the
 // io_context's thread.
 #pragma once
 
@@ -18,10 +18,10 @@ namespace weir {
 
 struct SceneRequestRules {
   std::string program;     ///< path of weir
-  std::string preview_of;  ///< the source that the volume is a preview of; empty: its sidecar names it
-  bool run = false;        ///< a page may have the conversion run
-  bool forecast = true;    ///< a page may have it forecast, which takes the memory of a conversion
-  std::vector<std::string> forecast_options = {};  ///< of weir convert: what a forecast may take
+  std::string preview_of;  ///< the source of which the volume is a preview; empty: the sidecar names the source
+  bool run = false;        ///< a page may run the conversion
+  bool forecast = true;    ///< a page may ask for a forecast, which takes the memory of a conversion
+  std::vector<std::string> forecast_options = {};  ///< options of weir convert that limit a forecast's resources
 };
 
 class SceneRequests {
@@ -31,10 +31,10 @@ class SceneRequests {
   /// `files` must outlive the object.
   SceneRequests(boost::asio::io_context& io, SceneRequestRules rules, OpenFiles& files, Send send);
 
-  /// Answers by `send`, now and as more is known, for the volume of that step, without a command where there is none:
-  /// its sidecar or its source is not there.
+  /// Answers by `send`, now and again as more is known, for the volume of `step`. If there is no command because the
+  /// sidecar or the source is missing, the answer has none.
   void handle(ViewerId viewer, std::size_t step, const std::string& volume, const ConvertRequest& request);
-  /// The viewer is gone.
+  /// Drops the questions of a viewer that has gone.
   void forget(ViewerId viewer) { forecasts_.forget(viewer); }
 
  private:

@@ -6,12 +6,12 @@
 namespace weir {
 
 bool SeriesHeads::look_at(const std::string& path) {
-  const std::string identity = file_identity(path);  // before it is read: one that takes its place is another
+  const std::string identity = file_identity(path);  // before reading: a file that replaces it has another identity
   const auto known = read_.find(path);
   if (known != read_.end() && known->second == identity) return true;
   try {
     add_to_summary(summary_, path);
-  } catch (const Error&) {  // said when its turn comes
+  } catch (const Error&) {  // reported when the file is shown
     return false;
   }
   read_[path] = identity;

@@ -1,4 +1,5 @@
-// What the steps of a series have in common, kept up to date while files come and are replaced. One thread at a time.
+// The common values of the steps of a series, kept up to date while files are added and replaced. One thread at a
+// time.
 #pragma once
 
 #include <map>
@@ -10,15 +11,15 @@ namespace weir {
 
 class SeriesHeads {
  public:
-  /// Adds the head of the file that has the path now, unless it has been read: of a file that took another's place, or
-  /// could not be read before, it is read again. Whether it has been read by now. What a file that is gone has added
-  /// stays.
+  /// Adds the head of the file that the path names now, unless it was already read. A file that replaced another, or
+  /// could not be read before, is read again. Returns whether the head has been read. Values that a vanished file
+  /// added stay.
   bool look_at(const std::string& path);
   const SeriesSummary& summary() const { return summary_; }
 
  private:
   SeriesSummary summary_;
-  std::map<std::string, std::string> read_;  // file_identity by path
+  std::map<std::string, std::string> read_;  // file_identity() of each file read, by path
 };
 
 }  // namespace weir

@@ -21,7 +21,7 @@ std::vector<std::string> step_names(const std::vector<std::string>& paths) {
   std::string folders = paths.front().substr(0, paths.front().rfind('/') + 1);
   for (const std::string& path : paths) {
     while (!path.starts_with(folders)) {
-      folders.pop_back();  // its '/'
+      folders.pop_back();  // removes the trailing '/'
       folders.resize(folders.rfind('/') + 1);
     }
   }

@@ -1,5 +1,5 @@
-// The steps that viewers see. A step keeps its number for as long as the list lives, whatever comes between or goes
-// away, so that a view that is on its way means the same file when it arrives. Any thread may ask.
+// The steps that viewers see. A step keeps its number as long as the list lives, even when other steps come or go, so
+// that a view on its way still means the same file when it arrives. Any thread may ask.
 #pragma once
 
 #include <cstddef>
@@ -10,31 +10,32 @@
 
 namespace weir {
 
-/// What tells the paths apart: each without the folders that all of them lie in.
+/// Returns each path without the folders that all of the paths lie in.
 std::vector<std::string> step_names(const std::vector<std::string>& paths);
 
 class StepList {
  public:
-  /// Numbered as they stand; one at least.
+  /// Numbers the paths in the given order; at least one.
   explicit StepList(std::vector<std::string> paths);
 
-  /// How many numbers were given: of the steps that are there, and of those that were.
+  /// Returns how many numbers were given, to present and vanished steps.
   std::size_t count() const;
-  /// Throws std::out_of_range where there is no such step.
+  /// Returns the path of a step. Throws std::out_of_range if there is no such step.
   std::string path(std::size_t step) const;
-  /// All, by number.
+  /// Returns all paths, by number.
   std::vector<std::string> paths() const;
-  /// step_names() of paths(): as long as no step comes from another folder, they stay.
+  /// Returns step_names() of paths(). Names change only when a step comes from another folder.
   std::vector<std::string> names() const;
-  /// One of these. Throws as path().
+  /// Returns the name of one step. Throws as path().
   std::string name(std::size_t step) const;
-  /// The numbers of those that are there, in natural order of their paths.
+  /// Returns the numbers of the steps that are present, in natural order of their paths.
   std::vector<std::size_t> order() const;
-  /// The one after `step` in that order; none after the last.
+  /// Returns the step after `step` in order(); nullopt after the last.
   std::optional<std::size_t> after(std::size_t step) const;
 
-  /// `paths` are there from now on, and no others; a new one gets the next number, one that is back has its old one.
-  /// Whether this changed anything. An empty list changes nothing: a directory that cannot be seen says no more.
+  /// Makes `paths` the present steps. A new path gets the next number; a path that returns gets its old number.
+  /// Returns whether anything changed. An empty list changes nothing, because an unreadable directory also gives an
+  /// empty list.
   bool update(const std::vector<std::string>& paths);
 
  private:

@@ -13,9 +13,9 @@
 namespace weir {
 namespace {
 
-constexpr int kRest = 19;  // so many times as long as a look took
+constexpr int kRest = 19;  // the pause, as a multiple of the duration of a look
 
-// The steps there are now, whose heads `heads` has seen; none where they cannot be seen.
+// Returns the present steps after `heads` has read their heads; empty if they cannot be listed.
 std::vector<std::string> seen_steps(const StepChoice& choice, const StepList& steps, SeriesHeads& heads) {
   const std::vector<std::string> paths = steps.paths();
   const std::set<std::string> known(paths.begin(), paths.end());

@@ -1,5 +1,5 @@
-// Looks again and again which steps a series has, for as long as a simulation adds to it. Lives on the io_context's
-// thread, looks on another one: a file server may take its time.
+// Repeatedly looks which steps a series has while a simulation adds to it. Lives on the io_context's thread but looks
+// on another thread, because a file server may be slow.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -18,10 +18,10 @@ class StepWatch {
  public:
   using Changed = std::function<void(const SeriesSummary& summary)>;
 
-  /// Brings `steps` up to date every `period`, later where a look takes long, so that it costs a twentieth of a core at
-  /// most; `changed` is called where other ones are there or have other values in common, with the summary of all that
-  /// were seen. A file whose head cannot be read yet is no step yet. `pool` and `steps` must outlive the object and
-  /// what it has asked of `pool`.
+  /// Updates `steps` every `period`, or later if a look takes long, so that looking costs at most a twentieth of a
+  /// core. Calls `changed` with the summary of all steps seen, when steps are added or removed or the common values
+  /// change. A file whose head cannot be read yet is not a step yet. `pool` and `steps` must outlive the object and
+  /// the work it gave to `pool`.
   StepWatch(boost::asio::io_context& io, boost::asio::thread_pool& pool, StepList& steps, const ViewedFiles& files,
             std::chrono::milliseconds period, Changed changed);
 
@@ -35,7 +35,7 @@ class StepWatch {
   const StepChoice choice_;
   const std::chrono::milliseconds period_;
   Changed changed_;
-  std::shared_ptr<SeriesHeads> heads_;  // of the look that is under way, while there is one
+  std::shared_ptr<SeriesHeads> heads_;  // used by the look under way, while there is one
   boost::asio::steady_timer timer_;
   std::shared_ptr<int> alive_ = std::make_shared<int>(0);
 };

@@ -28,7 +28,7 @@ std::string title_of(const std::string& input) {
   return (path.has_filename() ? path : path.parent_path()).filename().string();
 }
 
-// The others keep their order.
+// Moves `step` to the front; the others keep their order.
 void begin_with(ViewedFiles& files, std::size_t step) {
   const auto put_first = [&](std::vector<std::string>& paths) {
     const auto at = paths.begin() + static_cast<std::ptrdiff_t>(step);
@@ -43,7 +43,7 @@ void begin_with(ViewedFiles& files, std::size_t step) {
 std::vector<std::string> find_steps(const StepChoice& choice) {
   const std::string& input = choice.input;
   std::error_code none;
-  // A directory may be an input, as a Zarr array is.
+  // A directory may also be an input, for example a Zarr array.
   const bool directory = is_directory(input);
   const std::string pattern = directory ? (fs::path(input) / "*.nvdb").string() : input;
   std::vector<std::string> files;
@@ -65,11 +65,11 @@ std::vector<std::string> find_steps(const StepChoice& choice) {
 }
 
 std::size_t volumes_held(const ViewedFiles& files) {
-  const std::size_t steps = files.series() ? 2 : 1;  // that is seen, and the next
+  const std::size_t steps = files.series() ? 2 : 1;  // the step that is shown, and the next step
   return steps + (files.against.empty() ? 0 : files.against.size() > 1 ? 2 : 1);
 }
 
-// Of a series that of any of its files.
+// For a series the key is the same for any of its files.
 std::string viewed_key(const StepChoice& choice, const std::string& against) {
   if (choice.series && against.empty() && !is_directory(choice.input)) return series_digest(choice.input);
   const auto absolute = [](const std::string& path) { return fs::absolute(path).lexically_normal().string(); };
@@ -97,7 +97,7 @@ ViewedFiles find_viewed_files(const StepChoice& choice, const std::string& again
   for (const std::string& step : files.steps) files.heads.look_at(step);
   const bool single = !choice.series && files.steps == std::vector{choice.input};
   files.grow = !single && files.against.size() <= 1;
-  // Its own number is the first one: what a viewer sees at first.
+  // The named file gets the first number, because viewers see that step first.
   const auto named = std::find(files.steps.begin(), files.steps.end(), choice.input);
   if (choice.series && !is_directory(choice.input)) {
     if (named == files.steps.end()) {

@@ -1,4 +1,4 @@
-// Small Zarr hierarchies, written by hand.
+// Writes small Zarr hierarchies by hand.
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,7 @@
 
 namespace weir {
 
-/// A directory run.zarr, in which files are written by their keys.
+/// A directory run.zarr; files in it are written by their keys.
 class ZarrFiles {
  public:
   std::string path(std::string_view key = {}) const {
@@ -35,7 +35,7 @@ class ZarrFiles {
     source.read(source.info().domain(), values);
     return values;
   }
-  /// Of opening and reading all, which fails.
+  /// Returns the error message of opening the store and reading all of it, which must fail.
   std::string message(ErrorKind kind, const SourceOptions& options = {}) const {
     const std::string text = message_of_error(kind, [&] { read(options); });
     return text.starts_with(path()) ? "run.zarr" + text.substr(path().size()) : text;
@@ -45,7 +45,8 @@ class ZarrFiles {
   TemporaryDirectory directory_;
 };
 
-/// zarr.json of an array of `shape` in chunks of `chunk`, uint8 without packing unless `codecs` says more.
+/// Returns the zarr.json of an array of `shape` in chunks of `chunk`: uint8 and uncompressed unless `codecs` and
+/// `type` say otherwise.
 inline std::string zarr_json(std::string_view shape, std::string_view chunk,
                              std::string_view codecs = R"([{"name":"bytes"}])", std::string_view type = "uint8",
                              std::string_view fill = "7", std::string_view more = "") {
@@ -54,7 +55,7 @@ inline std::string zarr_json(std::string_view shape, std::string_view chunk,
              R"(}},"chunk_key_encoding":{"name":"default"},"codecs":)", codecs, R"(,"fill_value":)", fill, more, "}");
 }
 
-/// .zarray, in the same way.
+/// Returns a .zarray in the same way.
 inline std::string zarray(std::string_view shape, std::string_view chunk, std::string_view type = "|u1",
                           std::string_view fill = "7", std::string_view more = R"("compressor":null,"filters":null)") {
   return cat(R"({"zarr_format":2,"order":"C","shape":)", shape, R"(,"chunks":)", chunk, R"(,"dtype":")", type,

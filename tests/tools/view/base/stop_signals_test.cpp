@@ -7,7 +7,7 @@
 namespace weir::stop_signals_test {
 namespace {
 
-// True where the first one stops the io_context and the process goes on.
+// Returns true if the first signal stops the io_context and the process goes on.
 bool stops_at(int signal) {
   boost::asio::io_context io;
   const StopSignals signals(io, [&] { io.stop(); });

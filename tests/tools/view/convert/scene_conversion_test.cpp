@@ -33,7 +33,7 @@ TEST_F(SceneConversionTest, CommandThatIsShown_IsFitForAShell) {
   const std::string text = scene_conversion(volume, "", said, by_error).text;
   EXPECT_NE(text.find(" --psnr 50 -o "), std::string::npos) << text;
   EXPECT_EQ(text.find("--rate"), std::string::npos) << text;
-  // A shell takes the text apart into the very words.
+  // A shell splits the text into exactly these words.
   const CommandResult shell = run_command({"/bin/sh", "-c", "weir() { printf '%s\\n' \"$@\"; }; " + conversion.text});
   EXPECT_EQ(shell.exit_code, 0) << shell.err;
   std::string words;

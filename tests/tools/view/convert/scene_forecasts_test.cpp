@@ -1,4 +1,4 @@
-// Forecasts by scripts in place of weir; a real one is in the tests of the server.
+// Tests forecasts with scripts in place of weir; the tests of the server have a real forecast.
 #include "tools/view/convert/scene_forecasts.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ class SceneForecastsTest : public testing::Test {
     Json answer;
   };
 
-  /// A program that adds its scene's first line to `calls`, and then does what `then` says.
+  /// Writes a program that appends its scene's first line to `calls` and then runs `then`.
   std::string program(const std::string& then) {
     const std::string path = directory_ / "program";
     write_file(path, cat("#!/bin/sh\nfor word; do [ \"$before\" = --scene ] && head -1 \"$word\" >> ",
@@ -130,7 +130,7 @@ TEST_F(SceneForecastsTest, QuestionsInQuickSuccession_StartOneProcess) {
 
 TEST_F(SceneForecastsTest, NextOne_BeginsWhenTheLastHasEnded) {
   const std::string lock = directory_ / "lock";
-  // It takes a while to remove what it keeps.
+  // The program takes a while to remove its files.
   SceneForecasts forecasts(
       io_,
       program(cat("trap 'sleep 0.05; rmdir ", lock, "; exit 1' TERM; mkdir ", lock, "; while :; do sleep 0.01; done")),

@@ -1,4 +1,4 @@
-// What a page asks of the conversion for a scene, of a real server.
+// Tests what a page asks about the conversion for a scene, with a real server.
 #include "tools/view/convert/scene_requests.h"
 
 #include <gtest/gtest.h>
@@ -51,7 +51,7 @@ TEST_F(SceneRequestsTest, Convert_IsForecast) {
   const Json forecast = client.text("forecast").value();
   EXPECT_EQ(forecast["state"], "done") << forecast;
   EXPECT_EQ(forecast["id"], 1);
-  // As it is once it is made.
+  // The file as the conversion makes it.
   const std::string made = directory_ / "made.nvdb";
   ASSERT_EQ(run_weir({"convert", directory_ / "v_40x30x20_float32.raw", "--encoding", "packed", "--psnr", "45",
                       "--scene", directory_ / "s.toml", "-o", made})
