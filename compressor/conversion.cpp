@@ -174,7 +174,8 @@ Sidecar convert_on(std::size_t threads, const Workers& workers, const Conversion
     reserve_ahead(conversion.output, options, control, source);
   }
   StreamOptions stream = stream_options(control);
-  // Buffers help the survey, because its blocks are smaller. If few threads can be started, reading has only one.
+  // More than two buffers help the survey, whose blocks are smaller, and let two threads read. If fewer threads can be
+  // started than were chosen, one thread reads.
   if (threads == workers.threads) stream.buffer_bytes = 2 * memory.block_bytes;
   if (reading.encode.amplification > 1 && control.notice) {
     control.notice(amplification_notice(source, memory, options.memory, reading.encode));

@@ -23,8 +23,8 @@ struct ConversionControl {
   Notice notice;
   std::function<void(std::uint64_t bytes)>
       planned;  ///< the file's size, before its disk space is reserved; called again if the file is replanned
-  std::function<void()>
-      before_commit;            ///< last call before the output appears; if it throws, the output does not appear
+  /// The last call before the output appears. If it throws, the output does not appear.
+  std::function<void()> before_commit;
   bool pads_file = true;        ///< false for a trial: its file is not padded to the requested size
   BlockCoder* coder = nullptr;  ///< if not null, surveys and encodes packed blocks; the file's bytes are the same
   Trace* trace = nullptr;       ///< receives the passes, and what each thread reads, surveys, encodes and writes

@@ -28,12 +28,12 @@ struct Workers {
 };
 
 /// Chooses the number of threads. `held` is the bytes in use besides the memory of `source` and `coder`. `coder` may
-/// be null. Throws as choose_threads() does.
+/// be null.
 Workers choose_workers(VolumeSource& source, const ConversionOptions& options, const BlockCoder* coder,
                        std::uint64_t held);
 
-/// Throws as choose_threads() and plan_memory() do if options.memory is too little for a volume over `domain`, with
-/// `resident` bytes already in use.
+/// Throws as plan_memory() does if options.memory is too little for a volume over `domain`, with `resident` bytes
+/// already in use.
 void check_memory(const ConversionOptions& options, const Box& domain, std::uint64_t resident);
 
 /// How a conversion divides its memory, and the blocks that it reads as a result.

@@ -67,8 +67,8 @@ inline SurveyStores make_survey_stores(const std::function<std::shared_ptr<File>
   return stores;
 }
 
-/// Writes the volume that `survey` and `stores` describe, and its sidecar. Returns the sidecar. `started` is when the
-/// conversion started, for Sidecar::Timing.
+/// Writes the volume that `survey` and `stores` describe, and its sidecar. Returns the sidecar. `started` is the time
+/// from which Sidecar::Timing counts: the start of the conversion, or of a push's end().
 Sidecar convert_surveyed(const ConversionParts& parts, const ReadingPlan& reading, const Survey& survey,
                          SurveyStores& stores, std::chrono::steady_clock::time_point started);
 

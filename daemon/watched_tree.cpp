@@ -140,7 +140,7 @@ void WatchedTree::work() {
     ready_ = false;
     superseded_.clear();
     known_.go_back_to(known);
-    // Paths that were looked at are due again, and known jobs count as unknown. The events are still in events_.
+    // Paths that were looked at are due again; those no longer tracked come again as found. The events are in events_.
     for (const FileEvent& event : events) looked_at_.erase(event.path);
     for (const std::string& path : looked_at_) {
       if (tracked_.contains(path)) {

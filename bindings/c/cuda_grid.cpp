@@ -14,7 +14,7 @@
 
 struct weir_cuda_grid {
   std::optional<weir::DeviceGrid> grid;
-  weir::DeviceBuffer spare;  ///< used if there is no grid
+  weir::DeviceBuffer spare;  ///< the earlier grid's memory, reused by the next load; only while there is no grid
   int device = 0;            ///< the device of the last load
 
   // Loads the grid as it is, or expanded to another type.

@@ -12,7 +12,7 @@
 
 namespace weir::c {
 
-/// Slabs on their way to a push. The push is created before this object.
+/// Slabs on their way to a push. The push is created before this object and must outlive it.
 class PushInFlight {
  public:
   PushInFlight() = default;

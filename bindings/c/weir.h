@@ -154,8 +154,8 @@ typedef struct weir_convert_options {
   size_t struct_size;
   double budget;        /* for WEIR_BUDGET_RATE, _PSNR, _MAX_ERROR */
   uint64_t size;        /* bytes, for WEIR_BUDGET_SIZE */
-  uint64_t memory;      /* bytes that weir may take besides what the process has; 0: 512 MiB. Some calls need buffers
-                           in addition, see their comments */
+  uint64_t memory;      /* bytes that weir may take besides what the process has; 0: 512 MiB. Some calls take buffers
+                           of their own on top of it; their comments say how much */
   const char* work_dir; /* for temporary files, on a disk; NULL: a hidden directory beside the output */
   /* Callbacks, each optional. weir calls them with `user`, one thread at a time, while the call lasts (for weir_push
    * until its end); the thread may be another than the caller's. They must return soon, and must not call anything

@@ -49,9 +49,9 @@ WEIR_API void weir_cuda_free(weir_cuda_grid* loaded);
  * besides options->memory; a call waits while these are full. Planes are checked as by weir_push_slab. If a copy fails,
  * the push ends, and a later call returns the status. If there is no room for these pieces (WEIR_ERROR_IO at the first
  * slab), nothing was taken, and the push can go on.
- * All slabs come from one device; values on another device must be without gaps. Slabs of weir_push_slab may come in
- * between. If `data` is host memory, or there is no device, the slab is taken as weir_push_slab takes it, once the
- * work in `stream` is done. */
+ * Make every call with the same device current; values that lie on another device must be without gaps. Slabs of
+ * weir_push_slab may come in between. If `data` is host memory, or there is no device, the slab is taken as
+ * weir_push_slab takes it, once the work in `stream` is done. */
 WEIR_API weir_status weir_push_slab_device(weir_push* push, int64_t z0, int64_t nz, const void* data,
                                            const int64_t stride[3], void* stream, weir_error* error);
 /* Grants device memory; call it before the first slab of a device. Up to `bytes` of the device's memory, at least a
@@ -60,9 +60,9 @@ WEIR_API weir_status weir_push_slab_device(weir_push* push, int64_t z0, int64_t 
  * If it is enough for the whole volume, the values stay on the device under these conditions: WEIR_FLOAT32 without
  * missing values, options->encoding packed, options->backend not WEIR_BACKEND_CPU, options->memory 1 GiB or more.
  * weir_push_end then surveys and encodes them on that device, which takes 0.5 to 1 GB more of its memory (most if
- * everything is kept without loss), and only streams and figures cross the bus. The file has the same bytes. Of the
- * host's page-locked memory, up to 96 MiB stay with the process for the next step, and up to 1 GiB that the system
- * takes back when it needs memory (MADV_FREE). */
+ * everything is kept without loss), and only streams and figures cross the bus. The file has the same bytes. Up to
+ * 96 MiB of page-locked host memory stay with the process for the next step. So does up to 1 GiB of ordinary memory,
+ * which the system takes back when it needs memory (MADV_FREE). */
 WEIR_API weir_status weir_push_device_memory(weir_push* push, uint64_t bytes, weir_error* error);
 /* Like weir_convert, for values on the device, after the work queued in `stream`: begins a push, takes one slab and
  * ends. If the device does the work (see weir_push_device_memory) and values have no gaps, they are encoded where

@@ -13,9 +13,10 @@ namespace weir {
 int device_of(const void* address);
 
 /// Returns a source that reads `array`. Its data lie on `device`, are complete, and must not change while the source
-/// exists. Threads that read it work in the calling thread's context if that belongs to `device`. It uses the
-/// page-locked host memory of DeviceSlabs if no row is longer than a piece. Throws as array_info(), Error(usage) if the
-/// address or a stride is not a multiple of the bytes of a value, and Error(io) if there is no memory to lock.
+/// exists. Threads that read it work in the calling thread's context if that belongs to `device`. It locks host memory
+/// of its own: as much as DeviceSlabs does, or more if a row is longer than a piece. Throws as array_info(),
+/// Error(usage) if the address or a stride is not a multiple of the bytes of a value, and Error(io) if there is no
+/// memory to lock.
 std::unique_ptr<VolumeSource> open_device_array(const DenseArray& array, int device);
 
 }  // namespace weir

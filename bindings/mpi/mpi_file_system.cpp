@@ -129,9 +129,8 @@ class MpiFileSystem final : public FileSystem {
     return shared(path, std::move(own));
   }
   std::unique_ptr<File> open_to_read(const std::string& path) override {
-    if (!exists(path))
-      throw io_error(path, "open for reading", ENOENT);  // all ranks ask, so that all learn of a
-                                                         // missing file
+    // All ranks call exists(), so that all of them learn of a missing file.
+    if (!exists(path)) throw io_error(path, "open for reading", ENOENT);
     std::unique_ptr<File> own;
     team_.lead([&] { own = files_.open_to_read(path); });
     return shared(path, std::move(own), MPI_MODE_RDONLY);

@@ -39,9 +39,9 @@ class PushedBoxes {
   /// control.cancel is set; end() then throws the same.
   void box(const Box& box, const void* data, const std::array<std::int64_t, 3>& stride);
 
-  /// Writes the volume and its sidecar, and returns the sidecar. Throws Error(usage) that names a box that two
-  /// processes gave, or a box that nobody gave, which can still be given. Any other Error is final and leaves nothing
-  /// of the output.
+  /// Writes the volume and its sidecar, and returns the sidecar. Throws Error(usage) that names a box that nobody gave,
+  /// which can still be given, or voxels that were given twice, after which no end() succeeds. Any other Error is final
+  /// and leaves nothing of the output.
   Sidecar end();
 
  private:

@@ -59,7 +59,8 @@ class Grid {
   /// Returns the sidecar's JSON; nullopt if there is none. Throws Error(input) if the sidecar belongs to another file,
   /// and Error(usage) if the grid is remote.
   std::optional<std::string> sidecar() const;
-  /// Checks and returns the sidecar `text`, which was read from `path`. Throws as sidecar().
+  /// Checks and returns the sidecar `text`, read from `path`; also for a remote grid. Throws Error(input) if the text
+  /// is not a valid sidecar or belongs to another file.
   std::string checked_sidecar(const std::string& text, const std::string& path) const;
   /// Returns float32 [z, y, x] of the box at a level: levels.h.
   pybind11::array_t<float> read(const Triple& lo, const Triple& hi, int level) const;

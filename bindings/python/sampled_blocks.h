@@ -28,7 +28,8 @@ class DecodedBlocks {
 
   /// Returns a voxel of a decoded block; `i` counts from the lowest voxel.
   float voxel(const Int3& i) const;
-  /// Reads the eight voxels from `i` up, x fastest, clamped to the extent. Returns false: all are set.
+  /// Reads the 2 x 2 x 2 voxels from `i` up, x fastest, clamped to the extent. Always returns false: all of `c` is set.
+  /// (True would mean that one tile covers all eight voxels and only c[0] is set.)
   bool taps(const Int3& i, float (&c)[8]) const;
 
  private:

@@ -46,7 +46,7 @@ std::unique_ptr<LayerEncoder> make_encoder(const EncodeTarget& target) {
   return target.packed != nullptr ? make_packed_encoder(target) : make_leaf_encoder(target);
 }
 
-// Loads the values of a block into the coder; returns null if there is no coder.
+// Loads the values of a block into the coder. Returns null if there is no coder, or if it cannot take the block.
 std::unique_ptr<LoadedBlocks> load_block(const EncodeTarget& target, const Block& block, const Box& leaf_box) {
   if (target.packed == nullptr || target.packed->coder == nullptr) return nullptr;
   return target.packed->coder->load(block.values, block.voxels, target.tree.leaves.nodes_box(leaf_box));

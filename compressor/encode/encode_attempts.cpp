@@ -253,7 +253,7 @@ struct Attempts {
     return true;
   }
 
-  // Returns whether raise_quality() asks for more than the default. The user did not ask for it.
+  // Returns whether raise_quality() has made the request ask for more than the default, which the user did not ask for.
   bool raised() const {
     return asked.budget.kind == Budget::Kind::automatic && request.budget.kind != asked.budget.kind;
   }

@@ -34,8 +34,8 @@ struct LadderAim {
   std::optional<float> background;   ///< the value that replaces non-finite values, if it is known
   std::optional<double> max_error;   ///< for each block the shortest stream whose values are all within it
   std::optional<Lattice> lattice{};  ///< of the whole volume
-  bool near_rungs = false;           ///< a budget of bytes, or of an error, may buy them
-  NearBlocks near{};  ///< blocks for which it is known to buy them; until then only sampled blocks have them
+  bool near_rungs = false;           ///< whether near rungs may be built: a budget of bytes or of an error may buy them
+  NearBlocks near{};  ///< blocks known to be bought by near rungs, which get them; sampled blocks always get them
   /// The window in which the cut is known to lie. Rungs that the cut cannot choose are left out.
   std::optional<KeyWindow> window{};
   BlockCoder* coder = nullptr;  ///< if not null, looks at the rungs of many blocks at a time

@@ -40,7 +40,7 @@ class TransformRungs {
   }
 
   std::size_t end() const { return end_; }
-  /// Sets a rung of the ladder unless the exact stream is no longer. Returns the rung's bits.
+  /// Sets a rung of the ladder if its stream is shorter than the exact one. Returns the rung's bits, set or not.
   std::uint32_t build(std::size_t rung) {
     const bool mean = rung < PackedLadder::kMeanRungs;
     const TransformBlock::Cost cost = mean ? TransformBlock::Cost{kMeanAloneBits, energy_} : cost_of_(rung);
@@ -80,7 +80,7 @@ class NearRungBuilder {
   }
 
   std::size_t end() const { return end_; }
-  /// Sets a rung of the ladder unless the exact stream is no longer, or all rounded values of the block are the same.
+  /// Sets a rung of the ladder if its stream is shorter than the exact one and its rounded values are not all the same.
   /// Returns the rung's point; nullopt if the rung is not set.
   std::optional<RungPoint> point(std::size_t rung) {
     if (!std::exchange(tried_[rung], true)) build(rung);

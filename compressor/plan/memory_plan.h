@@ -33,8 +33,8 @@ MemoryPlan plan_memory(std::uint64_t ceiling, std::uint64_t resident, std::size_
 /// Returns `given`, or the number of the machine's processors if `given` is 0; at least 1.
 std::size_t processors_or_all(std::size_t given);
 
-/// Returns the number of workers of a conversion, at least 1: `asked`, or one per processor if `asked` is 0. If
-/// `ceiling` does not hold so many, there are fewer, and a quarter of the memory that they share stays for the blocks.
+/// Returns the number of workers of a conversion, at least 1: `asked`, whatever the ceiling. If `asked` is 0, one per
+/// processor, or fewer if `ceiling` does not hold them: a quarter of what they share then stays for the blocks.
 std::size_t choose_threads(std::size_t asked, std::size_t processors, std::uint64_t ceiling, std::uint64_t resident,
                            const Box& domain, std::uint64_t region_bytes = kRegionRowsBytes);
 

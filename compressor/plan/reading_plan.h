@@ -16,8 +16,8 @@ struct ReadingPlan {
   Reading reading = Reading::ahead;
   BlockPlan survey;
   BlockPlan encode;
-  std::uint64_t pair_bytes =
-      0;  ///< CompareOptions::block_bytes of the pass over source and file that follows both passes
+  /// CompareOptions::block_bytes of the pass over source and file that comes after both passes.
+  std::uint64_t pair_bytes = 0;
 };
 
 ReadingPlan plan_reading(const VolumeSource& source, const MemoryPlan& memory);

@@ -23,8 +23,8 @@ inline constexpr std::chrono::seconds kStartableFor{1};
 std::size_t startable_threads(std::size_t wanted);
 
 /// Returns how many workers, including the calling thread, can run beside the threads that read, write back and save:
-/// at most `threads`, at least 1. Tells `notice`, if not empty, when there are fewer. Throws Error(io) if no reading
-/// thread can be started.
+/// at most `threads`, at least 1. Tells `notice`, if not empty, when there are fewer. Throws Error(io) if fewer than
+/// two threads can be started: one to read, and one that oneTBB may start for itself.
 std::size_t startable_workers(std::size_t threads, const Notice& notice);
 
 }  // namespace weir

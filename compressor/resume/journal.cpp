@@ -145,7 +145,7 @@ Journal::Journal(FileSystem& files, const std::string& output, ConversionIdentit
   state.spill_directory = spill_directory_;
 }
 
-// Locks the spill directory's files, so that no other conversion uses the directory from now on.
+// Opens and so locks "rows" in the spill directory, so that another conversion that comes there finds it locked.
 void Journal::hold_spill_directory() {
   try {
     if (!open("rows")->has_its_name()) {  // removed by another process that began at the same moment

@@ -53,7 +53,7 @@ class CutSearch {
  public:
   /// Searches the keys of `tree` (region_keys.h) and of the leaves' steps. All arguments must outlive the object.
   /// `held`: the steps of likely_keys(), or of every_key() if the goal is an error and error_unit() is not known
-  /// beforehand; or null. `counts`: the weights of the steps of likely_keys(), or null.
+  /// beforehand; or null. `counts`: the bytes of the steps of likely_keys(), used if the goal is a size; or null.
   CutSearch(const GainRule& rule, const RowStore& rows, const TreeRegions& tree, const HeldSteps* held,
             const KeyCounts* counts)
       : rule_(rule), rows_(rows), tree_(tree), held_(held), counts_(counts) {}

@@ -95,7 +95,7 @@ class Candidate {
 
   // Returns whether buying every step leaves no error.
   bool ends_exact() const { return encoding_ == Encoding::float32 || encoding_ == Encoding::packed; }
-  // Returns the squared error of a plan for a PSNR.
+  // Returns the squared error that a plan for a PSNR may have at most.
   double target() const { return encoding_ == Encoding::float32 ? request_.squared_error : request_.planned_error; }
   void choose_everything() { selection_.choose(bytes_.full.file_bytes); }
 

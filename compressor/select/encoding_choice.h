@@ -76,8 +76,8 @@ struct FileRequest {
 /// to reach it, the plan is the best that the encoding has.
 FilePlan plan_file(const FileRequest& request, const RowStore& rows, WorkDirectory& work);
 
-/// Returns the Error(budget) for a target that `encoding` misses. For a PSNR, `squared_error` is the encoding's least
-/// error.
+/// Returns the error for a target that `encoding` misses: Error(budget), or Error(internal) for packed. For a PSNR,
+/// `squared_error` is the encoding's least error.
 Error unmet_target(const FileRequest& request, Encoding encoding, double squared_error);
 
 }  // namespace weir

@@ -1,6 +1,6 @@
 // Holds the steps that a selection can buy in memory as one pass over the rows finds them, so that no further pass is
-// needed to find the cut. If a window is known, only steps near the cut are held. If there are too many steps, only
-// their bytes are counted.
+// needed to find the cut. If a window is known, only steps near the cut are held. If there are too many steps, none are
+// kept, and only with `counts` (for a size) are their bytes counted.
 #pragma once
 
 #include <tbb/enumerable_thread_specific.h>

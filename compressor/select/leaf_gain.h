@@ -137,9 +137,10 @@ struct GainRule {
   /// Returns the weight of the error of a block of that `reach` that reads `tile`.
   double tile_weight(const MinMax& reach, float tile) const;
 
-  /// Finds the gains of a region's leaves in leaf-index order. Required are the two corner leaves of the domain, leaves
-  /// that hold non-finite values to keep, and packed blocks without a finite value that would not read the background.
-  /// Other leaves may get no steps if all their keys are below `least_key`, because finding steps is most of the work.
+  /// Finds the gains of a region's leaves in leaf-index order. Required are the two corner leaves of the domain (not of
+  /// a packed file without a preview), leaves with non-finite values to keep, leaves that fill.splits() or
+  /// keeps_active() says, and blocks without a finite value that would not read the background. Other leaves may get no
+  /// steps if all their keys are below `least_key`, because finding steps is most of the work.
   void gains(const TreeRegions& tree, const RegionRows& rows, RegionGains& out, double least_key = 0) const;
 
   /// Adds a packed block's steps to `out`. `leaf` says whether the block reads the same bits without a stream, and

@@ -57,8 +57,8 @@ inline bool are_whole(const NodeLattice& leaves, const Box& leaf_box) {
   return leaves.voxels(leaf_box.lo) == leaves.node_box(leaf_box.lo) && leaves.voxels(last) == leaves.node_box(last);
 }
 
-/// Returns whether a leaf is the first or the last leaf of a volume. These two are always kept, so that the bounding
-/// box that other readers find is the domain.
+/// Returns whether a leaf is the first or the last leaf of a volume. By these two, other readers find the domain as the
+/// bounding box, so every file but a packed one without a preview keeps them.
 inline bool is_corner(const NodeLattice& leaves, const Index3& leaf) {
   return leaf == Index3{0, 0, 0} || leaf == leaves.count - Index3{1, 1, 1};
 }

@@ -268,7 +268,7 @@ void BlockSurvey::add(const Block& block, const Box& leaf_box, Sharing sharing) 
       part(first, end, tallies_.local());
     };
     if (sharing == Sharing::alone) return survey(0, volume(extent));
-    // The rows of a sample are short, hence 4. Leaves that repeat their values are surveyed several at once.
+    // Least leaves per task: few, because a sample's rows are short; more if leaves repeat values (kLeafLanes at once).
     const std::size_t least_run = block.parts == nullptr ? 4 : 4 * kLeafLanes;
     tbb::parallel_for(tbb::blocked_range<std::int64_t>(0, volume(extent), least_run),
                       [&](const auto& range) { survey(range.begin(), range.end()); });

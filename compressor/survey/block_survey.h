@@ -30,7 +30,7 @@ class BlockSurvey {
   /// Who counts the values of a volume: the survey, block by block, or the caller, who passes the counts to
   /// add_counts().
   enum class Counting { here, elsewhere };
-  /// `rows`, and `faces` if it is not null, receive the records of each leaf. All arguments must outlive the object.
+  /// `rows`, and `faces` if it is not null, receive the records of each leaf. They and `trace` must outlive the object.
   /// `widths` and `ladders` are as in SurveyTask.
   BlockSurvey(const SourceInfo& info, RowStore& rows, LeafStore<LeafFaces>* faces, bool widths, Trace* trace,
               const std::optional<LadderAim>& ladders = std::nullopt, Counting counting = Counting::here);

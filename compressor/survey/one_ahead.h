@@ -13,8 +13,8 @@
 namespace weir {
 
 /// Calls begin(i, item) and then end(item) for each i < count, in any order and on several threads. Items are reused.
-/// At most `most_begun` items, but at least two, are between the two calls. After an exception no further item begins,
-/// and the exception is thrown when all threads have ended.
+/// No more than `most_begun` items (or 2, if that is more) are between the two calls at a time. After an exception no
+/// further item begins, and the exception is thrown when all threads have ended.
 template <class Item, class Begin, class End>
 void one_ahead(std::size_t count, std::size_t most_begun, const Begin& begin, const End& end) {
   std::atomic<std::size_t> next = 0;

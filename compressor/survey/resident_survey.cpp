@@ -128,7 +128,7 @@ class ResidentSurvey {
     survey_.add({0, voxels, values, loss}, leaf_box, BlockSurvey::Sharing::shared);
   }
 
-  // Counts all values in the histogram bins of the final range, which is known only now.
+  // Counts all finite values in the histogram bins of the final range, which is known only now.
   void count() {
     const SurveyTally tally = survey_.tally();
     if (tally.finite == 0) return;

@@ -1,5 +1,5 @@
-// What the survey stores: a row of 64 bytes per leaf; if a scene is given, the range of values that can be seen around
-// each leaf; for packed files, the ladder of each block; and the values of as many leaves as memory has room for.
+// What the survey stores: a row of 64 bytes per leaf; with a scene, the reach of each leaf (leaf_reach.h), the values
+// that lookups in or next to it can give; for packed files each block's ladder; and cached values of leaves.
 #pragma once
 
 #include <cstdint>

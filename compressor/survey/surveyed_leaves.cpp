@@ -28,7 +28,7 @@ void SurveyedLeaves::check(const Index3& leaf, std::span<const float> values, co
   const Box inside = leaves_.voxels(leaf);
   const Index3 rows = voxels.extent();
   if (held_ != nullptr) __builtin_prefetch(held_ + leaves_.linear(leaf));
-  // Leaves come along z, so the rows of the next leaf are prefetched if `voxels` contains it.
+  // Leaves come along z, so the next leaf's rows of voxels are prefetched if `voxels` contains that leaf.
   const std::int64_t next = inside.hi.z + kLeafDim <= voxels.hi.z ? kLeafDim * rows.x * rows.y : 0;
   std::array<float, kLeafVoxels> own;
   check(leaf, leaf_digest(copy_leaf(values, voxels, inside, next, own)));

@@ -29,7 +29,7 @@ struct OutputView {
   std::optional<double> psnr_db;  ///< none if lossless, or if lossless over valid voxels (max_error 0)
   bool lossless = false;
   bool thumbnail = false;             ///< Control::thumbnail_path has one
-  std::optional<double> max_error{};  ///< the largest error; none, like min and max, from an older weir
+  std::optional<double> max_error{};  ///< the largest absolute error; none, like min and max, from an older weir
   std::optional<double> min{};        ///< of the source's finite values
   std::optional<double> max{};
 };
@@ -147,9 +147,9 @@ struct ViewerView {
 
 struct StatusView {
   std::string version;
-  std::string config;  ///< path
-  std::string state;   ///< "running", "paused" (no job starts), "stopping"
-  std::string reason;  ///< why the service is paused; while it runs, the full disks that jobs wait for; otherwise empty
+  std::string config;      ///< path
+  std::string state;       ///< "running", "paused" (no job starts), "stopping"
+  std::string reason;      ///< why the service is paused; while it runs, the disks that jobs wait for; otherwise empty
   double started_at = 0;   ///< when this process started
   double queue_age_s = 0;  ///< since the oldest waiting job was complete; 0 if no job waits
   double bytes_per_s = 0;  ///< source bytes converted, over the last minute

@@ -28,8 +28,8 @@ struct HiddenSource {
 /// recursive. One thread.
 class HiddenSources {
  public:
-  /// Queues the directories of `watches` for a look. Directories that were queued before are left out; a directory
-  /// that is missing now may be queued by a later call.
+  /// Queues the directories of `watches` for a look, except those that were queued before with the same `recursive`. A
+  /// directory that is missing now may be queued by a later call.
   void look_through(const std::vector<WatchConfig>& watches);
   /// Returns whether nothing is left to look through.
   bool idle() const { return waiting_.empty() && at_ == std::filesystem::directory_iterator(); }

@@ -55,8 +55,8 @@ class EventLog {
   bool try_write(int level, const std::string& line) const;
   bool say_lost(int level) const;
 
-  std::shared_ptr<std::string> fault_ =
-      std::make_shared<std::string>();  ///< fault of the last line; the logger writes it
+  /// The fault of the last line. The logger writes it.
+  std::shared_ptr<std::string> fault_ = std::make_shared<std::string>();
   mutable std::uint64_t lost_ = 0;
   mutable std::uint64_t unsaid_ = 0;  ///< lost lines that no log-lost line has reported yet
   std::string file_;                  ///< empty: stderr

@@ -23,8 +23,8 @@ class DiskTurns {
 
   boost::asio::steady_timer timer_;
   std::deque<std::function<void()>> queue_;
-  boost::asio::steady_timer::time_point next_ =
-      boost::asio::steady_timer::clock_type::now();  ///< the next piece does not run before this time
+  /// The next piece does not run before this time.
+  boost::asio::steady_timer::time_point next_ = boost::asio::steady_timer::clock_type::now();
 };
 
 }  // namespace weir

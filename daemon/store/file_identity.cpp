@@ -26,7 +26,7 @@ bool is_gone(const std::string& path) {
 }
 
 bool is_gone_from(const std::string& directory, const std::string& path) {
-  // The last check is for a directory that came back after the first one.
+  // Checks the file again: the directory may have come back after the first check.
   return is_gone(path) && is_directory(directory) && is_gone(path);
 }
 

@@ -18,7 +18,7 @@ constexpr std::int64_t kClockStep_ms = 1'000;  ///< smaller steps back are ordin
 constexpr int kJournalPages = 1000;            ///< 4 MiB
 constexpr std::size_t kLogTailBytes = 4096;
 
-/// Resets all columns but the state, for a job that starts anew.
+/// Resets the columns of attempts and results, for a job that starts anew. Its state is set separately.
 constexpr const char* kFresh =
     "attempts = 0, queued_ms = 0, due_ms = 0, started_ms = 0, finished_ms = 0, seconds = 0, bytes_read = 0, "
     "bytes_written = 0, peak_rss_bytes = 0, exit_code = 0, reason = '', problem = '', log_tail = '', forced = 0, "

@@ -75,7 +75,7 @@ class Statement {
 
 class Database {
  public:
-  /// Opens or creates the file. Throws Error(io). CorruptDatabase is thrown only by the first statement.
+  /// Opens or creates the file. Throws Error(io). A damaged file is noticed by a statement at the earliest.
   explicit Database(const std::string& path);
 
   Statement prepare(std::string_view sql) const { return {*connection_, sql}; }

@@ -95,19 +95,14 @@ class FileCompletion {
 
   explicit FileCompletion(CompletionRules rules) : rules_(std::move(rules)) {}
 
-  /// Records an event. permitted, marked, removed, root_lost and root_back say nothing about the writer. look() must
-  /// be called at once with a new sample.
+  /// Records an event. found, created, written, closed, moved_in and overflow tell of the writer. The others only end
+  /// the state "found while a writer had it open". look() must be called at once with a new sample.
   void happened(FileEventKind kind, Time now);
   CompletionAnswer look(const FileSample& sample, Time now);
 
  private:
-  enum class Writer {
-    unknown,
-    begun,
-    open,
-    closed,
-    renamed
-  };  ///< begun: the file was created or linked, and not written to
+  // begun: the file was created or linked, and not written to.
+  enum class Writer { unknown, begun, open, closed, renamed };
 
   CompletionAnswer by_policy(const FileSample& sample, Time now);
   // Returns when to check again for a change that no event reports.
@@ -118,8 +113,8 @@ class FileCompletion {
 
   CompletionRules rules_;
   Writer writer_ = Writer::unknown;
-  bool found_open_ =
-      false;  // the file was found while a writer had it open; events of that writer say nothing about its name
+  // The file was found while a writer had it open. Events of that writer say nothing about its name.
+  bool found_open_ = false;
   std::optional<FileIdentity> seen_;
   Time unchanged_since_{};
 };

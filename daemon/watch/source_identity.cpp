@@ -28,8 +28,8 @@ namespace weir {
 namespace {
 
 constexpr std::array kMetadata{"zarr.json", ".zarray", ".zgroup", ".zattrs", ".zmetadata"};
-/// Larger documents are taken for groups, which may hold the metadata of all their members. A large array that is
-/// looked into by mistake loses nothing.
+/// Larger documents are taken for groups, which may hold the metadata of all their members. If such a
+/// document is an array after all, its directory is listed in vain, and nothing is missed.
 constexpr std::size_t kMostArrayBytes = std::size_t{16} << 10U;
 
 bool exists(const std::string& path) {

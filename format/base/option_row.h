@@ -17,9 +17,9 @@ namespace weir {
 
 struct OptionRow {
   std::string_view key;  ///< as on the command line, without dashes: "max-error"
-  std::string_view argument =
-      {};                      ///< the placeholder of its value, "X,Y,Z", or all choices, "auto|on|off"; empty: a flag
-  std::string_view unit = {};  ///< unit of the value; empty: none
+  /// The placeholder of its value, "X,Y,Z", or all choices, "auto|on|off"; empty: a flag.
+  std::string_view argument = {};
+  std::string_view unit = {};        ///< unit of the value; empty: none
   std::string_view standard = {};    ///< the value if none is given, or what replaces it; empty: nothing to say
   std::string_view help;             ///< half a sentence
   std::string_view of_several = {};  ///< text after `help` if a command reads several volumes; empty: nothing

@@ -11,8 +11,8 @@ namespace weir {
 namespace {
 
 bool is_between(std::string_view character, std::string_view first, std::string_view last) {
-  return character.size() == first.size() && character >= first && character <= last;  // char_traits compares as
-                                                                                       // unsigned bytes
+  // char_traits compares as unsigned bytes.
+  return character.size() == first.size() && character >= first && character <= last;
 }
 
 template <typename Escape>

@@ -49,7 +49,7 @@ class FileSystem {
   virtual ~FileSystem() = default;
   /// Creates or truncates `path` for reading and writing and takes an exclusive lock on it. Throws Error(io) "is being
   /// written by another process or conversion" if another process, or another File of this process, holds the lock.
-  /// Throws Error(usage) if `path` is anything but a regular file with this one name, for instance a symbolic link:
+  /// Throws Error(usage) if something at `path` is not a regular file with this one name, for instance a symbolic link:
   /// weir did not write that.
   virtual std::unique_ptr<File> create(const std::string& path) = 0;
   /// Like create(), but keeps the file's content; the file may have further names.

@@ -63,8 +63,8 @@ void OutputFiles::undo_killed_commit(bool left_over) {
   files_.remove(sidecar_);
 }
 
-// Gives the old volume its own sidecar back, or none if it had none. Otherwise the next commit would take the sidecar
-// beside it for its own.
+// Gives the old volume its own sidecar back, or none if it had none. Otherwise the next commit would take the killed
+// commit's sidecar, which lies beside the volume, for the volume's own.
 void OutputFiles::restore_previous(bool left_over) {
   if (!files_.exists(path_)) return;
   if (const std::string previous = previous_path(sidecar_); files_.exists(previous)) {

@@ -45,7 +45,7 @@ struct NearAsk {
     const std::int32_t rung = near_rung_about(coarsest, wanted) - kCoarser;
     return static_cast<std::uint32_t>(rung < 0 ? 0 : rung > kLast ? kLast : rung);
   }
-  /// A search around `wanted` hardly ever goes more than two to either side.
+  /// Near rungs computed around `wanted`. A search hardly ever goes more than two to either side.
   static constexpr std::uint32_t kAbout = 6;
 };
 
@@ -85,7 +85,7 @@ struct RungAsk {
     const std::uint32_t about = start(first_step);
     return about < kFirst + kCoarser ? kFirst : about - kCoarser > kLast ? kLast : about - kCoarser;
   }
-  /// A search around `wanted` goes four rungs to the coarse side and three to the fine side.
+  /// Rungs computed around `wanted`. A search goes four rungs to the coarse side and three to the fine side.
   static constexpr std::uint32_t kRungsAbout = 8;
 };
 

@@ -11,8 +11,8 @@ namespace weir {
 
 /// Bytes of a stream of raw values. No exact stream is longer.
 inline constexpr std::uint32_t kRawStreamBytes = 1 + 4 * 512;
-/// Room to write any stream. The longest takes 2 bytes more than raw values: a stream of coefficients is chosen if it
-/// is shorter than raw values without the code of its mean, and this code has up to 24 bits.
+/// Room to write any stream. The longest takes 2 bytes more than raw values: a stream of coefficients is chosen if,
+/// counted without the code of its mean, it is shorter than raw values. That code has up to 24 bits.
 inline constexpr std::size_t kStreamRoom = 4096;
 /// Bytes of the stream of a block with one value in all voxels: its kind and the value.
 inline constexpr std::uint32_t kOneValueStreamBytes = 1 + 4;

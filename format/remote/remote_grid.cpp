@@ -147,8 +147,8 @@ void RemoteGrid::with_blocks(std::span<const Box> boxes, const std::function<voi
 }
 
 void RemoteGrid::use_blocks(std::span<const Box> boxes, const std::function<void()>& use) {
-  const std::vector<WantedRegion> wanted = wanted_regions(boxes);  // reads only the table of regions, which is always
-                                                                   // held
+  // Reads only the table of regions, which is always held.
+  const std::vector<WantedRegion> wanted = wanted_regions(boxes);
   {
     const std::shared_lock lock(mutex_);
     if (has(wanted)) return use();

@@ -68,7 +68,7 @@ ContrastFilters contrast_filters(double pixels_per_degree) {
   const std::vector<double> red_green = term(kRedGreen);
   const std::vector<double> narrow = term(kBlueYellowNarrow);
   const std::vector<double> wide = term(kBlueYellowWide);
-  // The divisor of the sum of two products; half of it is applied along each axis.
+  // The two products together sum to the square of this, so each filter is divided by it along each axis.
   const double both = std::hypot(sum(narrow), sum(wide));
   return {divided(achromatic, sum(achromatic)), divided(red_green, sum(red_green)), divided(narrow, both),
           divided(wide, both)};

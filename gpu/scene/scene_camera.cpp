@@ -33,7 +33,8 @@ Double3 as_double(const Index3& i) {
   return {static_cast<double>(i.x), static_cast<double>(i.y), static_cast<double>(i.z)};
 }
 
-// Returns a unit vector across `up`: along the axis after the one nearest to `up`, so azimuth 0 is +x if up is +z.
+// Returns a unit vector across `up`: the axis after the one nearest to `up`, without its part along `up`. So azimuth 0
+// is +x if up is +z.
 Double3 across(const Double3& up) {
   const auto most =
       std::max_element(up.begin(), up.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });

@@ -19,7 +19,7 @@ bool has_macrocells(const NvdbGrid& grid);
 /// Returns the cells in the form in which a tracer walks them.
 CellLattice cell_lattice(const NodeLattice& lattice);
 
-/// Returns whether both ends of the range are finite.
+/// Returns whether it is a range of finite values: both ends are finite, and min <= max.
 bool has_finite_ends(const MinMax& range);
 
 class MacrocellGrid {

@@ -128,7 +128,8 @@ void refuse_shared_bytes(const Plotfile& plotfile, const PlotfileLevel& level, c
   }
 }
 
-/// Returns the end of a FAB in its file, from its header on. Sets plotfile.layout if it is the `first` FAB.
+/// Returns the file offset at which a FAB ends. Reads the FAB's header, if it has one, and sets plotfile.layout from it
+/// for the `first` FAB.
 std::uint64_t fab_end(InputFile& file, const PlotfileLevel& level, std::size_t fab, Plotfile& plotfile, bool first) {
   const std::uint64_t offset = level.places[fab].offset;
   if (level.bare) return values_end(plotfile, level, fab, offset);

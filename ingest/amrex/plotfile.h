@@ -39,9 +39,9 @@ struct Plotfile {
   AmrexHeader header;
   RealLayout layout;                  ///< of all FABs
   std::vector<PlotfileLevel> levels;  ///< the opened levels, coarsest first
-  FileStates files;                   ///< all files of the plotfile
-  std::uint64_t bytes = 0;            ///< of all files
-  std::int64_t mtime_ns = 0;          ///< of the file written last
+  FileStates files;                   ///< Header and all files of the opened levels
+  std::uint64_t bytes = 0;            ///< of all `files`
+  std::int64_t mtime_ns = 0;          ///< of the one of `files` that was written last
 };
 
 /// Returns the directory of a plotfile. `path` may name the directory or its Header.

@@ -8,7 +8,7 @@
 namespace weir {
 namespace {
 
-/// The number of lengths that are tried one by one, and of equal parts.
+/// Cuts are tried with lengths of 1 to this many leaves or units, and into 1 to this many equal parts.
 constexpr std::int64_t kCutsTried = 64;
 /// The number of blocks that a cut is judged by. The pattern of blocks and chunks repeats, so more are not needed.
 constexpr std::int64_t kBlocksJudged = 4096;

@@ -28,8 +28,8 @@ bool grow(Axes& axes, std::size_t a, std::int64_t size, std::uint64_t budget) {
   return false;
 }
 
-/// Grows axis `a` to a step (a lower node's width), or to the largest divisor of a step that fits. Returns whether it
-/// is a whole step.
+/// Grows axis `a` to a step (a lower node's width), or to the largest divisor of a step that fits. Returns whether the
+/// block has a whole step, or the whole axis.
 bool grow_to_step(Axes& axes, std::size_t a, std::uint64_t budget) {
   const std::int64_t units = axes[a].step() / axes[a].unit;
   for (std::int64_t n = units; n > 1; --n) {

@@ -42,9 +42,9 @@ struct StreamOptions {
   /// Blocks that are read ahead come in parts if their voxels repeat each other. They come unread if their leaves lie
   /// in memory.
   bool in_parts = false;
-  /// Bytes of all buffers, with the one that is worked on. There are at least two buffers of the largest block's size
-  /// and at most eight. Blocks take different times: with more of them buffered, reading and work wait for each other
-  /// less often.
+  /// Bytes of all buffers, with the one that is worked on. There are two to eight buffers of the largest block's size,
+  /// but no more than blocks. Blocks take different times: with more of them buffered, reading and work wait for each
+  /// other less often.
   std::uint64_t buffer_bytes = 0;
 };
 

@@ -46,7 +46,7 @@ struct SourceOptions {
   std::vector<std::string> magnitude;
 
   // Options of levels of refinement.
-  std::optional<std::int64_t> level;     ///< --level: the finest level that is read, 0 is the coarsest; default: all
+  std::optional<std::int64_t> level;     ///< --level: finest level that is read, 0 = coarsest; default: the finest
   std::optional<Upsampling> upsampling;  ///< --upsample: how coarse cells fill fine voxels; default: constant
   Levels levels = Levels::composite;     ///< --levels
   /// With Levels::separate: the level that is this volume, 0 is the coarsest; absent if the file has one level.
@@ -54,7 +54,7 @@ struct SourceOptions {
 
   MissingChunks missing_chunks = MissingChunks::fill;  ///< --missing-chunks: for Zarr arrays and HDF5 datasets
 
-  bool lists_damaged = false;  ///< lists include datasets that cannot be opened; else damage is an error
+  bool lists_damaged = false;  ///< lists include what cannot be opened, with its obstacle; else damage is an error
 
   bool stack = false;  ///< --stack: the path is a pattern, the volume many files stacked along z
 

@@ -109,12 +109,13 @@ class VolumeSource {
   /// long as the source.
   virtual const CellPlaces* places() const { return nullptr; }
 
-  /// Returns disjoint boxes that hold all voxels of `box` with a value, for volumes with info().mapping.gaps. Reads
-  /// no values. `box` is as for read().
+  /// Returns disjoint boxes of exactly the voxels of `box` that have a value, for volumes with info().mapping.gaps.
+  /// Reads no values. `box` is as for read().
   virtual std::vector<Box> voxels_with_values(const Box& box) const { return {box}; }
 
-  /// Cuts `box` (as for read()) into parts with voxels that are known to repeat each other, and other parts. The
-  /// parts are leaves (8^3 voxels at multiples of 8 of the index) as far as they lie in `box`, and `by` divides 8.
+  /// Cuts `box` (as for read()) into parts. The voxels of some parts are known to repeat in groups of `by`, which
+  /// divides 8; other parts have `by` 1. If there are several parts, each consists of whole leaves (8^3 voxels at
+  /// multiples of 8 of the index), cut to `box`.
   virtual std::vector<RepeatedPart> repeated_parts(const Box& box) const { return {{box}}; }
   /// Reads one part of repeated_parts() on the calling thread alone: the value of each group, x fastest. The loss is
   /// that of all voxels.

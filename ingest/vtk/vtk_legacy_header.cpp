@@ -276,7 +276,7 @@ class LegacyParser {
     }
   }
 
-  // vtkDataWriter::EncodeString writes special characters as %20.
+  // vtkDataWriter::EncodeString writes a special character as % and two hexadecimal digits, a space as %20.
   static std::string decoded(std::string_view name) {
     std::string text;
     for (std::size_t i = 0; i < name.size(); ++i) {

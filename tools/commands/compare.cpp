@@ -175,7 +175,7 @@ nlohmann::ordered_json to_json(const CompareArguments& arguments, const Comparis
   report["nonfinite_decoded"] = c.nonfinite_decoded;
   report["different"] = c.different;
   report["nonfinite_different"] = c.nonfinite_different;
-  report["missing"] = c.missing + c.loss.unmarked;  // like the sidecar's count
+  report["missing"] = c.missing + c.loss.unmarked;  // left out of the error, or compared as data: the sidecar's count
   report["zeros"] = c.zeros;
   report["zeros_lost"] = c.zeros_lost;
   report["conversion_loss"] = loss_json(c.loss);

@@ -73,7 +73,8 @@ std::optional<std::uint64_t> parse_bandwidth(const std::string& text) {
   return bytes;
 }
 
-// Refuses files outside --within, because a header may name any file; without --within, logs them.
+// A header may name any file. Refuses files outside --within; without --within, warns of one that lies outside the
+// input's directory.
 void check_files(const SourceInfo& info, const std::string& within) {
   if (info.files.empty()) return;
   if (const auto outside = within.empty() ? std::nullopt : file_outside(info.files, within)) {

@@ -27,7 +27,7 @@ void watch_directories(const CLI::App& command, const WatchArguments& a) {
     if (level->count() > 0) config.service.log_level = level->as<std::string>();
     return config;
   };
-  if (!a.check) std::signal(SIGHUP, SIG_IGN);  // until the service handles it as a reload
+  if (!a.check) std::signal(SIGHUP, SIG_IGN);  // until the service reloads on it; the start reads everything anyway
   const DaemonConfig config = load();
   if (a.check) std::fputs(describe_config(config).c_str(), stdout);
   check_access(config);

@@ -56,8 +56,8 @@ void check_error(const std::string& name, const Sidecar::CertifiedError& error, 
                     exact || !error.lossless});
 }
 
-// Checks that decoded values stay within the source's range, widened by a background outside it. Weir 0.1, which did
-// not record what became of missing voxels, did not guarantee this.
+// Checks that max_abs is at most the width of the source's range, widened by a background outside it: decoded values
+// keep to that range. Weir 0.1, which did not record what became of missing voxels, did not guarantee this.
 void check_span(const std::string& name, const Sidecar::CertifiedError& error, const Sidecar& s,
                 std::vector<VolumeCheck>& checks) {
   if (s.missing.policy.empty()) return;

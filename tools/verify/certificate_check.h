@@ -8,8 +8,8 @@
 
 namespace weir {
 
-/// Checks the root, share of the range, PSNR and largest value of each error and of the gradient's, extents, rate,
-/// counts of voxels and blocks, the histogram's ends, and the form of digests.
+/// Checks the root, share of the range, PSNR and largest value of each error; rms, largest value and voxel counts of
+/// the gradient's error; extents, rate, counts of voxels and blocks, the histogram's ends, and the form of digests.
 std::vector<VolumeCheck> check_certificate(const Sidecar& sidecar);
 
 }  // namespace weir

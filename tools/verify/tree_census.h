@@ -55,9 +55,9 @@ std::uint64_t census_blocks(const NvdbGrid& grid);
 std::vector<std::uint64_t> count_values(const NvdbGrid& grid, float lo, float hi, std::size_t bins,
                                         const CensusProgress& progress);
 
-/// Returns the histogram of the finite values between the ends of `range`; an end that is not finite is replaced by
-/// the end of the finite values. Has one bin if all values are equal, and no bin between NaN if there is no finite
-/// value.
+/// Returns the histogram of the finite values between the ends of `range`. If either end is not finite, both are
+/// replaced by the least and largest finite value. Has one bin if all values are equal, and no bin between NaN if there
+/// is no finite value.
 Sidecar::Histogram finite_histogram(const NvdbGrid& grid, const MinMax& range, std::size_t bins,
                                     const CensusProgress& progress);
 

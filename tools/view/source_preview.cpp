@@ -47,7 +47,7 @@ SourcePreview::SourcePreview(const std::string& source, const GivenOptions& give
   if (!name.has_filename()) name = name.parent_path();
   name = name.filename();
   file_ = folder_.path() / (kept == Kept::all ? name += ".nvdb" : name.replace_extension(".nvdb"));
-  GivenOptions all{{"encoding", "packed"}, {"nonfinite", "background"}};  // a preview needs no clean data
+  GivenOptions all{{"encoding", "packed"}, {"nonfinite", "background"}};  // shows what there is, despite NaN
   if (kept == Kept::all) {
     all.emplace("lossless", "true");
   } else {

@@ -1,4 +1,4 @@
-// Positions with as many bits as the texture unit uses.
+// Positions with as many bits as the texture unit uses. For host and device.
 #pragma once
 
 #include <cstdint>

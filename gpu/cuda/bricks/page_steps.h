@@ -30,8 +30,8 @@ struct ForgetRegions {
   WEIR_HOST_DEVICE void operator()(std::uint32_t i) const { entries[regions[i]].page &= ~RegionEntry::kRequested; }
 };
 
-/// Stamps the pages with an entry without a brick that was used or requested since the last time. AgeSlots has
-/// stamped the pages of used bricks before. Runs for each entry, from page 1 on.
+/// Stamps pages in which an entry that has no brick was used or requested since the last time. AgeSlots must run
+/// before: it stamps the pages of used bricks. Runs for each entry, from page 1 on.
 struct StampPages {
   BrickEntry* entries = nullptr;
   std::uint32_t* stamps = nullptr;

@@ -68,7 +68,8 @@ WEIR_HOST_DEVICE bool may_lie_on_lattice(const Warp& warp, const ValueRange8& ra
   if (warp.of_all(found, either) != 0) return false;
   const auto lowest = static_cast<std::int32_t>(range.low * scale);
   const auto span = static_cast<std::uint32_t>(static_cast<std::int32_t>(range.high * scale) - lowest);
-  // The lattice's step divides all differences between values. A few values decide for most blocks.
+  // A lattice's step divides the range and every value's distance from the lowest, so also their common divisor. A few
+  // values are enough to rule out a lattice for most blocks.
   warp.each([&](unsigned lane) {
     const float v = stage[stage_of(17 * lane % 512)];
     const auto step = common_divisor(span, static_cast<std::uint32_t>(static_cast<std::int32_t>(v * scale) - lowest));

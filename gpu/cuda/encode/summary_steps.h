@@ -84,8 +84,8 @@ WEIR_HOST_DEVICE double sum_stage(const Warp& warp, const float* stage, const Of
 
 }  // namespace encode_detail
 
-/// Summarises a block of the call that lies wholly in its volume. If not all values are finite, only their number is
-/// written.
+/// Summarises a block of the call that lies wholly in its volume. If some values are not finite, writes only the number
+/// of finite values.
 template <class Warp>
 WEIR_HOST_DEVICE void summarize_block(const Warp& warp, const SummaryCall& call, const DigestTables& tables,
                                       std::uint32_t block, encode_detail::SummaryStage& stage) {

@@ -37,7 +37,7 @@ class BlockDecoder {
   void decode(const BlockId* blocks, std::size_t most, const std::uint32_t* count_on_device, float* values,
               cudaStream_t stream);
 
-  /// What all calls since the last counts() have met.
+  /// What all calls since the last counts() have met. counts() waits for `stream`, and begins to count anew.
   struct Counts {
     std::uint32_t damaged = 0;
     std::uint32_t wide = 0;  ///< blocks with magnitudes of more than 16 bits

@@ -12,7 +12,7 @@ namespace weir {
 
 class SideStream {
  public:
-  SideStream() : SideStream(nullptr) {  // the delegated-to object is destroyed if the rest throws
+  SideStream() : SideStream(nullptr) {  // delegates, so that the destructor runs if the rest throws
     check_cuda(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "making a stream");
     check_cuda(cudaEventCreateWithFlags(&begin_, cudaEventDisableTiming), "making an event");
     check_cuda(cudaEventCreateWithFlags(&end_, cudaEventDisableTiming), "making an event");

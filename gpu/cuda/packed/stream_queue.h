@@ -47,8 +47,8 @@ class StreamQueue {
     }
     fill_up(2 * kPlaces + 1);
   }
-  /// Call it before taking more than two words for a place. Afterwards at least `least` words are in the ring; they
-  /// must include one that is not used.
+  /// Call it before taking more than two words for a place. Afterwards at least `least` words are in the ring. Pass one
+  /// more than the words to be taken, because the next word is always read ahead.
   WEIR_HOST_DEVICE void fill_up(std::int32_t least) {
     WEIR_NO_UNROLL
     while (available() < least) {
@@ -112,8 +112,8 @@ class StreamQueue {
     to[3] = joined(loaded_.of[3], carry(), bits);
     carry() = loaded_.of[0];
   }
-  // Returns the first bytes of the chunk that was stored last. They are in memory and not in a register, because a
-  // compiler might copy data that is still being loaded to a register.
+  // The first bytes of the chunk that was stored last. They lie in the ring's memory: into a register variable, a
+  // compiler might copy a chunk whose load still runs, and so wait for it.
   WEIR_HOST_DEVICE std::uint32_t& carry() const { return *reinterpret_cast<std::uint32_t*>(ring_ + kRingBytes); }
   // Returns the 32 bits above the first `bits` < 32.
   WEIR_HOST_DEVICE static std::uint32_t joined(std::uint32_t low, std::uint32_t high, unsigned bits) {

@@ -20,8 +20,8 @@ namespace weir {
 class BrickVolume {
  public:
   /// `bytes` are the bytes of `grid`, on the device or in host memory that it reads. `grid` must outlive the object.
-  /// `cells` are the bounds of macrocells. The constructor fills in what of `budget` is taken already; levels of
-  /// detail are made from its `levels`. Throws the errors of BrickCache, BlockDecoder and DeviceTable.
+  /// `cells` are the bounds of macrocells. `budget.taken` is ignored: the constructor finds it. Levels of detail take
+  /// at most `budget.levels` bytes. Throws the errors of BrickCache, BlockDecoder and DeviceTable.
   BrickVolume(const NvdbGrid& grid, GridBytes bytes, const std::vector<MinMax>& cells, BrickBudget budget);
 
   const GridBytes& bytes() const { return bytes_; }

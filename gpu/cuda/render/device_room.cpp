@@ -25,7 +25,7 @@ std::uint64_t brick_bytes_of(const NvdbGrid& grid) {
 
 /// Returns the bytes that a grid takes on a device with room, without its bricks.
 std::uint64_t bytes_needed(const NvdbGrid& grid) {
-  // A packed grid has streams and bricks. Look-ups read the bricks.
+  // Streams may take half of the room: look-ups read a packed grid's bricks, so these need the other half.
   if (grid.packed() != nullptr) return 2 * grid.data_bytes();
   const bool floats = grid.type() == GridType::float32;
   return grid.data_bytes() + block_count(grid) * (floats ? sizeof(FloatBlock) : sizeof(QuantisedBlock));

@@ -28,8 +28,8 @@ struct PagedPicture {
   bool keep_missed = false;   ///< a sample that missed something counts as finished, with approximate values
 };
 
-/// Returns the number of a picture's tiles, in an order that keeps neighbours together (Morton's). Tile numbers lie
-/// below it; some tiles lie outside the picture.
+/// Returns the end of a picture's tile numbers. Tiles are numbered in an order that keeps neighbours together
+/// (Morton's); some of these tiles lie outside the picture.
 std::uint32_t paged_tiles(std::int32_t width, std::int32_t height);
 
 /// Draws samples of the pixels of tiles [first_tile, first_tile + tiles) on `stream`. For PagedSampler, with or

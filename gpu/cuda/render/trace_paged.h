@@ -76,8 +76,8 @@ DraftReport trace_draft(BrickCache& cache, const TaskOf& task_of, std::uint32_t 
 template <class Sampler, class TaskOf, class Done>
 PagedReport trace_paged(BrickCache& cache, const TaskOf& task_of, std::uint32_t first, std::uint32_t last,
                         DeviceArray<Float3>& sums, const std::atomic<bool>* cancel, const Done& report_done) {
-  // A turn of the smallest tile that finishes no sample counts 1, or kInVain if it brings nothing in. More than
-  // kPatience together are an error.
+  // A turn of the smallest tile that finishes no sample and finds the cache too small counts 1, or kInVain if it brings
+  // nothing in. Any other turn restarts the count at 0. A count above kPatience is an error.
   constexpr std::uint32_t kPatience = 512;
   constexpr std::uint32_t kInVain = 64;
   PagedReport report;

@@ -19,7 +19,7 @@ class DeviceArray {
  public:
   DeviceArray() = default;
   /// Throws DeviceFull if the device has no room.
-  explicit DeviceArray(std::size_t size) : DeviceArray() {  // the delegated-to object is destroyed if the rest throws
+  explicit DeviceArray(std::size_t size) : DeviceArray() {  // delegates, so that the destructor runs if the rest throws
     size_ = size;
     if (size > 0) {
       check_cuda(cudaMallocAsync(reinterpret_cast<void**>(&data_), bytes(), cudaStreamPerThread),

@@ -11,7 +11,7 @@
 
 namespace weir {
 
-// The delegated-to empty texture is destroyed if the rest throws.
+// Delegates to the empty texture's constructor, so that the destructor runs if the rest throws.
 Texture::Texture(const Int3& size, TexelType type) : Texture() {
   size_ = size;
   type_ = type;

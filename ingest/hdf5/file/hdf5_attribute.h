@@ -12,8 +12,8 @@
 
 namespace weir {
 
-/// An attribute with more values, or more bytes of text, than these limits is not read: it holds no position and no
-/// name.
+/// An attribute with more values, or more bytes of text, than these limits reads as empty, so it gives no position and
+/// no name.
 inline constexpr std::size_t kMaxAttributeValues = 4096;
 inline constexpr std::size_t kMaxAttributeBytes = std::size_t{1} << 20U;
 
@@ -28,9 +28,8 @@ void check_attribute_bytes(hid_t object);
 /// All functions below take an open dataset or group, and the caller holds Hdf5Lock. An attribute that is absent or
 /// of another kind reads as empty. All functions throw Error(input) if the library cannot say whether the attribute
 /// is there, or cannot read it: to treat it as absent would silently give other values or positions.
-/// Returns integers and floats of any precision as double.
 
-/// Integers and floats of any precision, in double.
+/// Returns integers and floats of any precision as double.
 std::vector<double> number_attribute(hid_t object, const char* name);
 /// Returns numbers like number_attribute(), but without loss for 64-bit integers. A text that is a number counts as a
 /// number.

@@ -16,8 +16,8 @@
 namespace weir {
 namespace {
 
-// The attempts to read metadata that a writer has half written. Between them the library sleeps 1, 2, 4 ... ns: a
-// quarter of a second in all. With its default of 100 attempts a damaged file would practically never end.
+// The most attempts to read metadata that a writer has half written. Between them the library sleeps 1, 2, 4 ... ns, a
+// quarter of a second in all. With its default of 100 attempts, reading a damaged file would practically never end.
 constexpr unsigned kReadAttempts = 28;
 
 // Readers ask for each decoded chunk once, so they need no chunk cache. The metadata cache is bounded.

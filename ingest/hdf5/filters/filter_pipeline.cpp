@@ -56,8 +56,8 @@ std::size_t most_stored_bytes(const FilterPipeline& pipeline, std::size_t chunk_
   std::size_t bytes = chunk_bytes;
   for (const ChunkFilter& filter : pipeline) {
     if (filter.kind == FilterKind::fletcher32) bytes += kFletcher32Bytes;
-    // HDF5 gives deflate a buffer of 1.001 times the size plus 12 bytes. If that is too small, it stores the chunk
-    // unfiltered.
+    // HDF5 gives deflate a buffer of 1.001 times the size plus 12 bytes. If that is too small, it leaves deflate out
+    // for this chunk.
     if (filter.kind == FilterKind::deflate) bytes += bytes / 256 + 64;
   }
   return bytes;

@@ -11,7 +11,8 @@ namespace {
 
 constexpr std::size_t kChunkBytesAt = 2;  // in the filter's parameters, as h5py writes them
 
-// An H5Z_func_t: 0 means failure. When the library writes a chunk, a failure makes it leave the chunk unpacked.
+// An H5Z_func_t; 0 means failure. It fails on writing, because it only decodes: the library then stores the chunk
+// without lzf.
 std::size_t undo_lzf(unsigned flags, std::size_t parameters, const unsigned* parameter, std::size_t stored,
                      std::size_t* room, void** buffer) {
   if ((flags & H5Z_FLAG_REVERSE) == 0 || parameters <= kChunkBytesAt) return 0;

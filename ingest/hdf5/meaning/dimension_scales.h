@@ -16,7 +16,7 @@ namespace weir {
 /// set, from the scales' values. Irregular coordinates get a note instead; they are kept, as a time's coordinates
 /// are. Falling coordinates get a note, the size of the spacing, and the lowest coordinate as origin, which is right
 /// for elements in reverse order. If an axis and its scale may grow and the scale is longer, the axis has the first
-/// coordinates, and `unwritten` counts the rest.
+/// coordinates, and `unwritten` counts the rest. The caller holds Hdf5Lock.
 void place_by_scales(hid_t dataset, std::span<AxisPlace> axes);
 
 /// Returns whether a dataset only stands for a NetCDF dimension without coordinates, and so holds no values. Calls

@@ -22,7 +22,7 @@ struct PlainName {
   bool slowest_first = false;
   bool one_for_all = false;    ///< a single value counts
   bool is_ambiguous = false;   ///< it may mean a number of cells: of the dataset alone, and never its extents
-  bool is_convention = false;  ///< of programs, and not of a format: said
+  bool is_convention = false;  ///< some programs' habit, not a format's rule: spacing_note then names the attribute
 };
 
 constexpr std::array kSpacings{PlainName{"spacing", false, true},

@@ -11,8 +11,7 @@ struct AbsentValues {
   std::string what;  ///< "4 of its 8 chunks"
   bool one = false;
   std::string first = {};  ///< " (the first at 0, 0, 16)", if known
-  bool no_source =
-      false;  ///< they belong to a virtual dataset without a source there; otherwise they were never written
+  bool no_source = false;  ///< elements of a virtual dataset without a source; otherwise never written
 
   /// "4 of its 8 chunks were never written".
   std::string text() const {

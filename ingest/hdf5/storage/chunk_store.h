@@ -38,7 +38,7 @@ hsize_t stored_chunk_bytes(hid_t dataset, std::span<const hsize_t> corner, const
 class ChunkStore {
  public:
   /// `dataset` is open and chunked, and outlives the store. Messages begin with `name`. Throws Error(input) if the
-  /// library cannot say how the dataset is chunked, or if unfiltered chunks do not all have the same length.
+  /// library cannot say how the dataset is chunked, or if unfiltered chunks do not have the bytes of a full chunk.
   ChunkStore(hid_t dataset, std::string name);
 
   const std::string& name() const { return name_; }

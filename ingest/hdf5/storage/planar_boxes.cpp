@@ -22,7 +22,8 @@ class PlanarBoxes final : public StoredBoxes {
     }
     return all;
   }
-  // The parts work one at a time, so only the largest part counts. The buffer counts as part of a box's memory.
+  // The parts work one at a time, so only the largest counts. The buffer is added: it holds one number for each voxel
+  // of a box, so it is smaller than the box's own values.
   std::uint64_t working_bytes() const override {
     std::uint64_t most = 0;
     for (const auto& part : parts_) most = std::max(most, part->working_bytes());

@@ -18,9 +18,8 @@ struct ElementRange {
 struct UnwrittenChunks {
   std::uint64_t count = 0;
   std::uint64_t all = 0;
-  std::vector<hsize_t>
-      first;               ///< first element of the first unwritten chunk, slowest axis first, if chunks were looked up
-  bool elsewhere = false;  ///< counted over the whole dataset: all may lie outside the range
+  std::vector<hsize_t> first;  ///< first element of the first unwritten chunk, slowest axis first; empty: unknown
+  bool elsewhere = false;      ///< counted over the whole dataset: all may lie outside the range
 };
 
 /// Counts the unwritten chunks, of `chunk` elements each, that have elements in `range`, which is not empty. If more

@@ -1,5 +1,5 @@
-// Reads boxes with the library's own H5Dread: for filters that only its plugins undo, for compact datasets, for
-// datasets in external files, and for datasets with a time axis between the axes of space.
+// Reads boxes with the library's own H5Dread: filters that only its plugins undo, compact datasets, datasets that were
+// never written, components one behind the other, and a time axis between or after the axes of space.
 #pragma once
 
 #include <array>

@@ -27,8 +27,8 @@ std::string group_of(const std::string& key) {
   return slash == std::string::npos ? std::string() : key.substr(0, slash);
 }
 
-// Returns the node at `key` if it is an array whose metadata can be parsed. Damaged metadata are no error: another
-// array is read.
+// Returns the node at `key` if it is an array whose metadata can be parsed as JSON, otherwise nullopt: a damaged
+// neighbour must not stop the conversion of the array that the user wants.
 std::optional<ZarrNode> array_at(ZarrStore& store, const std::string& key) {
   try {
     auto node = zarr_node(store, key);
@@ -107,7 +107,8 @@ void place_by_array(ZarrStore& store, const ZarrNode& found, AxisPlace& axis) {
   place_by_coordinates(std::move(values), precision, axis);
 }
 
-// Returns the times in `found`; empty values if it is not a single number or a short list, or cannot be read.
+// Returns the times in `found`. Returns empty values if it is neither a single number nor one axis of at most
+// kMostTimes, if a value is not finite, or if it cannot be read.
 TimeValues time_in(ZarrStore& store, const ZarrNode& found) {
   const nlohmann::json& shape = json_member(found.metadata, "shape");
   const bool of_one_axis =

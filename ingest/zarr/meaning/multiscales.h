@@ -24,8 +24,9 @@ struct ScaleLevel {
   std::string path;                 ///< path of the level's array within the image's group, without slashes at its ends
   std::vector<double> scale;        ///< from index to position, along each axis; empty: 1
   std::vector<double> translation;  ///< position of the centre of element 0; empty: 0
-  bool placed = true;               ///< false: some transformation is not scale or translation by numbers, or their
-                                    ///< counts differ; both lists are empty then
+  /// False if a transformation is not identity, scale or translation by numbers, or if two of them have different
+  /// numbers of values; `scale` and `translation` are empty then.
+  bool placed = true;
 };
 
 struct Multiscale {

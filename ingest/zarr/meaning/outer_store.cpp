@@ -14,8 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns the whole path if `path` is a single name or contains dots, because it does not name the directories
-/// around it.
+/// Returns `path`, made absolute if it is a single name or has a part "." or "..": its own text then does not name the
+/// directories around it.
 fs::path with_parents(const fs::path& path) {
   for (const fs::path& part : path) {
     if (part == "." || part == "..") return fs::absolute(path).lexically_normal();

@@ -25,8 +25,8 @@ struct ChunkPlace {
 class ChunkGeometry {
  public:
   /// `index` has a position for each axis before the three, `behind` the position on the axis after them, if the
-  /// array has one. All positions are inside the array. Throws Error(input), beginning with `where`, if a chunk or
-  /// shard is too large.
+  /// array has one. All positions are inside the array. Throws Error(input), beginning with `where`, if a chunk that is
+  /// decoded alone has too many bytes, or a shard too many chunks.
   ChunkGeometry(const ZarrArray& array, const std::vector<std::int64_t>& index, const std::string& where,
                 std::optional<std::int64_t> behind = {});
 
@@ -35,8 +35,8 @@ class ChunkGeometry {
   const Index3& unit() const { return unit_; }
   /// The shape of a chunk that is decoded alone, on all axes.
   const ChunkShape& unit_shape() const { return unit_shape_; }
-  /// Offset in bytes of the volume's first voxel in a decoded chunk. It is not 0 if chunks are several elements thick
-  /// along axes before the three.
+  /// Offset in bytes of the volume's first voxel in a decoded chunk. Can exceed 0 only if chunks are several elements
+  /// thick along axes before the three.
   std::size_t first_byte() const { return first_byte_; }
   /// The number of stored objects that the volume touches, along x, y, z.
   const Index3& objects() const { return objects_; }

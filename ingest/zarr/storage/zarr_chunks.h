@@ -38,8 +38,8 @@ class ZarrChunks final : public StoredChunks {
   const ObjectScan& scan() const { return scan_; }
   const ChunkGeometry& geometry() const { return geometry_; }
   std::string key_by_other_separator() const { return weir::key_by_other_separator(objects_, geometry_, scan_); }
-  /// Counts the chunks that `voxels` touches and that are not stored. Reads the index of every shard that has such
-  /// chunks. Throws the errors that decode() throws for an index.
+  /// Counts the chunks that `voxels` touches, and how many of them are not stored. Reads the index of every stored
+  /// shard that has touched chunks. Throws the errors that decode() throws for an index.
   UnstoredChunks count_unstored(const Box& voxels);
   std::uint64_t working_bytes() const;
   std::uint64_t bytes_read() const { return bytes_read_; }

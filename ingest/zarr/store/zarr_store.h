@@ -51,7 +51,8 @@ class ZarrStore {
   /// Opens the object at `key`; returns nullptr if there is none. Throws Error(input) if it is empty or cannot be
   /// read.
   virtual std::unique_ptr<ZarrObject> open(const std::string& key) = 0;
-  /// Returns the sorted names of all directories directly below `key`. Throws Error(io).
+  /// Returns the sorted names of the directories directly below `key`; in a zip file, only of those with entries in
+  /// them. Throws Error(io).
   virtual std::vector<std::string> groups_in(const std::string& key) = 0;
   /// Returns the file that holds the object at `key`.
   virtual std::string file_of(const std::string& key) const = 0;

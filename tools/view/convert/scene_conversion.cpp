@@ -23,8 +23,8 @@ namespace fs = std::filesystem;
 // Returns `path` so that it cannot be taken for an option.
 std::string as_path(const std::string& path) { return path.starts_with('-') ? "./" + path : path; }
 
-// Returns whether the file at `path` matches the sidecar. For a directory, and for one file among several, the sidecar
-// records nothing more that can be checked quickly.
+// Returns whether the file at `path` matches the sidecar by size and time. A directory only has to exist, and one file
+// among several only needs the size: the sidecar records nothing more that can be checked quickly.
 bool is_source_of(const std::string& path, const Sidecar& sidecar) {
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0) return false;

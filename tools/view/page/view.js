@@ -127,7 +127,7 @@ function receive_steps(message) {
   const other_values = files.set_values(message);
   const name = steps.names[look.step];
   steps.set(message);
-  const other_name = steps.names[look.step] !== name;  // the step's number now belongs to another file
+  const other_name = steps.names[look.step] !== name;  // names change when steps of another folder come
   const found = wanted_file === null ? undefined : steps.number(wanted_file);
   if (found !== undefined) go_to_step(found, false);
   else if (!message.order.includes(look.step)) show_banner(`${steps.names[look.step]} is no longer there.`);

@@ -23,7 +23,7 @@ std::vector<std::string> find_steps(const StepChoice& choice);
 
 struct ViewedFiles {
   std::string title;                 ///< the named input, without its folders
-  std::string key;                   ///< equal only for the same input; reveals no path
+  std::string key;                   ///< the same text for the same input and for no other; reveals no path
   std::vector<std::string> steps;    ///< the step that a page shows first, then the others in natural order
   std::vector<std::string> against;  ///< files to compare with: none, one for all steps, or one for each
   SeriesHeads heads;                 ///< heads of the steps
