@@ -12,6 +12,7 @@
 #include "daemon/jobs/output_cleaning.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "format/io/mount_table.h"
 
 namespace weir {
 namespace {
@@ -74,12 +75,13 @@ Service::Service(Load load, std::string program, std::string version)
 }
 
 // Returns the watches whose outputs must be cleaned. Outputs of the configuration `before` were cleaned when they
-// were added. An output with a running job is left out, because its files are no leftovers.
+// were added, if they were mounted. An output with a running job is left out, because its files are no leftovers.
 std::vector<WatchConfig> Service::watches_to_clean(const DaemonConfig& before) const {
   std::vector<WatchConfig> watches;
   for (const WatchConfig& watch : config_.watches) {
     const auto has_its_output = [&](const WatchConfig& other) {
-      return other.output == watch.output && other.directory == watch.directory && other.recursive == watch.recursive;
+      return other.output == watch.output && other.directory == watch.directory && other.recursive == watch.recursive &&
+             other.output_mount == watch.output_mount;
     };
     const auto writes_there = [&](const auto& running) {
       return is_within(std::filesystem::path(running.second.work->task().output).parent_path().string(), watch.output);
@@ -93,6 +95,7 @@ std::vector<WatchConfig> Service::watches_to_clean(const DaemonConfig& before) c
 
 void Service::clean(const std::vector<WatchConfig>& watches, milliseconds patience) const {
   for (const WatchConfig& watch : watches) {
+    if (!watch.output_mount.empty() && !MountTable::read().mounted(watch.output_mount)) continue;
     const CleaningReport report = clean_outputs(watch.output, watch.directory, watch.recursive, patience);
     for (const std::string& path : report.removed) log_.info("cleaned", {{"removed", path}});
     for (const std::string& line : report.left) log_.warn("not-cleaned", {{"reason", line}});

@@ -245,7 +245,11 @@ WatchConfig read_watch(const toml::table& table, const std::string& path) {
   ConfigReader reader(table, "[[watch]]", path);
   if (!reader.read_path("directory", watch.directory)) reader.toml.fail(table, "[[watch]] needs a directory");
   if (!reader.read_path("output", watch.output)) reader.toml.fail(table, "[[watch]] needs an output, a directory");
-  if (reader.read_path("output_mount", watch.output_mount) && !is_within(watch.output, watch.output_mount)) {
+  reader.read_path("output_mount", watch.output_mount);
+  if (watch.output_mount == "/") {
+    reader.refuse("output_mount", "output_mount is /, which is always mounted; name another one");
+  }
+  if (!watch.output_mount.empty() && !is_within(watch.output, watch.output_mount)) {
     reader.refuse("output_mount",
                   cat("output_mount is ", watch.output_mount, ", and the output ", watch.output,
                       " does not lie below it; name the directory at which its file system is mounted"));

@@ -1,30 +1,31 @@
 #include "daemon/disks/output_mounts.h"
 
-#include <algorithm>
+#include <fcntl.h>
 
 #include "format/base/text.h"
 
 namespace weir {
 
-bool OutputMounts::mounted(const std::string& path) {
-  if (path.empty()) return true;
-  if (is_mount_point_(path)) {
-    if (missing_.erase(path) > 0) log_.info("output-mounted", {{"mount", path}});
-    return true;
-  }
-  if (missing_.insert(path).second) {
-    log_.error("output-not-mounted", {{"mount", path}, {"reason", "the jobs of its watches wait until it is mounted"}});
-  }
-  return false;
+void OutputMounts::watch(const std::vector<std::string>& paths) {
+  paths_ = {paths.begin(), paths.end()};
+  paths_.erase("");
+  std::erase_if(missing_, [this](const std::string& path) { return !paths_.contains(path); });
+  look();
 }
 
 void OutputMounts::look() {
-  const std::set<std::string> before = missing_;
-  for (const std::string& path : before) mounted(path);
-}
-
-void OutputMounts::keep(const std::vector<std::string>& paths) {
-  std::erase_if(missing_, [&](const std::string& path) { return std::ranges::find(paths, path) == paths.end(); });
+  if (paths_.empty()) return;
+  const MountTable table = read_();
+  if (table.empty()) return;  // it could not be read: nothing is known
+  for (const std::string& path : paths_) {
+    if (!table.mounted(path)) {
+      if (!missing_.insert(path).second) continue;
+      log_.error("output-not-mounted",
+                 {{"mount", path}, {"reason", "jobs with outputs there wait until it is mounted"}});
+    } else if (missing_.erase(path) > 0) {
+      log_.info("output-mounted", {{"mount", path}});
+    }
+  }
 }
 
 std::string OutputMounts::text() const {
@@ -33,6 +34,10 @@ std::string OutputMounts::text() const {
     text += cat(text.empty() ? "" : "; ", "no file system is mounted at ", path);
   }
   return text;
+}
+
+Descriptor hold_mount(const std::string& path) {
+  return Descriptor(path.empty() ? -1 : ::open(path.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
 }
 
 }  // namespace weir

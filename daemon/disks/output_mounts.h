@@ -9,33 +9,38 @@
 #include <vector>
 
 #include "daemon/log/event_log.h"
-#include "format/io/is_mount_point.h"
+#include "format/io/descriptor.h"
+#include "format/io/mount_table.h"
 
 namespace weir {
 
 class OutputMounts {
  public:
-  using IsMountPoint = std::function<bool(const std::string& path)>;
+  using ReadTable = std::function<MountTable()>;
 
-  /// `log` must outlive the object. Tests give `is_mount_point`.
-  explicit OutputMounts(const EventLog& log, IsMountPoint is_mount_point = weir::is_mount_point)
-      : log_(log), is_mount_point_(std::move(is_mount_point)) {}
+  /// `log` must outlive the object. Tests give `read`.
+  explicit OutputMounts(const EventLog& log, ReadTable read = MountTable::read) : log_(log), read_(std::move(read)) {}
 
-  /// Looks now whether a file system is mounted at `path`, and logs a change. Returns true for an empty path.
-  bool mounted(const std::string& path);
-  /// Looks again at the mount points at which no file system was mounted.
+  /// Watches these paths from now on, and looks at them. Empty ones are left out.
+  void watch(const std::vector<std::string>& paths);
+  /// Looks at all paths again, and logs what changed. Asks no file server, unless a path is not mounted or leads
+  /// through symbolic links: then the file systems on the way are asked.
   void look();
-  /// Forgets all mount points but these.
-  void keep(const std::vector<std::string>& paths);
-  /// Returns whether all the mount points that were looked at are in use.
+  /// Returns whether a file system was mounted at `path` at the last look. True for an empty path.
+  bool mounted(const std::string& path) const { return !missing_.contains(path); }
   bool all_mounted() const { return missing_.empty(); }
   /// Returns "no file system is mounted at PATH", joined by "; " for several; empty if all_mounted().
   std::string text() const;
 
  private:
   const EventLog& log_;
-  IsMountPoint is_mount_point_;
+  ReadTable read_;
+  std::set<std::string> paths_;
   std::set<std::string> missing_;
 };
+
+/// Opens the mount point `path`. While the descriptor is open, the file system there cannot be unmounted (EBUSY),
+/// except by `umount -l`. Returns none for an empty path, and if it cannot be opened.
+Descriptor hold_mount(const std::string& path);
 
 }  // namespace weir

@@ -23,9 +23,9 @@ namespace weir {
 enum class TaskEnd {
   done,
   failed,          ///< by itself: JobResult::exit_code and reason say why
-  disk_full,       ///< nothing wrong with source or options; where it was done already, of a thumbnail
+  disk_full,       ///< a file system is full; source and options are fine. For a done job: a thumbnail found no room
   output_busy,     ///< another process writes the output
-  source_changed,  ///< it or a file that it names was rewritten meanwhile: what was made of it is worth nothing
+  source_changed,  ///< the source, or a file that it names, was rewritten during the run; the outputs are invalid
   source_gone,     ///< deleted before it was converted
   stopped          ///< as asked
 };
@@ -33,7 +33,7 @@ enum class TaskEnd {
 struct TaskReport {
   TaskEnd end = TaskEnd::done;
   JobResult result;
-  std::string full_directory;        ///< on the file system that had no room, where it ended so; else empty
+  std::string full_directory;        ///< for disk_full: a directory on the full file system; otherwise empty
   std::uint64_t planned_bytes = 0;   ///< of the output that was to be written last; 0: not known
   bool converted = false;            ///< false where all outputs had been made before
   bool rendering = false;            ///< done, and thumbnails follow: another report comes when they are there
@@ -42,11 +42,12 @@ struct TaskReport {
 
 class ConversionJob {
  public:
-  /// The result, and where that says that thumbnails follow, once more with them; the last call may destroy the job.
+  /// Called with the result. If TaskReport::rendering is set, called once more when the thumbnails are there. The last
+  /// call may destroy the job.
   using Ended = std::function<void(const TaskReport& report)>;
 
-  /// Runs `task` on `io`; of one with outputs the thumbnails alone. `ended` is never called from within the
-  /// constructor.
+  /// Runs `task` on `io`. If task.outputs is not empty, only their thumbnails are rendered. `ended` is never called
+  /// from within the constructor.
   ConversionJob(boost::asio::io_context& io, ConversionTask task, Ended ended);
   ConversionJob(const ConversionJob&) = delete;
   ConversionJob& operator=(const ConversionJob&) = delete;
@@ -60,10 +61,11 @@ class ConversionJob {
   std::string_view step() const { return step_; }               ///< "convert", "verify" or "render"
   std::optional<double> fraction() const { return fraction_; }  ///< of the step, 0..1; none before the first report
   double seconds() const;                                       ///< since the start
-  /// Sees whether the step does anything; call it now and then.
+  /// Records whether the step's process is active. Must be called regularly, because stall() depends on it.
   void look();
-  /// Why the step has said and done nothing for `quiet`, as far as look() saw, or has computed for `opening` and not
-  /// said a word yet, as where a library runs in circles in a damaged file; empty: it has.
+  /// Returns why the step stands still; empty if it does not. It stands still if it announced nothing and look() saw no
+  /// activity for `quiet`, or if it computed for `opening` without any announcement (a library loops in a damaged
+  /// file).
   std::string stall(std::chrono::seconds quiet, std::chrono::seconds opening) const;
   std::uint64_t resident_bytes() const { return worker_ ? worker_->resident_bytes() : 0; }
 
@@ -91,8 +93,8 @@ class ConversionJob {
   ConversionTask task_;
   Ended ended_;
   std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
-  std::chrono::steady_clock::time_point heard_ = started_;  ///< last, or seen to be at work
-  std::chrono::steady_clock::time_point begun_ = started_;  ///< the step
+  std::chrono::steady_clock::time_point heard_ = started_;  ///< when the step last announced something or was active
+  std::chrono::steady_clock::time_point begun_ = started_;  ///< when the step began
   bool spoken_ = false;                                     ///< the step has announced something
   std::uint64_t activity_ = 0;                              ///< of the process, at the last look
   std::unique_ptr<WorkerProcess> worker_;
@@ -101,11 +103,11 @@ class ConversionJob {
   std::string failed_;        ///< why the conversion failed, as it announced; empty: it did not
   bool output_busy_ = false;  ///< and that was because another process writes the output
   bool stopping_ = false;
-  bool reported_ = false;  ///< that it is done
-  bool repeated_ = false;  ///< the rendering of the present output
+  bool reported_ = false;  ///< "done" was reported
+  bool repeated_ = false;  ///< the present output's rendering was repeated
   std::vector<Output> outputs_;
   std::size_t next_ = 0;                       ///< of outputs_, in the present step
-  std::optional<FileIdentity> verified_file_;  ///< of that output, before it was verified
+  std::optional<FileIdentity> verified_file_;  ///< identity of the output before its verification
   TaskReport report_;
   std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  ///< for what was posted and comes too late
 };

@@ -58,7 +58,7 @@ void JobRunner::configure(const DaemonConfig& config) {
     mounts.push_back(watch.output_mount);
   }
   disks_.watch(outputs);
-  mounts_.keep(mounts);
+  mounts_.watch(mounts);
   writes_.add([this] { deletion_.configure(config_); });
 }
 
@@ -89,6 +89,7 @@ void JobRunner::wake() {
 
 bool JobRunner::start_next() {
   if (stopping_ || !writes_.empty() || running_.size() >= static_cast<std::size_t>(config_.service.jobs)) return false;
+  mounts_.look();
   if (!paused() && start_next_rendering()) return true;
   std::vector<WatchLoad> loads;
   std::map<std::string, Job> first;
@@ -108,7 +109,7 @@ bool JobRunner::start_next() {
 }
 
 // The first that may start: a job may wait again while the processes of its last attempt still end, or for room.
-std::optional<Job> JobRunner::next_job(const WatchConfig& watch) {
+std::optional<Job> JobRunner::next_job(const WatchConfig& watch) const {
   constexpr std::size_t kMostLooked = 100;  // for one that fits where the first does not
   const std::size_t looked = full_disks_.empty() ? running_.size() + 1 : kMostLooked;
   const std::vector<Job> candidates = store_.candidates(watch.label, watch.priority, looked);
@@ -142,6 +143,9 @@ void JobRunner::start(const WatchConfig& watch, const Job& job) {
     store_.remove(job.id);
     return;
   }
+  Descriptor mount = hold_mount(watch.output_mount);
+  mounts_.look();
+  if (!mounts_.mounted(watch.output_mount)) return;
   scheduler_.started(watch.label);
   const auto now = identify_source(job.source, watch.convert_options);
   if (now ? *now != job.identity : is_gone_from(watch.directory, job.source)) {
@@ -150,12 +154,14 @@ void JobRunner::start(const WatchConfig& watch, const Job& job) {
   }
   if (!store_.start(job.id)) return;
   log_.info("start", {{"job", job.id}, {"source", job.source}, {"bytes", job.identity.bytes}});
-  run(job, make_task(program_, config_.service, watch, job));
+  run(job, make_task(program_, config_.service, watch, job), watch.output_mount, std::move(mount));
 }
 
-void JobRunner::run(const Job& job, ConversionTask task) {
+void JobRunner::run(const Job& job, ConversionTask task, const std::string& output_mount, Descriptor mount) {
   RunningJob& run = running_[job.id];
   run.job = job;
+  run.output_mount = output_mount;
+  run.mount = std::move(mount);
   run.begin = Clock::now();
   run.work = std::make_unique<ConversionJob>(io_, std::move(task),
                                              [this, id = job.id](const TaskReport& report) { ended(id, report); });
@@ -189,6 +195,7 @@ void JobRunner::ended(std::int64_t id, const TaskReport& report) {
 
 void JobRunner::attempt_ended(const RunningJob& run, const TaskReport& report) {
   const std::int64_t id = run.job.id;
+  if (lost_output(run, report)) return;
   switch (report.end) {
     case TaskEnd::done:
       done(run, report);

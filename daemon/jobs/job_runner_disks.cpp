@@ -5,6 +5,7 @@
 
 #include "daemon/disks/disk_room.h"
 #include "daemon/jobs/job_runner.h"
+#include "format/base/error.h"
 #include "format/base/text.h"
 
 namespace weir {
@@ -68,7 +69,7 @@ void JobRunner::look_at_disks() {
 
 std::string JobRunner::hold() const {
   if (!writes_.fault().empty()) return writes_.fault();
-  if (no_disk_has_room()) return waits_for_room();
+  if (no_disk_has_room()) return waits_for_disks();
   return scheduler_.paused() ? "paused by request" : "";
 }
 
@@ -80,7 +81,34 @@ bool JobRunner::no_disk_has_room() const {
   const auto work_room = work_dir.empty() ? std::nullopt : disks_.room(work_dir);
   if (work_room && !hold_of(*work_room).empty()) return true;
   const std::vector<OutputDisk> all = disks();
-  return std::ranges::all_of(all, [this](const OutputDisk& disk) { return !hold_of(disk.room).empty(); });
+  const auto is_full = [this](const OutputDisk& disk) { return !hold_of(disk.room).empty(); };
+  const auto is_missing = [this](const OutputDisk& disk) {
+    return std::ranges::all_of(disk.directories, [this](const auto& output) { return is_on_missing_mount(output); });
+  };
+  return (all.empty() || std::ranges::any_of(all, is_full)) &&
+         std::ranges::all_of(all, [&](const OutputDisk& disk) { return is_full(disk) || is_missing(disk); });
+}
+
+// Returns whether all watches with this output wait until it is mounted.
+bool JobRunner::is_on_missing_mount(const std::string& output) const {
+  return std::ranges::none_of(config_.watches, [&](const WatchConfig& watch) {
+    return watch.output == output && mounts_.mounted(watch.output_mount);
+  });
+}
+
+// Postpones a job that failed because the file system of its output went away, as after `umount -l`. Returns whether it
+// did. That is no fault of the job.
+bool JobRunner::lost_output(const RunningJob& run, const TaskReport& report) {
+  const bool by_disk = report.end == TaskEnd::disk_full ||
+                       (report.end == TaskEnd::failed && report.result.exit_code == static_cast<int>(ErrorKind::io));
+  if (!by_disk || run.output_mount.empty()) return false;
+  const MountTable table = MountTable::read();
+  if (table.empty() || table.mounted(run.output_mount)) return false;
+  mounts_.look();
+  const std::string& reason = report.result.reason;
+  log_.warn("output-lost", {{"job", run.job.id}, {"mount", run.output_mount}, {"reason", reason}});
+  writes_.add([this, id = run.job.id, reason] { store_.postpone(id, reason); });
+  return true;
 }
 
 std::string JobRunner::waits_for_disks() const {

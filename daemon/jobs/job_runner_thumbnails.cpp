@@ -20,7 +20,7 @@ void JobRunner::resume_thumbnails() {
 }
 
 bool JobRunner::start_next_rendering() {
-  constexpr std::size_t kMostLooked = 100;  // jobs on full disks that are passed over to find one with room
+  constexpr std::size_t kMostLooked = 100;  // jobs on full or unmounted disks that are passed over
   std::size_t waiting = 0;
   for (std::size_t i = unrendered_.size(); i-- > 0 && waiting < kMostLooked;) {
     const std::int64_t id = unrendered_[i];
@@ -28,6 +28,8 @@ bool JobRunner::start_next_rendering() {
     // The job may be converted again meanwhile.
     if (job && (job->state != JobState::done || running_.contains(id))) job.reset();
     const WatchConfig* watch = job ? watch_of(job->watch) : nullptr;
+    Descriptor mount = hold_mount(watch == nullptr ? "" : watch->output_mount);
+    if (mount) mounts_.look();
     if (watch != nullptr && rendering_waits(*watch, *job)) {
       ++waiting;
       continue;
@@ -37,7 +39,7 @@ bool JobRunner::start_next_rendering() {
     std::optional<ConversionTask> task;
     if (watch != nullptr) task = make_rendering_task(program_, config_.service, *watch, *job);
     if (task) {
-      run(*job, *std::move(task));
+      run(*job, *std::move(task), watch->output_mount, std::move(mount));
       running_.at(id).only_rendering = true;
       return true;
     }
@@ -47,7 +49,7 @@ bool JobRunner::start_next_rendering() {
 }
 
 // Also true if the room is not known yet: then the job waits for a later round.
-bool JobRunner::rendering_waits(const WatchConfig& watch, const Job& job) {
+bool JobRunner::rendering_waits(const WatchConfig& watch, const Job& job) const {
   if (!mounts_.mounted(watch.output_mount)) return true;
   if (full_disks_.empty()) return false;
   const std::optional<DiskRoom> room = disks_.room(output_directory(watch, job.source));

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "daemon/config/watch_conflicts.h"
+#include "daemon/disks/away_disk.h"
 #include "daemon/jobs/conversion_task.h"
 #include "daemon/jobs/outputs_fault.h"
 #include "daemon/store/file_identity.h"
@@ -17,7 +18,6 @@
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "format/io/descriptor.h"
-#include "format/io/is_directory.h"
 #include "format/sidecar/sidecar.h"
 #include "ingest/files/file_state.h"
 #include "ingest/files/input_directory.h"
@@ -170,7 +170,7 @@ void SourceDeletion::look() {
       continue;
     }
     const WatchConfig* watch = deleting_watch(at->second.watch);
-    if (watch != nullptr && !waits.contains(watch->label)) waits[watch->label] = waits_for_directory(*watch);
+    if (watch != nullptr && !waits.contains(watch->label)) waits[watch->label] = waits_for_disks(*watch);
     bool later = watch != nullptr && waits[watch->label];
     if (!later) {
       ++looks;
@@ -189,15 +189,15 @@ void SourceDeletion::look() {
   }
 }
 
-// Returns whether the watch's directory is missing, as during a remount: its sources cannot be judged. Logged once.
-bool SourceDeletion::waits_for_directory(const WatchConfig& watch) {
-  const bool is_there = is_directory(watch.directory);
-  if (is_there) away_.erase(watch.label);
-  if (!is_there && away_.insert(watch.label).second) {
-    log_.warn("not-deleted",
-              {{"watch", watch.label}, {"reason", cat(watch.directory, " is not there; tried again once it is")}});
+// Returns whether sources or outputs of the watch cannot be judged now (away_disk.h). Logged once.
+bool SourceDeletion::waits_for_disks(const WatchConfig& watch) {
+  const std::string reason = away_disk(watch);
+  if (reason.empty()) {
+    away_.erase(watch.label);
+  } else if (away_.insert(watch.label).second) {
+    log_.warn("not-deleted", {{"watch", watch.label}, {"reason", reason}});
   }
-  return !is_there;
+  return !reason.empty();
 }
 
 // A source that cannot be looked at holds up no others. What a file system refuses is tried again later.

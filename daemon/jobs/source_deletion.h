@@ -70,7 +70,7 @@ class SourceDeletion {
   void work();
   void take_up();
   void look();
-  bool waits_for_directory(const WatchConfig& watch);
+  bool waits_for_disks(const WatchConfig& watch);
   void arm();
   void wait_until(Clock::time_point time);
   Outcome try_to_delete(const Job& job, const WatchConfig& watch);
@@ -94,7 +94,7 @@ class SourceDeletion {
   std::vector<WatchConfig> watches_;               ///< watches that delete their sources
   std::map<std::string, std::string> markers_;     ///< WatchConfig::marker by label, of watches that wait for a marker
   std::map<std::int64_t, Due> due_;                ///< by job
-  std::set<std::string> away_;                     ///< labels of watches that the log called missing
+  std::set<std::string> away_;                     ///< labels of watches whose missing disks were logged
   std::map<std::int64_t, std::string> waits_for_;  ///< by job: the reason for waiting that was logged last
   std::map<std::int64_t, std::int64_t>
       named_back_;  ///< by job: FileState::ctime_ns of sources that got their name back

@@ -42,10 +42,10 @@ function troubles(status) {
   const paused = reason ? [`Paused: ${reason}.`] : [];
   const held = status.disks.filter((disk) => disk.held && !reason.includes(disk.held))
                    .map((disk) => `Jobs wait for room on ${disk.path}: ${disk.held}.`);
-  // The full disk has no outputs: conversions keep their spill files there.
-  if (status.state === "running" && status.reason && !status.disks.some((disk) => disk.held)) {
-    held.push(`Jobs wait: ${status.reason}.`);
-  }
+  // Disks without outputs, for example a full one for spill files, and outputs whose file system is not mounted.
+  const of_disks = status.disks.flatMap((disk) => disk.held.split("; "));
+  const others = status.reason.split("; ").filter((part) => !of_disks.includes(part));
+  if (status.state === "running" && others.length > 0 && others[0]) held.push(`Jobs wait: ${others.join("; ")}.`);
   const down = status.watches.filter((watch) => !watch.up).map((watch) => `${watch.directory} is not watched: ${watch.reason}.`);
   return {text: [...paused, ...held, ...down].join(" "), bad: held.length + down.length > 0};
 }

@@ -21,20 +21,34 @@ std::string shell_word(const std::string& text) {
   return word + "'";
 }
 
+namespace {
+
+// Returns "0,0": the first position along each leading axis. Axes are named if positions alone do not tell which is
+// which.
+template <typename Quote>
+std::string first_positions(const DatasetInfo& dataset, const Quote& quote) {
+  std::string positions;
+  for (std::size_t i = 0; i < dataset.leading_axes; ++i) {
+    const bool named = dataset.index_by_name && i < dataset.index_axes.size() && !dataset.index_axes[i].name.empty();
+    positions += cat(i == 0 ? "" : ",", named ? quote(dataset.index_axes[i].name + "=0") : "0");
+  }
+  return positions;
+}
+
+}  // namespace
+
 std::string convert_command(const std::string& path, bool container, const DatasetInfo& dataset) {
   std::string command = cat("weir convert ", shell_word(path));
   if (container && !dataset.name.empty()) command += cat(" --dataset ", shell_word(dataset.name));
-  for (std::size_t i = 0; i < dataset.leading_axes; ++i) {
-    const bool named = dataset.index_by_name && i < dataset.index_axes.size() && !dataset.index_axes[i].name.empty();
-    command += cat(i == 0 ? " --index " : ",", named ? shell_word(dataset.index_axes[i].name + "=0") : "0");
-  }
+  if (dataset.leading_axes > 0) command += " --index " + first_positions(dataset, shell_word);
   if (dataset.components > 1) command += dataset.components <= 4 ? " --component magnitude" : " --component 0";
   return command;
 }
 
 std::string volume_keys(const DatasetInfo& dataset) {
   std::string keys = cat("dataset ", dataset.name);
-  for (std::size_t i = 0; i < dataset.leading_axes; ++i) keys += i == 0 ? ", index 0" : ",0";
+  const auto as_it_is = [](const std::string& text) { return text; };
+  if (dataset.leading_axes > 0) keys += ", index " + first_positions(dataset, as_it_is);
   if (dataset.components > 1) keys += dataset.components <= 4 ? ", component magnitude" : ", component 0";
   return keys;
 }

@@ -40,15 +40,7 @@ class Decoder {
     // A missing value, for instance 1e36 in a double, must not count as rounded.
     for (std::size_t i = 0; i < stored.size(); ++i) stored[i] = missing[i] ? T{} : stored[i];
     const ConversionLoss loss = convert(stored, missing, values);
-    const float mark = missing_value();
-    const float other = std::bit_cast<float>(kMissingBits ^ 1U);
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      if (missing[i]) {
-        std::memcpy(&values[i], &mark, sizeof mark);
-      } else if (guards_ && is_missing(values[i])) {
-        std::memcpy(&values[i], &other, sizeof other);
-      }
-    }
+    if (guards_) mark_values(missing, values);
     return loss;
   }
 
@@ -57,7 +49,21 @@ class Decoder {
     ConversionLoss loss = convert(stored, MissingMask{}, values);
     loss.unmarked = static_cast<std::uint64_t>(
         std::count(missing.begin(), missing.begin() + static_cast<std::ptrdiff_t>(stored.size()), true));
+    if (mapping_.gaps) mark_values(MissingMask{}, values);
     return loss;
+  }
+
+  // Writes missing_value() in the place of missing values. Another value of the same bits, a NaN, gets other bits.
+  static void mark_values(const MissingMask& missing, std::span<float> values) {
+    const float mark = missing_value();
+    const float other = std::bit_cast<float>(kMissingBits ^ 1U);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (missing[i]) {
+        std::memcpy(&values[i], &mark, sizeof mark);
+      } else if (is_missing(values[i])) {
+        std::memcpy(&values[i], &other, sizeof other);
+      }
+    }
   }
 
   ConversionLoss convert(std::span<const T> stored, const MissingMask& missing, std::span<float> values) const {

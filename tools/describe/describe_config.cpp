@@ -9,7 +9,7 @@
 #include "daemon/watch/file_system_kind.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
-#include "format/io/is_mount_point.h"
+#include "format/io/mount_table.h"
 
 namespace weir {
 namespace {
@@ -79,7 +79,7 @@ void describe(std::ostream& out, const WatchConfig& watch) {
   }
   say(out, "output", cat(watch.output, '/', watch.name.empty() ? "{stem}.nvdb" : watch.name));
   if (const std::string& mount = watch.output_mount; !mount.empty()) {
-    say(out, "mount", cat(mount, is_mount_point(mount) ? "" : ", where no file system is mounted now"));
+    say(out, "mount", cat(mount, MountTable::read().mounted(mount) ? "" : ", where no file system is mounted now"));
   }
   say(out, "thumbnails", watch.thumbnails ? "yes" : "no");
   say(out, "watch", watch_method(watch));

@@ -310,7 +310,7 @@ TEST_F(Config, ATokenFromAFile) {
 
 TEST_F(Config, OutputMount_IsTheOutputOrADirectoryAboveIt) {
   EXPECT_EQ(watch_refusal("output_mount = 'out'"), "");
-  EXPECT_EQ(watch_refusal("output_mount = '/'"), "");
+  EXPECT_EQ(watch_refusal("output_mount = '/'"), "4:16: output_mount is /, which is always mounted; name another one");
   EXPECT_EQ(watch_refusal("output_mount = 'out/deep'"),
             cat("4:16: output_mount is ", directory_ / "out/deep", ", and the output ", directory_ / "out",
                 " does not lie below it; name the directory at which its file system is mounted"));

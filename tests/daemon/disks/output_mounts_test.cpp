@@ -2,47 +2,55 @@
 
 #include <gtest/gtest.h>
 
-#include <set>
 #include <string>
-
-#include "tests/support/temporary_directory.h"
+#include <vector>
 
 namespace weir::output_mounts_test {
 namespace {
 
 class OutputMountsTest : public testing::Test {
  protected:
-  std::set<std::string> mounted_;
+  void mount(const std::vector<std::string>& paths) {
+    lines_ = "1 0 8:1 / / rw - ext4 /dev/sda1 rw\n";
+    for (const std::string& path : paths) lines_ += "2 1 8:2 / " + path + " rw - ext4 /dev/sdb1 rw\n";
+  }
+
+  std::string lines_;
   EventLog log_{ServiceConfig{}};
-  OutputMounts mounts_{log_, [this](const std::string& path) { return mounted_.contains(path); }};
+  OutputMounts mounts_{log_, [this] { return MountTable(lines_); }};
 };
 
 TEST_F(OutputMountsTest, NoPath_IsMounted) {
+  mounts_.watch({"", ""});
   EXPECT_TRUE(mounts_.mounted(""));
   EXPECT_TRUE(mounts_.all_mounted());
 }
 
 TEST_F(OutputMountsTest, MissingOnes_AreNamedUntilALookFindsThem) {
-  mounted_ = {"/c"};
-  EXPECT_FALSE(mounts_.mounted("/b"));
+  mount({"/c"});
+  mounts_.watch({"/b", "/c", "/a", "/a"});
   EXPECT_FALSE(mounts_.mounted("/a"));
   EXPECT_TRUE(mounts_.mounted("/c"));
   EXPECT_EQ(mounts_.text(), "no file system is mounted at /a; no file system is mounted at /b");
-  mounted_ = {"/a"};
+  mount({"/a", "/c"});
   mounts_.look();
-  EXPECT_EQ(mounts_.text(), "no file system is mounted at /b") << "/c is not used now, so nobody looked at it";
+  EXPECT_EQ(mounts_.text(), "no file system is mounted at /b");
   EXPECT_FALSE(mounts_.all_mounted());
-  mounted_ = {"/a", "/b"};
-  EXPECT_TRUE(mounts_.mounted("/b"));
-  EXPECT_TRUE(mounts_.all_mounted());
-  EXPECT_EQ(mounts_.text(), "");
+  mount({"/a", "/b"});
+  mounts_.look();
+  EXPECT_EQ(mounts_.text(), "no file system is mounted at /c") << "it went meanwhile";
+  lines_.clear();
+  mounts_.look();
+  EXPECT_EQ(mounts_.text(), "no file system is mounted at /c") << "an unreadable table changes nothing";
 }
 
-TEST_F(OutputMountsTest, MountsThatTheConfigurationDropped_AreForgotten) {
-  mounts_.mounted("/a");
-  mounts_.mounted("/b");
-  mounts_.keep({"", "/b"});
+TEST_F(OutputMountsTest, PathsThatTheConfigurationDropped_AreForgotten) {
+  mount({});
+  mounts_.watch({"/a", "/b"});
+  mounts_.watch({"/b"});
   EXPECT_EQ(mounts_.text(), "no file system is mounted at /b");
+  mounts_.watch({});
+  EXPECT_TRUE(mounts_.all_mounted());
 }
 
 }  // namespace

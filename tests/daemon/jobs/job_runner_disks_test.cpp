@@ -1,7 +1,9 @@
 // Tests JobRunner with full file systems.
 #include <gtest/gtest.h>
+#include <sys/mount.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
@@ -185,6 +187,74 @@ TEST_F(JobRunnerDisksTest, ConfigurationWithoutTheOutputMount_StartsTheJobsThatW
   EXPECT_EQ(runner_.waits_for_disks(), "");
   runner_.wake();
   run_until([&] { return state(job) == JobState::done; });
+}
+
+// The thumbnail of a job that was done before is not given up because its output is out of sight.
+TEST_F(JobRunnerDisksTest, OutputMountWithoutAFileSystem_ThumbnailsWait) {
+  config_.watches[0].thumbnails = true;
+  const std::string program =
+      write_program(cat("case \"$1\" in render) exec sleep 100;; esac\nexec ", WEIR_COMMAND, " \"$@\"\n"));
+  const Job job = add("a", "one");
+  {
+    JobRunner runner(io_, store_, log_, program, [](const Job&) {});
+    runner.configure(config_);
+    runner.wake();
+    run_until([&] { return state(job) == JobState::done; });
+  }
+  ASSERT_EQ(store_.unrendered(), std::vector<std::int64_t>{job.id});
+
+  const std::string mount = directory_ / "mount";
+  fs::create_directory_symlink(directory_.path(), mount);
+  config_.watches[0].output_mount = mount;
+  fs::rename(directory_ / "out", directory_ / "away");
+  runner_.configure(config_);
+  runner_.resume_thumbnails();
+  runner_.wake();
+  run_for(milliseconds(1500));
+  EXPECT_EQ(store_.unrendered(), std::vector<std::int64_t>{job.id});
+  fs::rename(directory_ / "away", directory_ / "out");
+  fs::remove(mount);
+  fs::create_directory_symlink("/proc", mount);
+  run_until([&] { return store_.unrendered().empty() && idle(); });
+  EXPECT_TRUE(fs::exists(directory_ / "out/one_24x20x16_uint8.nvdb.png"));
+}
+
+TEST_F(JobRunnerDisksTest, FileSystemOfAnOutput_CannotBeUnmountedWhileItsJobRuns) {
+  const std::string out = directory_ / "out";
+  fs::create_directory(out);
+  ScopedMount mount(out, 8 << 20);
+  if (!mount.refused().empty()) GTEST_SKIP() << mount.refused();
+  config_.watches[0].output_mount = out;
+  JobRunner runner(io_, store_, log_, write_program("exec sleep 100\n"), [](const Job&) {});
+  runner.configure(config_);
+  const Job job = add("a", "one");
+  runner.wake();
+  EXPECT_EQ(state(job), JobState::running);
+  EXPECT_NE(::umount(out.c_str()), 0);
+  EXPECT_EQ(errno, EBUSY);
+}
+
+// As after `umount -l`: what the running job could not write is no fault of the job.
+TEST_F(JobRunnerDisksTest, OutputMountThatGoesWhileAJobRuns_CostsNoAttempt) {
+  const std::string mount = directory_ / "mount";
+  fs::create_directory_symlink("/proc", mount);
+  config_.watches[0].output_mount = mount;
+  const std::string program =
+      write_program(cat("ln -sfn ", directory_.path().string(), " ", mount,
+                        "\necho '{\"failed\": \"cannot write\", \"errno\": 5}' >&$fd\nexit 5\n"));
+  JobRunner runner(io_, store_, log_, program, [](const Job&) {});
+  runner.configure(config_);
+  const Job job = add("a", "one");
+  runner.wake();
+  EXPECT_EQ(state(job), JobState::running);
+  run_until([&] { return state(job) == JobState::waiting; });
+  EXPECT_EQ(store_.job(job.id)->attempts, 0);
+  EXPECT_EQ(store_.job(job.id)->result.reason, "cannot write");
+  EXPECT_EQ(runner.waits_for_disks(), cat("no file system is mounted at ", mount));
+  const std::string log = read_file(config_.service.log_file);
+  EXPECT_NE(log.find(cat(" warning output-lost job=", job.id, " mount=", mount, " reason=\"cannot write\"\n")),
+            std::string::npos)
+      << log;
 }
 
 }  // namespace

@@ -176,6 +176,23 @@ TEST_F(SourceDeletionTest, DirectoryThatIsAway_IsWaitedForAndSaidOnce) {
   EXPECT_TRUE(logged(" deleted job=1 source=" + source_));
 }
 
+// A link stands for the mount point. While nothing is mounted there, the outputs are out of sight, too.
+TEST_F(SourceDeletionTest, OutputMountWithoutAFileSystem_IsWaitedFor) {
+  const std::string mount = directory_ / "mount";
+  fs::create_directory_symlink(directory_.path(), mount);
+  config_.watches[0].output_mount = mount;
+  delete_done();
+  fs::rename(directory_ / "out", directory_ / "away");
+  ASSERT_TRUE(run_until([&] { return logged(" not-deleted watch="); }));
+  EXPECT_TRUE(logged(" reason=\"no file system is mounted at " + mount + "; tried again once one is\""));
+  EXPECT_FALSE(run_until([&] { return deletion_.idle(); }, milliseconds(300)));
+  fs::rename(directory_ / "away", directory_ / "out");
+  fs::remove(mount);
+  fs::create_directory_symlink("/proc", mount);
+  EXPECT_FALSE(stays());
+  EXPECT_TRUE(logged(" deleted job=1 source=" + source_));
+}
+
 TEST_F(SourceDeletionTest, OpenForWriting_WaitsForTheClose) {
   Descriptor writer(::open(source_.c_str(), O_WRONLY | O_CLOEXEC));
   delete_done();

@@ -126,11 +126,12 @@ TEST(WatchFaults, OutputNotMounted_JobsWaitAndNothingIsWrittenBelowTheMountPoint
   ServiceHarness service("", "output_mount = \"out\"\nsettle = 0.2\n");
   service.start();
   const std::string name = service.add("one", 3);
-  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.logged(" output-not-mounted ") == 1; })) << service.log();
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return service.count("waiting") == 1; })) << service.log();
+  EXPECT_EQ(service.logged(" output-not-mounted "), 1U);
   const auto status = service.get("/api/status");
   EXPECT_EQ(status["state"], "running");
   EXPECT_EQ(status["reason"], "no file system is mounted at " + service.out().substr(0, service.out().size() - 1));
-  EXPECT_EQ(service.count("waiting"), 1U);
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));  // the service looks each second
   EXPECT_EQ(list_directory(service.out()), Names{});
   ScopedMount mount(service.out(), 8 << 20);
   if (!mount.refused().empty()) GTEST_SKIP() << mount.refused();

@@ -24,6 +24,16 @@ TEST(ConvertCommand, NamesAnAxisThatIsNoLeadingOne) {
   EXPECT_EQ(convert_command("a.h5", true, dataset), "weir convert a.h5 --dataset /v --index time=0");
 }
 
+TEST(VolumeKeys, NameAnAxisThatIsNoLeadingOne) {
+  DatasetInfo dataset;
+  dataset.name = "/v";
+  dataset.leading_axes = 2;
+  dataset.index_axes = {{"time", 4}, {"member", 2}};
+  EXPECT_EQ(volume_keys(dataset), "dataset /v, index 0,0");
+  dataset.index_by_name = true;
+  EXPECT_EQ(volume_keys(dataset), "dataset /v, index time=0,member=0");
+}
+
 TEST(ConvertCommand, ChoosesTheMagnitudeOfVectorsAndOneNumberOfTensors) {
   DatasetInfo dataset;
   dataset.name = "/v";

@@ -184,6 +184,10 @@ TEST(DecodeValues, OfAVolumeWithGaps_NoStoredValueIsOne) {
   decode_values(std::as_bytes(std::span(bits)), ScalarType::float32, kNativeIsBig, mapping, values);
   EXPECT_FALSE(is_missing(values[0]));
   EXPECT_TRUE(is_missing(values[1]));
+  mapping.keeps_missing = true;  // then missing values are data, and a gap still is none
+  decode_values(std::as_bytes(std::span(bits)), ScalarType::float32, kNativeIsBig, mapping, values);
+  EXPECT_TRUE(std::isnan(values[0]) && !is_missing(values[0]));
+  EXPECT_EQ(values[1], 1.0F);
 }
 
 TEST(DecodeValues, ScaledIntegersOf64Bits_KeepTheirLastBits) {

@@ -1,0 +1,16 @@
+#include "daemon/disks/away_disk.h"
+
+#include "format/base/text.h"
+#include "format/io/is_directory.h"
+#include "format/io/mount_table.h"
+
+namespace weir {
+
+std::string away_disk(const WatchConfig& watch) {
+  if (!is_directory(watch.directory)) return cat(watch.directory, " is not there; tried again once it is");
+  const std::string& mount = watch.output_mount;
+  if (mount.empty() || MountTable::read().mounted(mount)) return "";
+  return cat("no file system is mounted at ", mount, "; tried again once one is");
+}
+
+}  // namespace weir
