@@ -2,21 +2,28 @@
 
 #include <fcntl.h>
 
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
 #include "format/base/text.h"
 
 namespace weir {
 
 void OutputMounts::watch(const std::vector<std::string>& paths) {
-  paths_ = {paths.begin(), paths.end()};
+  const std::set<std::string> before = std::exchange(paths_, {paths.begin(), paths.end()});
   paths_.erase("");
   std::erase_if(missing_, [this](const std::string& path) { return !paths_.contains(path); });
   look();
+  if (!read_().empty()) return;
+  std::ranges::copy_if(paths_, std::inserter(missing_, missing_.end()),
+                       [&](const std::string& path) { return !before.contains(path); });
 }
 
 void OutputMounts::look() {
   if (paths_.empty()) return;
   const MountTable table = read_();
-  if (table.empty()) return;  // it could not be read: nothing is known
+  if (table.empty()) return;  // it could not be read: what was known stays
   for (const std::string& path : paths_) {
     if (!table.mounted(path)) {
       if (!missing_.insert(path).second) continue;

@@ -21,7 +21,8 @@ class OutputMounts {
   /// `log` must outlive the object. Tests give `read`.
   explicit OutputMounts(const EventLog& log, ReadTable read = MountTable::read) : log_(log), read_(std::move(read)) {}
 
-  /// Watches these paths from now on, and looks at them. Empty ones are left out.
+  /// Watches these paths from now on, and looks at them. Empty ones are left out. If the mount table cannot be read,
+  /// new paths count as not mounted.
   void watch(const std::vector<std::string>& paths);
   /// Looks at all paths again, and logs what changed. Asks no file server, unless a path is not mounted or leads
   /// through symbolic links: then the file systems on the way are asked.

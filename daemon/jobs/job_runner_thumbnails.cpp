@@ -28,12 +28,13 @@ bool JobRunner::start_next_rendering() {
     // The job may be converted again meanwhile.
     if (job && (job->state != JobState::done || running_.contains(id))) job.reset();
     const WatchConfig* watch = job ? watch_of(job->watch) : nullptr;
-    Descriptor mount = hold_mount(watch == nullptr ? "" : watch->output_mount);
-    if (mount) mounts_.look();
     if (watch != nullptr && rendering_waits(*watch, *job)) {
       ++waiting;
       continue;
     }
+    Descriptor mount = hold_mount(watch == nullptr ? "" : watch->output_mount);
+    if (mount) mounts_.look();
+    if (watch != nullptr && !mounts_.mounted(watch->output_mount)) continue;
     unrendered_.erase(unrendered_.begin() + static_cast<std::ptrdiff_t>(i));
     if (!job) continue;
     std::optional<ConversionTask> task;

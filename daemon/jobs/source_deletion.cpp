@@ -230,6 +230,7 @@ SourceDeletion::Outcome SourceDeletion::look_at(const Job& job, const WatchConfi
   if (!identity) return Outcome::later;                 // for example, a server that does not answer
   if (*identity != job.identity) return Outcome::over;  // the watch sees this change, too
   if (const std::string fault = outputs_fault(job, state_since_certified(job)); !fault.empty()) {
+    if (!away_disk(watch).empty()) return Outcome::later;
     keep(job, fault);
     return Outcome::over;
   }
@@ -345,8 +346,7 @@ SourceDeletion::Outcome SourceDeletion::finish_interrupted(const Job& job, const
   const std::string doomed = hidden_name(job);
   const bool is_source = is_source_file(doomed, job);
   const FileWriters writers(doomed);
-  if (is_source && writers.some())
-    return wait_for(job, kInUse);  // a program that opened the source before it was hidden
+  if (is_source && writers.some()) return wait_for(job, kInUse);  // opened before it was hidden
   std::string fault = is_source ? outputs_fault(job, std::nullopt) : "";
   if (is_source && fault.empty() && !writers.known() && !says_when_done(watch.complete)) fault = kNotKnown;
   if (is_source && fault.empty()) {

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 #include <sstream>
+#include <utility>
 
 #include "format/io/real_path.h"
 
@@ -61,16 +62,28 @@ const MountTable::Mount* MountTable::find(int id) const {
   return at == mounts_.end() ? nullptr : &*at;
 }
 
-// Of several mounts at one place each is the parent of the next.
+// Goes down the path as the kernel does, so that a mount that another one hides is not found.
 const MountTable::Mount* MountTable::topmost_at(const std::string& point) const {
-  for (const Mount& mount : mounts_) {
-    if (mount.point != point) continue;
-    const auto covers = [&](const Mount& other) {
-      return other.parent == mount.id && other.id != mount.id && other.point == point;
-    };
-    if (std::ranges::none_of(mounts_, covers)) return &mount;
+  const auto is_root = [this](const Mount& mount) {
+    return mount.point == "/" && (mount.parent == mount.id || find(mount.parent) == nullptr);
+  };
+  const auto root = std::ranges::find_if(mounts_, is_root);
+  if (root == mounts_.end()) return nullptr;
+  const Mount* at = &*root;
+  const auto enter_mounts_at = [&](const std::string& directory) {
+    const Mount* above = nullptr;
+    while (std::exchange(above, at) != at) {
+      const auto covers = [&](const Mount& mount) { return mount.parent == at->id && mount.point == directory; };
+      const auto next = std::ranges::find_if(mounts_, covers);
+      if (next != mounts_.end()) at = &*next;
+    }
+  };
+  enter_mounts_at("/");
+  for (std::size_t end = point.find('/', 1); point != "/"; end = point.find('/', end + 1)) {
+    enter_mounts_at(point.substr(0, end));
+    if (end == std::string::npos) break;
   }
-  return nullptr;
+  return at->point == point ? at : nullptr;
 }
 
 bool MountTable::shows_what_it_covers(const Mount& mount) const {

@@ -44,6 +44,14 @@ TEST_F(OutputMountsTest, MissingOnes_AreNamedUntilALookFindsThem) {
   EXPECT_EQ(mounts_.text(), "no file system is mounted at /c") << "an unreadable table changes nothing";
 }
 
+TEST_F(OutputMountsTest, UnreadableTable_NewPathsCountAsNotMounted) {
+  mount({"/a"});
+  mounts_.watch({"/a"});
+  lines_.clear();
+  mounts_.watch({"/a", "/b"});
+  EXPECT_EQ(mounts_.text(), "no file system is mounted at /b");
+}
+
 TEST_F(OutputMountsTest, PathsThatTheConfigurationDropped_AreForgotten) {
   mount({});
   mounts_.watch({"/a", "/b"});

@@ -53,6 +53,12 @@ TEST(MountTable, Autofs_CountsOnceTheFileSystemIsMounted) {
   EXPECT_TRUE(MountTable(kRoot + automount + "31 30 0:51 / /scratch rw - nfs4 server:/a rw\n").mounted("/scratch"));
 }
 
+TEST(MountTable, MountBelowALaterOne_IsHiddenByIt) {
+  const MountTable table(kRoot + "30 20 0:40 / /s/run rw - xfs /dev/sdb rw\n31 20 0:41 / /s rw - tmpfs none rw\n");
+  EXPECT_FALSE(table.mounted("/s/run"));
+  EXPECT_TRUE(table.mounted("/s"));
+}
+
 TEST(MountTable, LinkToAMountPoint_IsFollowed) {
   const TemporaryDirectory directory;
   fs::create_directory_symlink("/proc", directory / "mounted");
