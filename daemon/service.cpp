@@ -95,7 +95,7 @@ std::vector<WatchConfig> Service::watches_to_clean(const DaemonConfig& before) c
 
 void Service::clean(const std::vector<WatchConfig>& watches, milliseconds patience) const {
   for (const WatchConfig& watch : watches) {
-    if (!watch.output_mount.empty() && !MountTable::read().mounted(watch.output_mount)) continue;
+    if (!is_mounted(watch.output_mount)) continue;
     const CleaningReport report = clean_outputs(watch.output, watch.directory, watch.recursive, patience);
     for (const std::string& path : report.removed) log_.info("cleaned", {{"removed", path}});
     for (const std::string& line : report.left) log_.warn("not-cleaned", {{"reason", line}});

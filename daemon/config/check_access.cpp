@@ -112,9 +112,8 @@ void check_access(const DaemonConfig& config, bool state_is_open) {
   require_file(service.port_file, "port_file");
   require_file(service.control_socket, "control_socket");
   require_work_dir(service.work_dir);
-  const MountTable mounts = MountTable::read();
   for (const WatchConfig& watch : config.watches) {
-    if (watch.output_mount.empty() || mounts.mounted(watch.output_mount)) require_directory(watch.output, "output");
+    if (is_mounted(watch.output_mount)) require_directory(watch.output, "output");
     std::error_code ignored;
     if (!fs::exists(watch.directory, ignored) && !ignored) continue;
     if (is_no_directory(watch.directory)) refuse_access(watch.directory, "directory", "read", ENOTDIR);

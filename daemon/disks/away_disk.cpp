@@ -8,9 +8,8 @@ namespace weir {
 
 std::string away_disk(const WatchConfig& watch) {
   if (!is_directory(watch.directory)) return cat(watch.directory, " is not there; tried again once it is");
-  const std::string& mount = watch.output_mount;
-  if (mount.empty() || MountTable::read().mounted(mount)) return "";
-  return cat("no file system is mounted at ", mount, "; tried again once one is");
+  if (is_mounted(watch.output_mount)) return "";
+  return cat("no file system is mounted at ", watch.output_mount, "; tried again once one is");
 }
 
 }  // namespace weir

@@ -14,16 +14,15 @@ void OutputMounts::watch(const std::vector<std::string>& paths) {
   const std::set<std::string> before = std::exchange(paths_, {paths.begin(), paths.end()});
   paths_.erase("");
   std::erase_if(missing_, [this](const std::string& path) { return !paths_.contains(path); });
-  look();
-  if (!read_().empty()) return;
+  if (look()) return;
   std::ranges::copy_if(paths_, std::inserter(missing_, missing_.end()),
                        [&](const std::string& path) { return !before.contains(path); });
 }
 
-void OutputMounts::look() {
-  if (paths_.empty()) return;
+bool OutputMounts::look() {
+  if (paths_.empty()) return true;
   const MountTable table = read_();
-  if (table.empty()) return;  // it could not be read: what was known stays
+  if (table.empty()) return false;
   for (const std::string& path : paths_) {
     if (!table.mounted(path)) {
       if (!missing_.insert(path).second) continue;
@@ -33,6 +32,7 @@ void OutputMounts::look() {
       log_.info("output-mounted", {{"mount", path}});
     }
   }
+  return true;
 }
 
 std::string OutputMounts::text() const {

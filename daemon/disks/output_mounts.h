@@ -25,8 +25,9 @@ class OutputMounts {
   /// new paths count as not mounted.
   void watch(const std::vector<std::string>& paths);
   /// Looks at all paths again, and logs what changed. Asks no file server, unless a path is not mounted or leads
-  /// through symbolic links: then the file systems on the way are asked.
-  void look();
+  /// through symbolic links: then the file systems on the way are asked. Returns false, and changes nothing, if the
+  /// mount table cannot be read.
+  bool look();
   /// Returns whether a file system was mounted at `path` at the last look. True for an empty path.
   bool mounted(const std::string& path) const { return !missing_.contains(path); }
   bool all_mounted() const { return missing_.empty(); }

@@ -107,4 +107,6 @@ bool MountTable::mounted(const std::string& path) const {
   return mount != nullptr;
 }
 
+bool is_mounted(const std::string& path) { return path.empty() || MountTable::read().mounted(path); }
+
 }  // namespace weir

@@ -37,4 +37,8 @@ class MountTable {
   std::vector<Mount> mounts_;
 };
 
+/// Returns whether a file system is mounted at `path` now; see MountTable::mounted(). True for an empty path, which
+/// asks for no mount.
+bool is_mounted(const std::string& path);
+
 }  // namespace weir

@@ -79,7 +79,7 @@ void describe(std::ostream& out, const WatchConfig& watch) {
   }
   say(out, "output", cat(watch.output, '/', watch.name.empty() ? "{stem}.nvdb" : watch.name));
   if (const std::string& mount = watch.output_mount; !mount.empty()) {
-    say(out, "mount", cat(mount, MountTable::read().mounted(mount) ? "" : ", where no file system is mounted now"));
+    say(out, "mount", cat(mount, is_mounted(mount) ? "" : ", where no file system is mounted now"));
   }
   say(out, "thumbnails", watch.thumbnails ? "yes" : "no");
   say(out, "watch", watch_method(watch));
