@@ -28,8 +28,9 @@ class PackedRender : public testing::Test {
   }
 
   CommandResult render(const std::string& image, const std::vector<std::string>& more) const {
-    std::vector<std::string> all{"render", volume_, "-o",     image,       "--size", "160x120",
-                                 "--spp",  "2",     "--json", "--backend", "cpu",    "--overwrite"};
+    // A slow machine would otherwise write lines of progress between the messages that the tests compare.
+    std::vector<std::string> all{"render", volume_,  "-o",        image, "--size",      "160x120",    "--spp",
+                                 "2",      "--json", "--backend", "cpu", "--overwrite", "--progress", "never"};
     all.insert(all.end(), more.begin(), more.end());
     return run_weir(all);
   }
