@@ -23,14 +23,14 @@ READINGS = 20
 
 
 def drop(path):
-    """Takes a file out of the page cache."""
+    """Drops a file from the page cache."""
     with open(path, "rb") as file:
         os.fsync(file.fileno())
         os.posix_fadvise(file.fileno(), 0, 0, os.POSIX_FADV_DONTNEED)
 
 
 def disk_bytes():
-    """Bytes that the disk has given this process so far."""
+    """Returns how many bytes this process has read from the disk so far."""
     with open("/proc/self/io", encoding="ascii") as file:
         return next(int(line.split()[1]) for line in file if line.startswith("read_bytes"))
 
@@ -42,7 +42,7 @@ def timed(action):
 
 
 def corners(grid, edge):
-    """Low corners (z, y, x) of regions of that edge, whose blocks are whole, and which hold more than one value."""
+    """Returns low corners (z, y, x) of regions of `edge` voxels that have whole blocks and more than one value."""
     numbers = random.Random(1)
     found = []
     for _ in range(500 * READINGS):
@@ -61,7 +61,8 @@ def region(grid, corner, edge):
 
 
 def once_cold(path, action):
-    """Seconds and bytes of opening a file that was dropped, and of the action after that."""
+    """Drops a file from the page cache. Returns seconds and bytes of opening the file, and of the action after
+    that."""
     drop(path)
     before = disk_bytes()
     start = time.perf_counter()

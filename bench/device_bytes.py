@@ -49,7 +49,7 @@ class Options(ctypes.Structure):
 
 
 class Weir:
-    """The calls of weir.h that this needs. Each returns its status and the bytes of the file, or a message."""
+    """The calls of weir.h that are needed here. Each returns its status and the bytes of the file, or a message."""
 
     def __init__(self, library, folder):
         self.calls = ctypes.CDLL(str(library))
@@ -117,7 +117,7 @@ def read(path):
 
 
 def forms(values):
-    """The values as they are, as float32, and as float32 of an odd extent."""
+    """Returns the values unchanged, as float32, and as float32 with an odd extent."""
     single = values.astype(numpy.float32)
     whole = [single] if values.dtype == numpy.float32 else [values, single]
     return whole + [numpy.ascontiguousarray(single[1:, :-3, 5:])]

@@ -26,7 +26,7 @@ RUNS = [["--rate", "8"], ["--rate", "8", "--encoding", "float"], ["--rate", "20"
 
 
 SCENE_RUNS = [["--rate", "20", "--encoding", "packed"], ["--psnr", "50", "--encoding", "packed"]]
-# By name; values and voxels as shares of the range and of the edge.
+# Scenes by name. Values are shares of the value range, lengths are shares of the volume's edge.
 SCENES = {
     "upper half": lambda value, voxel: f'mode = "dvr"\n[volume]\nrange = [{value(0)}, {value(1)}]\n'
                                        'opacity = [[0, 0], [0.5, 0], [1, 1]]\n',
@@ -38,7 +38,7 @@ SCENES = {
 
 
 def convert(weir, volume, output, options):
-    """The JSON that the command prints, and the seconds that it took."""
+    """Runs the command. Returns the JSON that it prints and the seconds that it took."""
     started = time.monotonic()
     done = subprocess.run([weir, "convert", volume, "-o", output, "--json", "--quiet", *options], check=True, text=True,
                           stdout=subprocess.PIPE)
@@ -46,13 +46,13 @@ def convert(weir, volume, output, options):
 
 
 class Tally:
-    """How far off what was expected was, by the options."""
+    """The errors of the forecasts, by options."""
 
     def __init__(self):
         self.off = {}  # options: {"dB", "%", "time %", "in range": [...]}
 
     def add(self, options, expected, made, seconds):
-        """One line's cells."""
+        """Returns the cells of one line of the table."""
         off = self.off.setdefault(" ".join(options), {"dB": [], "%": [], "time %": [], "in range": []})
         error, real = expected["visible"] or expected["error"], made.get("visible") or made["error"]
         by_size = expected["file"]["exact"]
@@ -70,7 +70,7 @@ class Tally:
                 size_text(size), f"{bytes_made / 1e6:.2f}", f"{expected['time']['total_s']:.2f}", f"{seconds:.2f}"]
 
     def print(self):
-        """True where PSNR and size are as near as they are to be."""
+        """Returns whether the forecasts of PSNR and size are as accurate as promised."""
         print("| options | PSNR off by at most | size off by at most | in the range | time off, median | time within 20 % |")
         print("|---|---|---|---|---|---|")
         for options, off in self.off.items():
@@ -97,7 +97,7 @@ def size_text(size):
 
 
 def scenes_of(weir, volume, edge, folder):
-    """SCENES as files, by name."""
+    """Writes SCENES to files. Yields each scene's name and path."""
     expected, _ = convert(weir, volume, str(folder / "out.nvdb"), ["--psnr", "50", "--dry-run"])
     low, high = expected["error"]["value_range"]
     for name, text in SCENES.items():

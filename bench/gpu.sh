@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# The GPU's figures on this machine: checks the CUDA part, then prints tables of loading, decoding, frames a second against
-# a dense texture, and whole pictures. Needs a CUDA device; the steps `largest` and `cold` 50 GB of disk and half of it
-# in memory, `giant` 75 GB.
+# Measures the GPU of this machine: checks the CUDA part, then prints tables of loading, decoding, frames per second
+# against a dense texture, and whole pictures. Needs a CUDA device. The steps `largest` and `cold` need 50 GB of disk
+# and 25 GB of memory, `giant` needs 75 GB of disk.
 #
 #   bench/gpu.sh [--bin DIR] [--edge N] [STEP...]
 #     --bin    a folder with weir, weir_tests_cuda and weir_bench_{load,decode,encode,save,frames,paging}; default: build/release, built
@@ -41,17 +41,17 @@ bin=$(realpath "$bin")
 work=$(mktemp -d "${TMPDIR:-/tmp}/weir-gpu.XXXXXX")
 trap 'rm -rf "$work"' EXIT
 
-# What failed is a file: some of this runs in subshells, whose variables end with them.
+# A failure is recorded as a file, because variables that subshells set are lost.
 fail() { : >"$work/.failed"; }
 quiet() { "$@" --progress never --log-level error; }
-# volume KIND EDGE ENCODING BUDGET...: KINDEDGE.raw where it is missing, and KINDEDGE.ENCODING.nvdb in the work folder.
+# volume KIND EDGE ENCODING BUDGET...: makes KINDEDGE.ENCODING.nvdb in the work folder, and KINDEDGE.raw if missing.
 volume() {
   local dims=$2,$2,$2 name=$work/$1$2
   [ -e "$name.raw" ] || quiet "$bin/weir" sample "$1" --dims "$dims" -o "$name.raw"
   quiet "$bin/weir" convert "$name.raw" --dims "$dims" --type float32 --memory 8GiB --encoding "$3" "${@:4}" \
     -o "$name.$3.nvdb"
 }
-# table KIND EDGE ARGUMENTS...: frames a second of KINDEDGE.float.nvdb, .fpn.nvdb and .packed.nvdb.
+# table KIND EDGE ARGUMENTS...: prints frames per second of KINDEDGE.float.nvdb, .fpn.nvdb and .packed.nvdb.
 table() {
   local name=$work/$1$2
   echo "== $1 $2"
@@ -59,22 +59,22 @@ table() {
     fail
   rm "$name".*
 }
-# An eighth of the dense size; packed, a twentieth.
+# The leaves have an eighth of the dense size, the packed file a twentieth.
 cloud() {
   volume cloud "$1" float --rate 8
   volume cloud "$1" fpn --rate 8
   volume cloud "$1" packed --rate 20
   table cloud "$@"
 }
-# Files that keep all leaves, since noise without some of them is another picture; quantised with 8 to 16 bits, and packed
-# with 16.
+# Files that keep all leaves, because noise without some leaves gives a different picture. The quantised file has 8 to
+# 16 bits per voxel, the packed file 16.
 noise() {
   volume noise "$1" float --lossless
   volume noise "$1" fpn --rate 1.9
   volume noise "$1" packed --rate 2
   table noise "$@"
 }
-# picture NAME ARGUMENTS: a line with the seconds of a picture of 1024 x 1024 pixels.
+# picture NAME ARGUMENTS: prints the seconds of a picture of 1024 x 1024 pixels.
 picture() {
   "$bin/weir" render "$work/cloud1024.float.nvdb" -o "$work/p.png" --overwrite --size 1024x1024 --json --progress never \
     --log-level error "${@:2}" >"$work/p.json" || fail
@@ -86,7 +86,7 @@ checks() {
   timeout 300 "$bin/weir_tests_cuda" --gtest_brief=1 --gtest_filter=-RefusedMemory.*:PagingLeaks.* || fail
   echo "memory refused at any moment; a thousand loads and evictions"
   timeout 500 "$bin/weir_tests_cuda" --gtest_brief=1 --gtest_filter=RefusedMemory.*:PagingLeaks.* || fail
-  # Threads of a load meet in other ways each time.
+  # Repeated, because the threads of a load interleave differently each time.
   timeout 300 "$bin/weir_tests_cuda" --gtest_brief=1 --gtest_repeat=30 --gtest_break_on_failure \
     --gtest_filter='GridLoader.Every*:GridLoader.Reuses*:GridLoader.Stops*' >"$work/log" || { tail "$work/log"; fail; }
   command -v compute-sanitizer >/dev/null || { echo "compute-sanitizer: not found, skipped"; return 0; }
@@ -108,7 +108,7 @@ load() {
   rm "$work"/noise1024.*
 }
 
-# packed KIND RATE...: KIND512.RATE.nvdb, packed.
+# packed KIND RATE...: makes the packed files KIND512.RATE.nvdb.
 packed() {
   for rate in "${@:2}"; do
     volume "$1" 512 packed --rate "$rate" --preview off
@@ -118,7 +118,7 @@ packed() {
   rm "$work/${1}512.raw"
 }
 
-# The survey and the encoding of 1024^3 values; then the whole command with either backend, to the same bytes.
+# Measures survey and encoding of 1024^3 values, then the command with both backends, which must make the same bytes.
 encode() {
   "$bin/weir_bench_encode" || fail
   for what in "cloud 20" "cloud 8" "turbulence 8"; do
@@ -137,7 +137,7 @@ encode() {
   done
 }
 
-# converted ARGUMENTS...: seconds of the survey, of all and of the selection of a conversion of the 1024^3 cloud.
+# converted ARGUMENTS...: prints the seconds of a conversion of the 1024^3 cloud: survey, total and selection.
 converted() {
   "$bin/weir" convert "$work/cloud1024.raw" --dims 1024,1024,1024 --type float32 --memory 32GiB --rate 20 --backend cpu --resume off \
     -o "$work/cloud1024.nvdb" --overwrite --trace "$work/t.json" --json --progress never --log-level error "$@" \
@@ -145,7 +145,7 @@ converted() {
   sed -nE 's/.*"survey_s": *([0-9.]+).*"total_s": *([0-9.]+).*/\1 \2/p' "$work/c.json" | tr '\n' ' '
   sed -nE 's/.*"name":"select".*"dur":([0-9.]+).*/\1/p' "$work/t.json" | awk '{ sum += $1 } END { print sum / 1e6 }'
 }
-# Whole conversions by 1, 2, 4 ... threads, the best of three, and one read of the file.
+# Measures whole conversions with 1, 2, 4 ... threads, the best of three, and one read of the file.
 threads() {
   local name=$work/cloud1024.raw
   quiet "$bin/weir" sample cloud --dims 1024,1024,1024 -o "$name"
@@ -193,7 +193,7 @@ paging() {
 
 pictures() {
   volume cloud 1024 float --rate 8
-  # A Radiance picture of 16 x 8 pixels: a sky, and in one of them a sun 2^10 times as bright.
+  # A Radiance picture of 16 x 8 pixels: a sky, with a sun 2^10 times as bright in one pixel.
   {
     printf '#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 8 +X 16\n'
     for ((i = 0; i < 128; ++i)); do
@@ -216,7 +216,7 @@ pictures() {
 
 # forget FILE: drops it from the page cache.
 forget() { sync "$1" && dd if="$1" iflag=nocache count=0 status=none; }
-# seconds COMMAND...: how long it takes.
+# seconds COMMAND...: prints how long COMMAND takes.
 seconds() {
   local start
   start=$(date +%s.%N)
@@ -248,7 +248,7 @@ cold() {
   done
   rm "$work"/*
 }
-# smaller FILE MODE ARGUMENTS...: the seconds of a small picture.
+# smaller FILE MODE ARGUMENTS...: prints the seconds of a small picture.
 smaller() {
   local mode
   read -ra mode <<<"$2"
@@ -257,7 +257,7 @@ smaller() {
   printf '%9.3f' "$(sed -nE 's/.*"render_s": *([0-9.]+).*/\1/p' "$work/p.json")"
 }
 
-# Larger than any device: 4096^3 of uint8, without loss.
+# A volume larger than any device's memory: 4096^3 voxels of uint8, lossless.
 giant() {
   local name=$work/cloud4096
   quiet "$bin/weir" sample cloud --dims 4096,4096,4096 --type uint8 -o "$name.raw"

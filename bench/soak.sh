@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Soak of the daemon: FILES small volumes, written, renamed and rewritten while it runs, and one in ten deleted when it is
-# converted. Prints resident memory, descriptors and threads of the daemon every 500 files, and compares the first with the
-# last.
+# Soak test of the daemon. Writes, renames and rewrites FILES small volumes while the daemon runs, and deletes one in
+# ten after its conversion. Prints resident memory, descriptors and threads of the daemon every 500 files, and
+# compares the first figures with the last.
 #
 #   bench/soak.sh [WEIR] [FILES]     default: build/release/weir, 5000 files
 #
-# Exit code 1 where an output is missing or wrong, memory grew by more than a quarter and 8 MiB, or descriptors or
+# Exits with 1 if an output is missing or wrong, memory grew by more than a quarter and 8 MiB, or descriptors or
 # threads grew at all.
 set -euo pipefail
 cd "$(dirname "$0")/.."

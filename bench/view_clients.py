@@ -27,7 +27,7 @@ TEXT, BINARY, CLOSE, PING, PONG = 1, 2, 8, 9, 10
 
 
 class Viewer:
-    """One WebSocket connection (RFC 6455), and the camera that it turns."""
+    """One WebSocket connection (RFC 6455) that turns its own camera."""
 
     def __init__(self, port, options, azimuth):
         self.options = options
@@ -53,7 +53,7 @@ class Viewer:
         self.socket.sendall(head + mask + bytes(b ^ mask[i % 4] for i, b in enumerate(payload)))
 
     def receive(self):
-        """The next message: its opcode and bytes."""
+        """Returns the next message: opcode and bytes."""
         whole = b""
         while True:
             first, second = self.file.read(2)
@@ -75,7 +75,7 @@ class Viewer:
                     return kind, whole
 
     def turn(self, moving):
-        """Asks for another view; returns when its first picture is here."""
+        """Asks for another view. Returns when the view's first picture has arrived."""
         self.view += 1
         self.azimuth += 3
         self.send({"type": "view", "id": self.view, "width": self.options.edge, "height": self.options.edge, "step": 0,
@@ -85,7 +85,7 @@ class Viewer:
             pass
 
     def picture(self):
-        """Takes one picture; returns its view."""
+        """Receives one picture. Returns the picture's view."""
         while True:
             kind, message = self.receive()
             if kind == BINARY:
@@ -100,7 +100,7 @@ class Viewer:
         self.refine(seconds)
 
     def refine(self, seconds):
-        """Takes the pictures that come in that time."""
+        """Receives the pictures that arrive within that time."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             if select.select([self.socket], [], [], 0.05)[0]:
@@ -118,7 +118,7 @@ def latency(viewer):
 
 
 def rates(viewers, seconds):
-    """Pictures a second of each, while all turn."""
+    """Returns the pictures per second of each client while all clients turn."""
     counts = [0] * len(viewers)
     end = time.monotonic() + seconds
 

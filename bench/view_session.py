@@ -34,7 +34,7 @@ MAPS = ("viridis", "gray", "inferno")
 
 
 class Person(Viewer):
-    """A viewer that does more than turn."""
+    """A viewer that also does other things than turning."""
 
     def __init__(self, port, options, chance):
         super().__init__(port, options, chance.randrange(360))
@@ -88,7 +88,7 @@ def misbehave(port, chance):
 
 
 def used(process):
-    """Resident bytes, those of them of no file, descriptors."""
+    """Returns resident bytes, the anonymous part of them, and the number of descriptors."""
     with open(f"/proc/{process}/status", encoding="ascii") as file:
         fields = dict(line.split(":", 1) for line in file)
     kib = lambda name: int(fields[name].split()[0])
@@ -149,7 +149,7 @@ def main():
             end = time.monotonic() + 60 * options.minutes
             while time.monotonic() < end:
                 people = [Person(port, options, chance) for _ in range(3)]
-                # At once: who waits for another one answers no ping, and is taken for gone.
+                # All visit at once: the server drops a viewer that answers no ping because it waits for another one.
                 with concurrent.futures.ThreadPoolExecutor(len(people)) as pool:
                     list(pool.map(Person.visit, people))
                 misbehave(port, chance)

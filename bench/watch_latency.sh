@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Latency of the daemon: from the close of a 64 MiB file to its verified output, against a plain `weir convert` of the
-# same file on the same machine in the same run.
+# Measures the daemon's latency from the close of a 64 MiB file to the verified output. Compares it with a plain
+# `weir convert` of the same file on the same machine in the same run.
 #
 #   bench/watch_latency.sh [WEIR] [ROUNDS]     default: build/release/weir, 5 rounds
 #
-# Prints each round and the medians; exit code 1 where the daemon takes more than 1.3 times the plain conversion plus
+# Prints each round and the medians. Exits with 1 if the daemon takes more than 1.3 times the plain conversion plus
 # 0.2 s.
 set -euo pipefail
 cd "$(dirname "$0")/.."

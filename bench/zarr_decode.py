@@ -40,7 +40,7 @@ def read_by_zarr(path):
 
 
 def convert(weir, path, threads):
-    """Seconds on the clock, and of all cores."""
+    """Returns the seconds of wall time and of CPU time of all cores."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     begun = time.perf_counter()
     subprocess.run([weir, "convert", path, "--rate", "32", "--threads", str(threads), "-q", "--overwrite", "-o",
@@ -51,7 +51,7 @@ def convert(weir, path, threads):
 
 
 def best(measure):
-    """The least of some times, each a tuple that begins with the seconds."""
+    """Returns the smallest of several times, each a tuple that begins with the seconds."""
     return min(measure() for _ in range(ROUNDS))
 
 

@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # Configures and builds: tools/build.sh [PRESET] [TARGET...]
-#   command (weir alone), package (all that is installed), release (the default: that, tests and benchmarks), these three in
-#   build/release; core (without what is optional), asan (with the fuzzers), tsan, tidy, each in build/PRESET.
-# The command is then build/release/weir. Uses ccache where it is installed. Says how far it is, and all of what the build
-# prints is in build/PRESET/build.log. WEIR_CUDA=ON|OFF, in the environment, compiles the kernels or not; by default where a
-# CUDA device answers.
+#   These presets build in build/release: command (only weir), package (everything that is installed), release (the
+#   default: package, tests and benchmarks). These build in build/PRESET: core (without the optional parts), asan (with
+#   the fuzzers), tsan, tidy.
+# The command is build/release/weir. Uses ccache if it is installed. Prints the progress and writes the build's whole
+# output to build/PRESET/build.log, or build/release/build.log. WEIR_CUDA=ON|OFF in the environment says whether to
+# compile the kernels. By default they are compiled if a CUDA device answers.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -35,7 +36,7 @@ if ! cmake --preset "$preset" "${options[@]}" >"$log" 2>&1; then
   cat "$log" >&2
   exit 1
 fi
-# A group of sources takes its compiler up to 1.5 GiB.
+# The compiler takes up to 1.5 GiB for a group of sources.
 jobs=$(awk -v most="$(nproc)" '/^MemAvailable:/ {jobs = int($2 / 1572864)} END {print (jobs < 1 ? 1 : jobs > most ? most : jobs)}' \
   /proc/meminfo)
 build=(cmake --build --preset "$preset" --parallel "$jobs")
@@ -49,7 +50,7 @@ if [[ -t 1 ]]; then
   exec "${build[@]}"
 fi
 
-# Elsewhere a line now and then.
+# Without a terminal, prints a line about every 15 seconds.
 show_steps() {
   local line next=$((SECONDS + 15))
   while IFS= read -r line; do

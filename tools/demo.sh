@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# From nothing to a picture: installs the packages that weir needs, builds the command, makes a cloud, converts it to an
-# eighth of its size, verifies the file and renders it. Everything it makes goes to demo/.
+# Goes from a fresh checkout to a picture: installs the packages that weir needs, builds the command, makes a cloud,
+# converts the cloud to an eighth of its size, verifies the file and renders it. The results go to demo/.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

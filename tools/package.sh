@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Makes the Debian package of the commit that is checked out, from a clean copy of it: build/package/weir_VERSION_ARCH.deb,
-# for the release of the distribution that this runs on. Installs what it needs for that.
-#   WEIR_MAINTAINER='NAME <ADDRESS>'   to be named in it
+# Makes the Debian package build/package/weir_VERSION_ARCH.deb from a clean copy of the checked-out commit. The
+# package is for the distribution release that this script runs on. Installs the packages that the build needs.
+#   WEIR_MAINTAINER='NAME <ADDRESS>'   the maintainer that the package names
 set -euo pipefail
-umask 022 # apt reads the package as a user of its own
+umask 022 # apt reads the package as another user
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 tools/setup.sh package

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Installs packages (Debian 12, Ubuntu 24.04); touches nothing else. Needs root, or sudo, where some are missing; a no-op
-# without apt or network where all are there.
+# Installs packages (Debian 12, Ubuntu 24.04) and changes nothing else. Needs root or sudo if packages are missing. If
+# none are missing, does nothing and needs neither apt nor a network. Each size includes the sizes above it:
 #   tools/setup.sh build   to build and run weir
-#   tools/setup.sh package besides, to make its Debian package with the Python module in it (tools/package.sh)
-#   tools/setup.sh test    besides, to run its tests (tools/test.sh); the default
-#   tools/setup.sh check   besides, for the sanitizers, fuzzers and linters (tools/test.sh --ci and --full)
+#   tools/setup.sh package to make weir's Debian package, with the Python module in it (tools/package.sh)
+#   tools/setup.sh test    to run the tests (tools/test.sh); the default
+#   tools/setup.sh check   to run sanitizers, fuzzers and linters (tools/test.sh --ci and --full)
 set -euo pipefail
 
 size=${1:-test}
@@ -23,12 +23,13 @@ test=(
 )
 check=(libbenchmark-dev clang-14 clang-format-14 clang-tidy-14 libclang-rt-14-dev shellcheck)
 if grep -qx 'ID=debian' /etc/os-release 2>/dev/null; then
-  # For the tests of the daemon's page, and to evaluate ZFP's own command. Ubuntu has no such packages (its chromium is a
-  # snap); what needs them is skipped there.
+  # For the tests of the daemon's page, and to evaluate ZFP's own command. Ubuntu has no such packages (its chromium
+  # is a snap), so the tests that need them are skipped there.
   test+=(chromium chromium-driver zfp)
   check+=(python3-yt) # for tools/test.sh --full
 fi
-# VTK and a display for its pictures, to test bindings/paraview. ParaView has a VTK of its own, which this one would remove.
+# VTK and a virtual display, to test bindings/paraview. Skipped if ParaView is installed: ParaView has its own VTK,
+# and installing python3-vtk9 would remove it.
 if [[ $(dpkg-query --show --showformat '${db:Status-Abbrev}' python3-paraview 2>/dev/null || true) != ii* ]]; then
   test+=(python3-vtk9 xvfb xauth)
 fi
@@ -67,7 +68,7 @@ trap 'rm -f "$log"' EXIT
 apt() { "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq -o Dpkg::Use-Pty=0 "$@" </dev/null >"$log" 2>&1; }
 
 echo "installing ${#missing[@]} packages: ${missing[*]}"
-# Old lists may still do, so a failed update only shows up where the install fails as well.
+# A failed update prints its log but does not end the script, because the old package lists may still suffice.
 apt update || sed 's/^/  /' "$log" >&2
 if ! apt install --yes --no-install-recommends "${missing[@]}"; then
   sed 's/^/  /' "$log" >&2

@@ -7,7 +7,7 @@ import sys
 import xml.etree.ElementTree as ElementTree
 
 LEAST_SECONDS = 3
-# What weir promises first is tried by `tools/test.sh` whatever it takes.
+# Tests of weir's main promises. `tools/test.sh` always runs them, however long they take.
 KEPT = {
     "Memory.ATwoGibibyteVolumeStaysUnderTheCeiling",
     "StockTools.ValidateEveryKindOfTree",
@@ -17,14 +17,14 @@ KEPT = {
 
 
 def grouped(build):
-    """Name and seconds of each test that ran beside others in one process."""
+    """Yields name and seconds of each test that ran with others in one process."""
     for path in glob.glob(f"{build}/test_results/*-*.xml"):
         for case in ElementTree.parse(path).getroot().iter("testcase"):
             yield f"{case.get('classname')}.{case.get('name')}", float(case.get("time", 0))
 
 
 def alone(build):
-    """Those of each test that ran in a process of its own."""
+    """Yields name and seconds of each test that ran in its own process."""
     with open(f"{build}/Testing/Temporary/LastTest.log", errors="replace") as log:
         text = log.read()
     names = re.findall(r"^\d+/\d+ Testing: (.*)$", text, re.M)

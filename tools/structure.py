@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
-"""Checks what holds of the C++ files as a whole: tools/structure.py [--figures] [ROOT]
+"""Checks rules for the structure of the C++ files: tools/structure.py [--figures] [ROOT]
 
-- Includes run down: a folder uses itself and those that BELOW lists for it, and every file that is included is there.
-- There are no circles: neither of files, a header and its source taken as one, nor of rooms, the folders within those,
-  tests/ aside.
+A room is a folder within a top folder. A unit is a header with its source.
+- Includes run down: a folder includes only files of itself and of the folders that BELOW lists for it. Every included
+  file exists.
+- There are no include cycles between units, nor between rooms, except in tests/.
 - The map in CONTRIBUTING.md names the rooms of its folders, and those of gpu/cuda/.
-- No two types in namespaces have one qualified name (the one-definition rule), but those in unnamed ones.
+- No two types in named namespaces have the same qualified name (the one-definition rule).
 - A header begins with a comment that says what it is for, and has #pragma once; C headers have guards.
-- No file has more than MOST_LINES lines, no folder more than MOST_FILES files, and of all concepts, a header and
-  its source taken as one, at most MOST_SMALL have fewer than SMALL lines.
-Prints one line for each fault, PATH:LINE: WHAT, and exits with 1 where there is one. --figures prints, besides, what was
-counted.
+- No file has more than MOST_LINES lines, no folder more than MOST_FILES files, and at most the share MOST_SMALL of
+  all units has fewer than SMALL lines.
+Prints one line for each fault, PATH:LINE: WHAT, and exits with 1 if there are any. --figures also prints the counts.
 """
 import collections
 import os
@@ -64,7 +64,7 @@ def faults(name, text, known):
 
 
 def unmapped(names, contributing):
-    """(line, what) for each room that the map, under "Where things are", does not name beside its folder."""
+    """Yields (line, message) for each room that the map under "Where things are" does not name beside its folder."""
     lines = contributing.splitlines()
     if "## Where things are" not in lines:
         return
@@ -87,7 +87,7 @@ def unmapped(names, contributing):
 
 
 def unit(name):
-    """A header and its source."""
+    """Returns the name of a file's unit: its path without the extension."""
     return re.sub(r"\.(h|cpp|cu|cuh)$", "", name)
 
 
@@ -101,7 +101,7 @@ def include_graph(texts):
 
 
 def room_graph(uses):
-    """The same of folders; a folder that is parted into rooms uses these, and they do not use it."""
+    """Returns the include graph of folders. A folder with rooms may use its rooms, but the rooms must not use it."""
     rooms = collections.defaultdict(set)
     for one, others in uses.items():
         for other in others:
@@ -112,7 +112,7 @@ def room_graph(uses):
 
 
 def circles(uses):
-    """The strongly connected parts of more than one node (Tarjan's algorithm)."""
+    """Returns the strongly connected components of more than one node (Tarjan's algorithm)."""
     order, low, stack, found = {}, {}, [], []
 
     def visit(node):
@@ -142,7 +142,7 @@ SCOPE = re.compile(r"(?:inline\s+)?namespace\s*([\w:]*)\s*\{"
 
 
 def types(text):
-    """(qualified name, line) of each type that is defined in a named namespace, none within a function or a class."""
+    """Yields (qualified name, line) of each type defined in a named namespace, but not in a function or a class."""
     text = CODE.sub(lambda found: re.sub(r"[^\n]", " ", found.group()), text)
     text = re.sub(r"^#.*$", lambda found: " " * len(found.group()), text, flags=re.MULTILINE)
     scopes = []
@@ -167,7 +167,7 @@ def defined_twice(texts):
         for qualified, line in types(text):
             places[qualified].append((name, line))
     for qualified, where in sorted(places.items()):
-        # Programs of their own, as examples and benchmarks are, share nothing with each other.
+        # Examples and benchmarks are separate programs, so equal names in them do not conflict.
         together = [(name, line) for name, line in where if not name.startswith(("examples/", "bench/"))]
         if len({name for name, _ in together}) > 1:
             yield *together[1], f"{qualified} is defined in {together[0][0]}:{together[0][1]}, too; rename one"

@@ -1,18 +1,18 @@
 #!/usr/bin/env bash
 # The checks, in three sizes:
-#   tools/test.sh          the tests of the release build, but those that take long (tests/slow_tests.txt).
-#   tools/test.sh --ci     what CI runs: besides, most of those that take long; the kernels and the benchmarks compiled;
-#                          the format of C++, the shell scripts and the structure of the sources checked; the tests of the
-#                          formats and the readers (but heavy ones) again with AddressSanitizer and
-#                          UndefinedBehaviorSanitizer and, where threads run, with ThreadSanitizer; a short run of each
-#                          fuzzer; a build without HDF5, OpenVDB and all else that is optional, and the tests of what its
-#                          command does differently. On a machine so slow that CI would not end in time the last of these
-#                          are skipped, and that is said.
-#   tools/test.sh --full   besides, all tests, all of them with the sanitizers too, the property tests over a thousand
+#   tools/test.sh          the tests of the release build, except the slow ones (tests/slow_tests.txt).
+#   tools/test.sh --ci     what CI runs. Adds most of the slow tests; compiles kernels and benchmarks; checks the
+#                          format of C++, the shell scripts and the structure of the sources; repeats the tests of the
+#                          formats and the readers (except heavy ones) with AddressSanitizer and
+#                          UndefinedBehaviorSanitizer, and tests that run threads with ThreadSanitizer; runs each fuzzer
+#                          for a short time; builds without HDF5, OpenVDB and all other optional parts, and tests what
+#                          the command of that build does differently. If the machine is so slow that CI would not end
+#                          in time, the last of these are skipped, with a message.
+#   tools/test.sh --full   adds all other tests, all tests with the sanitizers, the property tests over a thousand
 #                          volumes, Zarr against npm's zarrita, AMReX against yt, and clang-tidy.
-# Says what it does and how long that took last time. Logs are in build/checks/. The last line is `N passed, N failed,
-# N skipped`; failed and skipped checks are named above it. Exits with 1 where anything failed.
-#   WEIR_FUZZ_SECONDS   for each fuzzer, default 15
+# Prints each step and how long it took last time. Logs are in build/checks/. The last line is `N passed, N failed,
+# N skipped`; failed and skipped checks are named above it. Exits with 1 if anything failed.
+#   WEIR_FUZZ_SECONDS   seconds for each fuzzer, default 15
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -29,7 +29,7 @@ esac
 
 export PATH=/usr/lib/llvm-14/bin:$PATH
 logs=build/checks
-times=build/check_seconds # a line "SECONDS NAME" for each check that was done before
+times=build/check_seconds # a line "SECONDS NAME" for each check of earlier runs
 rm -rf "$logs"
 mkdir -p "$logs"
 touch "$times"
@@ -37,7 +37,7 @@ passed=0
 failed=()
 skipped=()
 
-# begin NAME: says what is done now, and how long it took last time. end: how long it took.
+# begin NAME: prints the step that begins and how long it took last time. end: prints and records how long it took.
 begin() {
   step=$1
   step_start=$SECONDS
@@ -52,7 +52,7 @@ end() {
   echo "$took $step" >>"$times"
 }
 
-# check NAME COMMAND...: one check, its output kept and shown only where it fails; returns whether it passed.
+# check NAME COMMAND...: runs a check, logs its output and shows the end of it on failure; returns whether it passed.
 check() {
   local name=$1 log=$logs/${1//[\/ ]/_}.log
   shift
@@ -70,7 +70,7 @@ skip() { skipped+=("$1: $2"); }
 
 has() { command -v "$1" >/dev/null; }
 
-# build PRESET [TARGET...]: one check that shows how far it is.
+# build PRESET [TARGET...]: builds, shows the progress and counts as one check.
 build() {
   begin "build of $1"
   local built=true
@@ -84,13 +84,13 @@ build() {
   fi
 }
 
-# run_tests PRESET [COMMAND...]: counts each test of that build; COMMAND runs ctest.
+# run_tests PRESET [COMMAND...]: runs the tests of that build and counts each. COMMAND, if given, starts ctest.
 run_tests() {
   local preset=$1 results=$PWD/build/$1/test_results log=$logs/$1.log
   shift
   begin "tests of $preset"
   rm -rf "$results"
-  # Two more than there are processors: many tests wait, for a service or a disk.
+  # Two more tests than processors run at a time, because many tests wait for a service or a disk.
   "$@" ctest --preset "$preset" --parallel "$(($(nproc) + 2))" --output-junit "$results/ctest.xml" 2>&1 | show_tests "$results" "$log" || true
   end
   local kind name
@@ -107,7 +107,7 @@ run_tests() {
   fi
 }
 
-# ctest's output to the log; how far it is, now and then.
+# show_tests RESULTS LOG: writes ctest's output to LOG and prints the progress about every 20 seconds.
 show_tests() {
   local line next=$((SECONDS + 20))
   : >"$2"
@@ -121,7 +121,8 @@ show_tests() {
   done
 }
 
-# too_late MINUTES NAME: whether CI has run for so long already that a check, then skipped, would not end in time.
+# too_late MINUTES NAME: returns whether CI has run for more than MINUTES, so that check NAME would not end in time.
+# Records NAME as skipped then.
 too_late() {
   [[ $size == ci ]] && ((SECONDS > 60 * $1)) || return 1
   skip "$2" "after $((SECONDS / 60)) minutes CI would not end in time; run tools/test.sh --full"
@@ -142,7 +143,7 @@ run_tsan() {
   fi
   [[ $size != full ]] || export WEIR_TESTS_LEFT_OUT=''
   if build tsan; then
-    # The sanitizer's shadow memory needs less address randomisation than some kernels use.
+    # Some kernels use more address randomisation than the sanitizer's shadow memory allows.
     if setarch "$(uname -m)" -R true 2>/dev/null; then
       run_tests tsan setarch "$(uname -m)" -R
     else
@@ -157,8 +158,9 @@ fuzz() {
   local corpus=build/asan/corpus/$name seeds=tests/fuzz/corpus/$name
   mkdir -p "$corpus"
   [[ -d $seeds ]] || seeds=
-  # New inputs are kept in the first folder; the seeds only start the search. Where thread-local storage of a loaded library
-  # lies, ASan only guesses, and LeakSanitizer crashes at a wrong guess: it need not know (CMakePresets.json has this, too).
+  # New inputs are kept in the first folder; the seeds only start the search. ASan only guesses where thread-local
+  # storage of a loaded library lies, and LeakSanitizer crashes if the guess is wrong. So the guess is turned off, as
+  # in CMakePresets.json.
   ASAN_OPTIONS=intercept_tls_get_addr=0 "$1" -max_total_time="${WEIR_FUZZ_SECONDS:-15}" -timeout=10 -rss_limit_mb=2048 \
     -artifact_prefix="$logs/" "$corpus" ${seeds:+"$seeds"} >"$logs/fuzz_$name.log" 2>&1
 }

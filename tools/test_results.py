@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Counts the tests of one ctest run: tools/test_results.py RESULTS FAILURES
 
-RESULTS holds ctest.xml, ctest's own report, and PROGRAM-GROUP.xml, GoogleTest's report of each group of tests that ran in
-one process. Prints a line "passed<TAB>COUNT" and lines "failed<TAB>NAME" and "skipped<TAB>NAME"; what failed tests said
-goes to the file FAILURES. A group that ended without a report, because it crashed or timed out, is one failed test.
+The folder RESULTS holds ctest.xml, ctest's own report, and PROGRAM-GROUP.xml, GoogleTest's report of each group of
+tests that ran in one process. Prints a line "passed<TAB>COUNT" and lines "failed<TAB>NAME" and "skipped<TAB>NAME".
+Writes the output of failed tests to the file FAILURES. A group that crashed or timed out has no report and counts as
+one failed test.
 """
 import pathlib
 import re
@@ -12,7 +13,7 @@ import xml.etree.ElementTree as ElementTree
 
 
 def outcomes_of_group(path):
-    """(name, "passed" | "failed" | "skipped", message) of each test in GoogleTest's report."""
+    """Yields (name, "passed" | "failed" | "skipped", message) of each test in GoogleTest's report."""
     for case in ElementTree.parse(path).getroot().iter("testcase"):
         name = f'{case.get("classname")}.{case.get("name")}'
         failures = [failure.get("message", "") for failure in case.findall("failure")]
@@ -32,7 +33,7 @@ def outcomes(results):
             found = list(outcomes_of_group(group))
             yield from found
             if status != "fail" or any(kind == "failed" for _, kind, _ in found):
-                continue  # else it failed after its last test
+                continue  # otherwise the group failed after its last test, and is reported below
         output = case.findtext("system-out") or ""
         kind = {"run": "passed", "fail": "failed"}.get(status, "skipped")
         yield name, kind, output[-8000:]

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds oneTBB with ThreadSanitizer into build/cache/tsan_tbb/, once, from the sources of the distribution's own package:
-# without it the sanitizer does not see what TBB orders, and takes order for races.
+# Builds oneTBB with ThreadSanitizer into build/cache/tsan_tbb/, once, from the sources of the distribution's package.
+# With an ordinary oneTBB the sanitizer does not see how TBB orders accesses, and reports races that do not exist.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -8,7 +8,7 @@ cache=$PWD/build/cache/tsan_tbb
 [[ ! -e $cache/lib/libtbb.so.12 ]] || exit 0
 mkdir -p "$cache"/{lists/partial,parts,source}
 
-# The package sources of this machine, as sources of source packages.
+# The machine's apt sources, rewritten to list source packages.
 for list in /etc/apt/sources.list /etc/apt/sources.list.d/*.list; do
   [[ ! -e $list ]] || sed -n 's/^deb /deb-src /p' "$list" >"$cache/parts/$(basename "$list" .list)_source.list"
 done

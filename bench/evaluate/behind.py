@@ -1,4 +1,4 @@
-"""Where others are ahead, by how much at most: figures of the other experiments, each the worst of its kind."""
+"""The section on where other compressors are ahead: the worst figure of each kind in the other experiments."""
 
 import math
 
@@ -9,8 +9,8 @@ from peer_tables import OTHERS, TITLES, by_volume
 
 OURS = ("auto", "packed")
 RIVALS = ("zfp", "auto")
-LARGE_BYTES = 1 << 24  # of dense; in less, starting is most of the time
-LARGE_EDGE = 512  # as LARGE_BYTES, where the file is read at the speed of memory
+LARGE_BYTES = 1 << 24  # dense bytes; below, most of the time is the start of the program
+LARGE_EDGE = 512  # like LARGE_BYTES, for files that are read at the speed of memory
 
 
 def behind_text(measured):
@@ -25,7 +25,8 @@ def _pairs(rivals):
 
 
 def _gap_line(ours, title, gaps):
-    """The worst of (dB behind, ours, theirs, where), if any is behind; those without a file of ours are told by title."""
+    """Returns the row of the worst of (dB behind, ours, theirs, where), if any is behind. `title` tells of cases
+    without a file of ours."""
     behind = [gap for gap in gaps if gap[0] > 0 and gap[1]["bytes"]]
     if not behind:
         return []
@@ -35,7 +36,7 @@ def _gap_line(ours, title, gaps):
 
 
 def _peers_pairs(measured):
-    """(ours, its result, peer's title, its result) for each volume."""
+    """Yields (ours, its result, peer's title, its result) for each volume."""
     for results in by_volume(measured).values():
         for ours in OURS:
             for peer in OTHERS:
@@ -68,7 +69,7 @@ def _peers_error(measured):
 
 
 def _peers_time(measured):
-    """Of volumes of which starting up is no part, by all threads."""
+    """Compares volumes so large that the program's start does not count, with all threads."""
     found = {}
     for ours, own, peer, theirs in _peers_pairs(measured):
         for key, way in (("compress_s", "compression"), ("decompress_s", "decompression")):
@@ -85,17 +86,17 @@ def _how_often(found, even):
 
 
 def _missing(gaps):
-    """Of how many of (dB behind, ours, theirs, where) there is no file of ours."""
+    """Returns for how many of `gaps`, (dB behind, ours, theirs, where), there is no file of ours."""
     return sum(1 for _, own, _, _ in gaps if not own["bytes"])
 
 
 def _without(missing):
-    """For a title: in how many cases ours has no file, as the smallest tree is larger."""
+    """Returns the part of a title that tells in how many cases ours has no file, as the smallest tree is larger."""
     return f" (in {missing} there is no file so small)" if missing else ""
 
 
 def _rates(measured):
-    """At equal bytes, where the other one has a file."""
+    """Compares errors at equal bytes if the other compressor has a file."""
     lines = []
     for ours, rival in _pairs(RIVALS):
         gaps = [(-gap_db(own, theirs), own, theirs, where)
@@ -109,7 +110,7 @@ def _rate_title(rival):
 
 
 def _equal_bytes(measured, ours, rival):
-    """(where, ours, theirs) of all that is measured at equal bytes."""
+    """Yields (where, ours, theirs) of everything that is measured at equal bytes."""
     for result in measured.results("errors"):
         by = {(row["method"], row["share"]): {**row, "bytes": row["bytes_got"]} for row in result["rows"]}
         for (method, share), own in by.items():
@@ -132,7 +133,7 @@ def _accuracy(measured):
 
 
 def _plateau(measured):
-    """The widest span of sizes over which more bytes bring nothing, short of lossless."""
+    """Finds the widest span of sizes, below lossless, over which more bytes do not reduce the error."""
     lines = []
     for ours in OURS:
         spans = []
@@ -149,7 +150,7 @@ def _plateau(measured):
 
 
 def _above_lossless(measured):
-    """Files of a size that have an error, though one without any takes fewer bytes."""
+    """Finds files with an error although a lossless file takes fewer bytes."""
     lines = []
     for ours in OURS:
         found = [(row["bytes_got"] / result["lossless_bytes"][ours],
@@ -163,7 +164,7 @@ def _above_lossless(measured):
 
 
 def _times_line(ours, title, found):
-    """The largest of (ratio, where) that is above 1."""
+    """Returns the largest of (ratio, where) whose ratio is above 1."""
     ratio, where = max(found, default=(0, ""))
     if ratio <= 1:
         return []
@@ -194,7 +195,7 @@ def _lossless(measured):
 
 
 def _derived(measured):
-    """Of equal bytes: each error of what people derive, as a multiple of the other's."""
+    """Compares errors of derived quantities at equal bytes, each as a multiple of the other's error."""
     kinds = {"median of the error": lambda row: row["quantile_0.5"],
              "99.9 % quantile of the error": lambda row: row["quantile_0.999"],
              "largest error": lambda row: row["max_abs"],
@@ -247,7 +248,7 @@ def _noise(measured):
 
 
 def _reading(measured):
-    """Of volumes from 512^3 on, where starting up is no part of it."""
+    """Compares volumes of 512^3 voxels or more, for which the program's start does not count."""
     found = {}
     for row in measured.results("speed"):
         if row["edge"] >= LARGE_EDGE:
@@ -263,8 +264,8 @@ def _reading(measured):
 
 
 def _time(measured):
-    """Of packed files against leaves of the same volume and size."""
-    seconds = {}  # (where, encoding): of a conversion
+    """Compares packed files with leaves of the same volume and size."""
+    seconds = {}  # (where, encoding) -> seconds of a conversion
     for row in measured.results("two_passes"):
         where = f"{row['kind']} {row['edge']}^3 at rate {row['rate']}, {row['threads']} threads"
         cache = {"disk": "warm", "memory": "in memory"}[row["place"]]
@@ -284,7 +285,7 @@ def _time(measured):
 
 
 def _commands(measured):
-    """What follows the large conversion, of the packed file against the leaves."""
+    """Compares what follows the large conversion: the packed file against the leaves."""
     lines = []
     for name in ("verify", "compare", "render"):
         by = {}

@@ -1,4 +1,4 @@
-"""Charts of error against size, a panel for each volume, drawn with png.py: the standard library has none."""
+"""Draws charts of error against size, one panel per volume, with png.py: the standard library cannot draw."""
 
 import math
 
@@ -11,7 +11,7 @@ _GLYPHS = {  # 3 x 5 pixels, a digit for each row, its bits from the left
     "Y": "55222", "Z": "71247", "0": "75557", "1": "26227", "2": "61247", "3": "71317", "4": "55711", "5": "74617",
     "6": "34757", "7": "71122", "8": "75757", "9": "75716", "%": "51245", ".": "00002", ",": "00024", "-": "00700",
     "_": "00007", "'": "22000", "/": "11244", ":": "02020", " ": "00000"}
-_SCALE = 2  # pixels of a glyph's pixel
+_SCALE = 2  # each pixel of a glyph is drawn as 2 x 2 pixels
 _ADVANCE = 4 * _SCALE
 _BLACK, _GREY = (0, 0, 0), (215, 215, 215)
 _WIDTH, _HEIGHT = 300, 220  # of a panel
@@ -21,7 +21,8 @@ COLORS = ((120, 120, 120), (200, 30, 30), (30, 90, 200), (20, 140, 60), (150, 70
 
 
 def error_chart(panels, series, columns=4, share_range=(0.1, 100), db_range=(20, 140)):
-    """A Picture. `panels`: title -> series' name -> [(share of dense in percent, dB)]; `series`: names, in colours."""
+    """Returns a Picture. `panels`: title -> series' name -> [(share of dense in percent, dB)]. `series`: names, in
+    order of the colours."""
     rows = -(-len(panels) // columns)
     picture = blank(columns * _WIDTH, rows * _HEIGHT + _LEGEND)
     x = _LEFT

@@ -1,4 +1,4 @@
-"""What the driver asks of an experiment, and what it gives to one."""
+"""The interface between the driver and the experiments."""
 
 import dataclasses
 import pathlib
@@ -10,7 +10,7 @@ import volumes
 
 @dataclasses.dataclass
 class Bench:
-    """What measurements need."""
+    """Everything that an experiment needs to measure."""
 
     directory: pathlib.Path
     weir: programs.Weir
@@ -19,23 +19,23 @@ class Bench:
     scale: float = 4
     quick: bool = False
     full: bool = False
-    peers: tuple = ()  # of peers.find_peers
-    kept: pathlib.Path = None  # file with figures of peers that are not found
+    peers: tuple = ()  # from peers.find_peers
+    kept: pathlib.Path = None  # the file with figures of peers that are not installed
 
     def volumes(self):
-        """Those of the tables of errors that can be had."""
+        """Returns the available volumes for the tables of errors."""
         wanted = volumes.small_set() if self.quick else volumes.report_set(self.scale)
         if self.full:
             wanted = wanted + volumes.full_set()
         return [volume for volume in wanted if self.files.available(volume)]
 
     def few_bytes_volumes(self):
-        """Those of the tables of few bytes, and of what is derived, that can be had."""
+        """Returns the available volumes for the tables of few bytes and of derived quantities."""
         wanted = volumes.few_bytes_set(64) if self.quick else [*volumes.real_set(), *volumes.few_bytes_set(256)]
         return [volume for volume in wanted if self.files.available(volume)]
 
     def scratch(self, name):
-        """A path for a file that is in the way afterwards, whose directory exists."""
+        """Returns the path of a temporary file, which the caller deletes. Its directory exists."""
         path = self.directory / "work" / name
         path.parent.mkdir(parents=True, exist_ok=True)
         return path
@@ -47,35 +47,35 @@ class Experiment:
     name = ""
 
     def measure(self, bench):
-        """Makes its measurements through bench.store, each of which a later run finds."""
+        """Makes the experiment's measurements through bench.store, where a later run finds each of them."""
         raise NotImplementedError
 
     def text(self, measured):
-        """Its tables as Markdown, of what store `measured` holds; some of it may be missing."""
+        """Returns the experiment's tables as Markdown, from the store `measured`. Measurements may be missing."""
         raise NotImplementedError
 
     def rows(self, measured):
-        """The same figures as flat dictionaries with the same keys, for the CSV."""
+        """Returns the same figures for the CSV, as flat dictionaries that all have the same keys."""
         raise NotImplementedError
 
     def broken_promises(self, measured):
-        """A line for each thing that must hold and does not."""
+        """Returns a line for each promise that does not hold."""
         del measured
         return []
 
     def pictures(self, measured, directory):
-        """Name among the report's pictures -> the file that measuring left in `directory`."""
+        """Returns a dictionary: name among the report's pictures -> file that the measurement left in `directory`."""
         del measured, directory
         return {}
 
 
 def describe(volume):
-    """How measurements name a volume."""
+    """Returns the volume's name in measurements."""
     return {"volume": volume.name, "extent": list(volume.extent), "type": volume.type, "note": volume.note}
 
 
 def method_options(method):
-    """Of `weir convert`, for what tables call `method`."""
+    """Returns the options of `weir convert` for the tables' `method`."""
     return {"auto": (), "paper": ("--preset", "paper")}.get(method, ("--encoding", method))
 
 

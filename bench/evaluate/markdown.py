@@ -1,4 +1,4 @@
-"""Numbers and tables as Markdown."""
+"""Formats numbers and tables as Markdown."""
 
 
 def table(header, rows):
@@ -8,7 +8,7 @@ def table(header, rows):
 
 
 def command(*lines):
-    """What gives the table above."""
+    """Formats the commands that produce the table above."""
     return "<!-- not run: the test of the evaluation runs it with --quick -->\n```sh\n" + "\n".join(lines) + "\n```"
 
 
@@ -22,7 +22,7 @@ def percent(part, of, digits=1):
 
 
 def decibel(error):
-    """PSNR of a certificate, or that there is no error."""
+    """Formats the PSNR of a certificate, or says that there is no error."""
     if error["lossless"]:
         return "lossless"
     return "-" if error["psnr_db"] is None else f"{error['psnr_db']:.1f}"

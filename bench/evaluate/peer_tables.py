@@ -17,7 +17,7 @@ TITLES = {"auto": "auto", "packed": "packed", "sperr": "SPERR", "sz3": "SZ3", "z
 
 
 def by_volume(measured):
-    """Volume's name -> method -> result, in the order of METHODS. Without seconds of another version's run than weir's."""
+    """Returns volume's name -> method -> result, in the order of METHODS, without seconds of other weir versions."""
     by, versions = {}, {}
     for record in sorted(measured.records("peers"), key=lambda r: METHODS.index(r["result"]["method"])):
         result = record["result"]
@@ -32,7 +32,7 @@ def methods_of(by):
 
 
 def targets_table(measured):
-    """The first table of the page: bytes for each error, and below them the speed at SPEED_DB."""
+    """Returns the first table of the page: bytes for each error, and below them the speed at SPEED_DB."""
     by = by_volume(measured)
     methods = methods_of(by)
     lines = []
@@ -60,7 +60,7 @@ def _bytes_text(point, result, least):
 
 
 def _median_speed(by, method, key):
-    """Of dense bytes, by most threads."""
+    """Returns the median speed in MB of dense values per second, with the most threads, as text."""
     speeds = [results[method]["dense_bytes"] / results[method]["speeds"][-1][key] / 1e6 for results in by.values()
               if method in results and results[method]["speeds"]]
     return f"{statistics.median(speeds):.0f}" if speeds else "-"
@@ -93,7 +93,7 @@ def speed_table(measured):
 
 
 def search_text(measured):
-    """How far from its target each peer's search ended at worst."""
+    """Returns how far from the target each peer's search ended at worst."""
     parts = []
     for method in ("sperr", "sz3", "zfp_rate"):
         above, below = [], []
@@ -119,7 +119,7 @@ def versions_text(measured):
 
 
 def chart(measured):
-    """PSNR against bytes of dense, of all points that are measured."""
+    """Returns the chart of PSNR against the share of dense bytes, with all measured points."""
     panels = {}
     for volume, results in by_volume(measured).items():
         panels[volume] = {TITLES[method]: [(100 * row["bytes"] / result["dense_bytes"], row["psnr_db"])

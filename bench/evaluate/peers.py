@@ -14,53 +14,53 @@ import subprocess
 from programs import ProgramFailed, run
 
 FLOAT_BITS = 32
-CHUNK_EDGE = 256  # of SPERR's default
-HEADER_BYTES = 64  # of a chunk, at most: what SPERR's files are longer than they are asked to be
-ZFP_WORD_BYTES = 8  # its streams end with a whole one
+CHUNK_EDGE = 256  # SPERR's default
+HEADER_BYTES = 64  # the largest header of a SPERR chunk; SPERR's files exceed the requested size by their headers
+ZFP_WORD_BYTES = 8  # a ZFP stream ends with a whole word
 
 
 def zfp_block_bits(extent, size):
-    """The most whole bits for each block of 4^3 with which zfp's stream takes at most `size` bytes."""
+    """Returns the most whole bits per block of 4^3 voxels with which zfp's stream takes at most `size` bytes."""
     return 8 * (size - ZFP_WORD_BYTES) // math.prod(-(-n // 4) for n in extent)
 
 
 @dataclasses.dataclass(frozen=True)
 class Peer:
-    """A mode of a compressor. Its parameter x grows with quality."""
+    """A mode of a compressor. The parameter x grows with the quality."""
 
     name: str
     title: str
     program: str
-    command: str  # path, empty where it is not found
+    command: str  # the program's path; empty if it is not found
     commit: str = ""
 
-    slope = 1.0  # dB for each unit of x, as a first guess
-    grain = 0.05  # of x
-    direct_bytes = False  # whether a size can be asked for
+    slope = 1.0  # first guess of the dB per unit of x
+    grain = 0.05  # the step of x
+    direct_bytes = False  # whether the compressor can be given a size
 
     def start(self, psnr_db, value_range):
-        """x to begin the search for that many dB with."""
+        """Returns the x at which the search for `psnr_db` begins."""
         del value_range
         return psnr_db
 
     def options(self, x, value_range):
-        """Of its command line, for the quality x."""
+        """Returns the options of the command line for the quality x."""
         raise NotImplementedError
 
     def options_for_size(self, volume, size):
-        """The same for at most `size` bytes, where direct_bytes."""
+        """Returns the options for at most `size` bytes. Only if direct_bytes is true."""
         raise NotImplementedError
 
     def encode(self, volume, source, stream, options, threads):
-        """The command that compresses float32 in file `source` to file `stream`."""
+        """Returns the command that compresses the float32 file `source` to the file `stream`."""
         raise NotImplementedError
 
     def decode(self, volume, stream, output, options, threads):
-        """The command that decompresses to float32 in file `output`."""
+        """Returns the command that decompresses to the float32 file `output`."""
         raise NotImplementedError
 
     def version(self):
-        """What the command says of itself, and the commit where it is known."""
+        """Returns the version that the command prints, and the commit if it is known."""
         raise NotImplementedError
 
     def _with_commit(self, text):
@@ -68,7 +68,7 @@ class Peer:
 
 
 class Sperr(Peer):
-    """x: dB that it is asked for. A chunk of its default, 256^3, is a thread's."""
+    """SPERR: x is the requested PSNR in dB. A thread works on one chunk, by default of 256^3 voxels."""
 
     direct_bytes = True
 
@@ -96,7 +96,7 @@ class Sperr(Peer):
 
 
 class Sz3(Peer):
-    """x: the bound below the range, in dB. Several threads are an option of its configuration file, and cost bytes."""
+    """SZ3: x is the error bound in dB below the range. Threads are set in its configuration file and cost bytes."""
 
     def start(self, psnr_db, value_range):
         return psnr_db - 6
@@ -126,7 +126,7 @@ class Sz3(Peer):
 
 
 class Zfp(Peer):
-    """Without its header, with which zfp 1.0 crashes at some rates where it has several threads."""
+    """ZFP without its header: with a header, zfp 1.0 crashes at some rates if it has several threads."""
 
     slope = 6.0
 
@@ -135,7 +135,7 @@ class Zfp(Peer):
         return [self.command, "-i", source, "-z", stream, "-f", "-3", *volume.extent, *options, *parallel]
 
     def decode(self, volume, stream, output, options, threads):
-        del threads  # zfp 1.0 decompresses by one, as report.md says
+        del threads  # zfp 1.0 decompresses with one thread, as report.md says
         return [self.command, "-z", stream, "-f", "-3", *volume.extent, *options, "-o", output]
 
     def version(self):
@@ -145,7 +145,7 @@ class Zfp(Peer):
 
 
 class ZfpRate(Zfp):
-    """x: bits a voxel; a block of 64 has a whole number of them."""
+    """ZFP's fixed-rate mode: x is the bits per voxel. A block of 64 voxels has a whole number of bits."""
 
     grain = 1 / 64
     direct_bytes = True
@@ -163,7 +163,7 @@ class ZfpRate(Zfp):
 
 
 class ZfpAccuracy(Zfp):
-    """x: the bound is the power of two 2^-x, which is all that it tells apart."""
+    """ZFP's fixed-accuracy mode: the bound is 2^-x. ZFP distinguishes only powers of two."""
 
     grain = 1
 
@@ -176,7 +176,7 @@ class ZfpAccuracy(Zfp):
 
 
 def find_peers(sperr=None, sz3=None, sperr_commit="", sz3_commit=""):
-    """All modes; those whose `command` is empty are not to be had."""
+    """Returns all modes. A mode with an empty `command` is not installed."""
     def found(given, name):
         return str(given) if given else shutil.which(name) or ""
 

@@ -25,6 +25,6 @@ def write_phantom(path, extent, weir):
 
 
 def _highest_bits(lanes, bits, count):
-    """Each lane by its highest `bits` bits, as a number."""
+    """Returns the highest `bits` bits of each lane as a number."""
     mask = int.from_bytes(((1 << bits) - 1).to_bytes(_LANE_BITS // 8, "little") * count, "little")
     return (lanes >> (_LANE_BITS - bits)) & mask

@@ -13,7 +13,7 @@ _RGB = 2
 class Picture:
     width: int
     height: int
-    rows: list  # of bytearray, 3 bytes a pixel, from the top
+    rows: list  # a bytearray for each row, from the top, 3 bytes per pixel
 
 
 def blank(width, height, color=(255, 255, 255)):
@@ -27,7 +27,7 @@ def paste(picture, part, x, y):
 
 
 def read_png(path):
-    """A picture of 8-bit RGB without interlacing, which is what weir writes. Raises ValueError for others."""
+    """Reads a PNG of 8-bit RGB without interlacing, as weir writes it. Raises ValueError for others."""
     with open(path, "rb") as file:
         content = file.read()
     if content[:8] != _SIGNATURE:

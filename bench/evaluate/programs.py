@@ -1,4 +1,4 @@
-"""The programs that are measured: run, timed, and their report read."""
+"""Runs and times the measured programs, and reads their reports."""
 
 import dataclasses
 import json
@@ -10,7 +10,7 @@ import tempfile
 import time
 
 
-BUDGET_EXIT_CODE = 4  # of weir: no file of that size or error can be made, as where the smallest tree is larger
+BUDGET_EXIT_CODE = 4  # weir's exit code if no file of the size or error is possible, e.g. the smallest tree is larger
 
 
 class ProgramFailed(Exception):
@@ -38,7 +38,7 @@ def run(command):
         process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=out, stderr=err)
         try:
             _, status, usage = os.wait4(process.pid, 0)
-        except BaseException:  # interrupted: the program is too, and clears up behind itself
+        except BaseException:  # an interrupt also reaches the program, which cleans up
             process.send_signal(signal.SIGINT)
             process.wait()
             raise
@@ -59,7 +59,7 @@ class Weir:
         self.path = str(path)
 
     def version(self):
-        """Its version and the commit it was built of, as it writes them beside every file it makes."""
+        """Returns weir's version and the commit that it was built from, as weir writes them into every sidecar."""
         with tempfile.TemporaryDirectory() as directory:
             volume, output = f"{directory}/volume_8x8x8_uint8.raw", f"{directory}/volume.nvdb"
             self.run("sample", "cloud", "-o", volume)
@@ -70,20 +70,20 @@ class Weir:
         return run([self.path, *arguments, "--progress", "never", "--log-level", "error"])
 
     def report(self, *arguments):
-        """What `weir ARGUMENTS --json` prints; NaN and infinity are no JSON and do not occur."""
+        """Returns what `weir ARGUMENTS --json` prints. NaN and infinity do not occur, because JSON has neither."""
         return json.loads(self.run(*arguments, "--json").out)
 
     def inspect(self, path):
-        """`weir inspect`, which has no progress to silence."""
+        """Returns the output of `weir inspect`, which has no progress to silence."""
         return json.loads(run([self.path, "inspect", path, "--json"]).out)
 
     def flip(self, reference, test, *arguments):
-        """`weir flip`, which has no progress to silence."""
+        """Returns the output of `weir flip`, which has no progress to silence."""
         return json.loads(run([self.path, "flip", reference, test, *arguments, "--json"]).out)
 
 
 def machine():
-    """In words: processor, threads, memory, system; no names."""
+    """Describes the machine: processor, threads, memory, system. Names no host or user."""
     model = platform.machine()
     memory_kib = 0
     try:

@@ -1,4 +1,4 @@
-"""The report: report.md with each experiment's tables in their places, and the same figures as CSV and JSON."""
+"""Writes the report: report.md with each experiment's tables filled in, and the same figures as CSV and JSON."""
 
 import csv
 import json
@@ -18,7 +18,7 @@ def write_report(experiments, measured, directory):
     directory = pathlib.Path(directory)
     text = (pathlib.Path(__file__).parent / "report.md").read_text()
     rows = {}
-    shutil.rmtree(directory / IMAGES, ignore_errors=True)  # what an experiment no longer gives
+    shutil.rmtree(directory / IMAGES, ignore_errors=True)  # removes pictures that no experiment makes any more
     (directory / IMAGES).mkdir(parents=True)
     for experiment in experiments:
         has_any = bool(measured.records(experiment.name))
@@ -38,13 +38,13 @@ def write_report(experiments, measured, directory):
 
 
 def broken_promises(experiments, measured):
-    """A line for each thing that must hold and does not."""
+    """Returns a line for each promise that does not hold."""
     return [f"{experiment.name}: {line}" for experiment in experiments if measured.records(experiment.name)
             for line in (*several_versions(experiment, measured), *experiment.broken_promises(measured))]
 
 
 def several_versions(experiment, measured):
-    """Figures of one table are those of one version of weir; what is kept of peers may be older."""
+    """Returns a line if the experiment's figures are of several versions of weir. Figures of peers may be older."""
     versions = sorted({record["weir"] for record in measured.records(experiment.name)
                        if record["result"].get("method") not in OTHERS})
     return [f"measured by {' and by '.join(versions)}; measure it with --again"] if len(versions) > 1 else []
@@ -67,7 +67,7 @@ def write_csv(path, rows):
 
 
 def origin_text(records):
-    """When, on what and by which version the measurements were made, a line for each combination."""
+    """Returns when, on which machine and by which version the measurements were made, a line for each combination."""
     groups = {}
     for record in records:
         groups.setdefault((record["machine"], record["weir"]), []).append(record)

@@ -6,7 +6,7 @@ MOST_STEPS = 12
 
 
 def smallest_that_reaches(measure, target, start, slope, grain, tolerance, most_steps=MOST_STEPS):
-    """The measurement of least quality that still has value >= target; None where no step has.
+    """Returns the measurement of the lowest quality that still has value >= target; None if no step has.
 
     `measure(x)` -> (value, measurement); value grows with x, at first guess by `slope` for each unit of x. x is a
     multiple of `grain`. Ends where value is at most `tolerance` above target, at neighbours, or after `most_steps`.

@@ -26,25 +26,26 @@ class Store:
         self._again = again
 
     def measure(self, experiment, name, function):
-        """The result of `experiment`'s measurement `name`: as stored, else what `function()` returns, stored."""
+        """Returns the result of `experiment`'s measurement `name`: the stored one, or that of function(), then
+        stored."""
         path = self._path(experiment, name)
         if path.exists() and not self._again:
             return json.loads(path.read_text())["result"]
         print(f"{experiment}: {name}", file=sys.stderr, flush=True)
-        load = os.getloadavg()[0]  # before: of what else the machine does
+        load = os.getloadavg()[0]  # taken before the measurement: the load of other programs
         record = {"experiment": experiment, "name": name, **self._origin, "load": load, "result": function()}
         record["date"] = datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M:%S")
         _write(path, record)
         return record["result"]
 
     def adopt(self, record):
-        """Takes a record of another store, unless there is one of its name."""
+        """Adds a record of another store, unless this store has a record of that name."""
         path = self._path(record["experiment"], record["name"])
         if not path.exists():
             _write(path, record)
 
     def records(self, experiment="*"):
-        """All records of an experiment, in the order in which they were named."""
+        """Returns all records of an experiment, in the order in which they were named."""
         paths = self._state.glob(f"{experiment}/*.json")
         return sorted((json.loads(path.read_text()) for path in paths), key=lambda r: (r["experiment"], r["name"]))
 

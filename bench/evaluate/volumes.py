@@ -16,8 +16,8 @@ import sys
 from phantom import write_phantom
 
 _TYPE_CODES = {"uint8": "B", "int16": "h", "uint16": "H", "float32": "f"}
-_LARGE_BYTES = 1 << 30  # deleted again after each use
-PHANTOM = "phantom"  # of phantom.py
+_LARGE_BYTES = 1 << 30  # larger files are deleted after each use
+PHANTOM = "phantom"  # the kind that phantom.py makes
 
 
 @dataclasses.dataclass(frozen=True)
@@ -25,8 +25,8 @@ class Volume:
     name: str
     extent: tuple  # voxels x, y, z
     type: str
-    kind: str = ""  # of weir sample, or PHANTOM; empty: a real one, unpacked
-    note: str = ""  # what it is, for the report
+    kind: str = ""  # a kind of `weir sample`, or PHANTOM; empty for a real volume, which is unpacked
+    note: str = ""  # the description in the report
 
     @property
     def file_name(self):
@@ -42,7 +42,7 @@ class Volume:
 
     @property
     def dense_bytes(self):
-        """As float32, which is what rates refer to."""
+        """The volume's bytes as float32, to which rates refer."""
         return 4 * self.voxels
 
 
@@ -108,7 +108,7 @@ def few_bytes_set(edge):
 
 
 def small_set():
-    """For the tests: a moment each."""
+    """Returns small volumes for the tests, each a moment's work."""
     return [wdas_like(16), magnetic_like(96)]
 
 
@@ -129,7 +129,7 @@ def full_set():
 
 
 class VolumeFiles:
-    """Makes the files of volumes where they are missing; they stay in DIR/volumes, large ones only while used."""
+    """Makes missing files of volumes. Files stay in DIR/volumes, large ones only while they are used."""
 
     def __init__(self, directory, data, weir):
         self.directory = pathlib.Path(directory) / "volumes"
@@ -137,7 +137,8 @@ class VolumeFiles:
         self._weir = weir
 
     def available(self, volume, copies=2.2):
-        """Whether it can be made, and files of `copies` times its size in all be there at once; says so where not."""
+        """Returns whether the volume can be made and, if it is large, the disk has room for `copies` times its size.
+        Prints the reason if not."""
         if not volume.kind and not self._archive(volume).exists():
             print(f"{volume.name}: skipped, {self._archive(volume)} is missing", file=sys.stderr)
             return False
@@ -151,7 +152,7 @@ class VolumeFiles:
 
     @contextlib.contextmanager
     def file(self, volume):
-        """The path of `volume` as its raw file."""
+        """Returns the path of the raw file of `volume`."""
         path = self.directory / volume.file_name
         self._make(path, lambda partial: self._fill(volume, partial))
         try:
@@ -162,7 +163,7 @@ class VolumeFiles:
 
     @contextlib.contextmanager
     def float32_file(self, volume):
-        """The same values as float32, for programs that read nothing else."""
+        """Returns the path of the same values as float32, for programs that read only float32."""
         with self.file(volume) as path:
             if volume.type == "float32":
                 yield path
@@ -173,7 +174,7 @@ class VolumeFiles:
             yield wide_path
 
     def data_file(self, name):
-        """Another file of the real ones; None, said, where it is missing."""
+        """Returns the path of another file of the real data. Prints a line and returns None if it is missing."""
         path = self._data / name
         if path.exists():
             return path

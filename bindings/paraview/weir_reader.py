@@ -1,23 +1,24 @@
-"""NanoVDB files as images: a reader for ParaView (Tools > Manage Plugins > Load New...), and a source for VTK.
+"""Reads NanoVDB files as images: a reader for ParaView (Tools > Manage Plugins > Load New...) and a source for VTK.
 
-    from weir_reader import WeirReader        # without ParaView, as any vtkAlgorithm
+    from weir_reader import WeirReader        # without ParaView, like any vtkAlgorithm
     reader = WeirReader()
     reader.SetFileName("density.nvdb")
     reader.SetLevel(2)
     reader.Update()
     image = reader.GetOutputDataObject(0)     # vtkImageData
 
-The point data has the grid's values, float32, under its name. A voxel is a point: that with index (i, j, k) lies at
-origin + spacing * (i, j, k), as the file says; the extent counts from 0. At level n a point is the mean of a cube of 2^n
-voxels along an edge (of those that are there, at the upper ends) and lies in the cube's middle, with 2^n the spacing. Only
-the extent that is asked for is decoded, and of finer voxels than the level's some rows at a time are held, so that a
-level of a file that is larger than memory opens. The field data has the certificate of the sidecar, where there is one:
-"weir_rmse" and "weir_max_abs", in the values' own unit, and "weir_psnr_db", if anything was lost.
+The point data has the grid's values, float32, under the grid's name. Each voxel is a point. The point with index (i,
+j, k) lies at origin + spacing * (i, j, k), with the file's origin and spacing; the extent counts from 0. At level n a
+point is the mean of a cube of 2^n voxels along an edge and lies in the cube's middle; the spacing is 2^n times the
+file's. At the upper ends of the axes the mean is over the voxels that exist. Only the requested extent is decoded. At
+a level, only some rows of finer voxels are held at a time, so that a level of a file larger than memory can be
+opened. If the file has a sidecar, the field data has the sidecar's certificate: "weir_rmse" and "weir_max_abs" in the
+values' own unit and, if anything was lost, "weir_psnr_db".
 
 Several files of one extent are the steps of a series, at the times 0, 1, 2, ...
 
-A file that was replaced or written to since it was read is opened again by the next update, which reader.Modified()
-makes due.
+If a file was replaced or written to since it was read, the next update opens it again. reader.Modified() makes an
+update due.
 """
 
 import os
@@ -34,7 +35,7 @@ try:
 except ImportError:
 
     class _NoProxies:
-        """In place of ParaView's decorators: what they decorate stays as it is."""
+        """Replaces ParaView's decorators. Leaves the decorated class or function as it is."""
 
         def __getattr__(self, name):
             return lambda *arguments, **keywords: lambda decorated: decorated
@@ -43,10 +44,10 @@ except ImportError:
 
 
 def _version(path):
-    """What tells the file at `path` from one that takes its place; None of a URL, and where there is no file."""
+    """Returns what distinguishes the file at `path` from a later file there. None for a URL or a missing file."""
     try:
         status = os.stat(path)
-    except (OSError, ValueError):  # the latter of a null byte
+    except (OSError, ValueError):  # ValueError is raised for a null byte
         return None
     return status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns
 
@@ -55,15 +56,15 @@ def _version(path):
     name="WeirReader", label="Weir Reader", extensions="nvdb", file_description="NanoVDB volumes"
 )
 class WeirReader(VTKPythonAlgorithmBase):
-    """One .nvdb file, or a series of them; of several grids in a file the first."""
+    """Reads one .nvdb file or a series of .nvdb files. Reads the first grid of each file."""
 
     def __init__(self):
         super().__init__(nInputPorts=0, nOutputPorts=1, outputType="vtkImageData")
         self._paths = []
         self._level = 0
         self._step = 0
-        self._grid = None  # of the step
-        self._version = None  # of its file
+        self._grid = None  # the Grid of self._step
+        self._version = None  # the _version() of that grid's file
 
     @smproperty.stringvector(
         name="FileNames",
@@ -76,8 +77,8 @@ class WeirReader(VTKPythonAlgorithmBase):
     @smdomain.filelist()
     @smhint.filechooser(extensions="nvdb", file_description="NanoVDB volumes")
     def AddFileName(self, path):
-        """The file of the next step; it is mapped when it is first needed."""
-        if path not in (None, "None"):  # the latter is ParaView's way to say that there is none
+        """Adds the file of the next step. The file is mapped when it is first needed."""
+        if path not in (None, "None"):  # ParaView passes the text "None" for no file
             self._paths.append(path)
             self._grid = None
             self.Modified()
@@ -88,7 +89,7 @@ class WeirReader(VTKPythonAlgorithmBase):
         self.Modified()
 
     def SetFileName(self, path):
-        """The one file to read."""
+        """Sets the only file to read."""
         if [path] != self._paths:
             self.ClearFileNames()
             self.AddFileName(path)
@@ -98,13 +99,14 @@ class WeirReader(VTKPythonAlgorithmBase):
 
     @smproperty.doublevector(name="TimestepValues", information_only="1", si_class="vtkSITimeStepsProperty")
     def GetTimestepValues(self):
-        """The times of a series; None of a single file."""
+        """Returns the times of a series, or None for a single file."""
         return [float(step) for step in range(len(self._paths))] if len(self._paths) > 1 else None
 
     @smproperty.intvector(name="Level", default_values=0)
     @smdomain.intrange(min=0, max=12)
     def SetLevel(self, level):
-        """0: every voxel. Each level more halves the voxels along each axis; the last one has a single point."""
+        """Sets the level of detail. 0 is every voxel. Each further level halves the voxels along each axis, down to a
+        single point."""
         if level < 0:
             raise ValueError(f"level is {level}, it must be 0 or more")
         if level != self._level:
@@ -121,7 +123,7 @@ class WeirReader(VTKPythonAlgorithmBase):
         return self._answer(self._read, outputs.GetInformationObject(0))
 
     def _answer(self, work, information):
-        """1, or 0 after saying in one line what is wrong."""
+        """Opens the file and does `work`. Returns 1, or 0 after showing an error message of one line."""
         try:
             if not self._paths:
                 raise weir.UsageError("no file is named; call SetFileName")
@@ -133,7 +135,7 @@ class WeirReader(VTKPythonAlgorithmBase):
         return 1
 
     def _open(self, information):
-        """Makes the grid that of the time that is asked for: the last step up to it."""
+        """Opens the grid of the requested time, which is the last step at or before that time."""
         time = information.Get(Pipeline.UPDATE_TIME_STEP()) if information.Has(Pipeline.UPDATE_TIME_STEP()) else 0
         step = min(max(int(time), 0), len(self._paths) - 1)
         version = _version(self._paths[step])
@@ -146,7 +148,7 @@ class WeirReader(VTKPythonAlgorithmBase):
         return min(self._level, self._grid.levels - 1)
 
     def _placement(self):
-        """Spacing of the level's points, and where the first one lies."""
+        """Returns the spacing of the level's points and the position of the point with index (0, 0, 0)."""
         edge = 2 ** self._level_there_is()
         grid = self._grid
         origin = [
@@ -171,14 +173,14 @@ class WeirReader(VTKPythonAlgorithmBase):
     def _certificate(self):
         try:
             return self._grid.certificate or {}
-        except weir.InputError as error:  # the values are there without it
+        except weir.InputError as error:  # the values can be read without the certificate
             vtkOutputWindow.GetInstance().DisplayWarningText(f"{error}\n")
             return {}
 
     def _read(self, information):
         whole = information.Get(Pipeline.WHOLE_EXTENT())[1::2]
         there = [points - 1 for points in self._grid.level_shape(self._level_there_is())[::-1]]
-        if there != list(whole):  # VTK settles the extent before the time
+        if there != list(whole):  # VTK fixes the extent before it asks for a time, so the steps must have one extent
             raise weir.InputError(f"{self._grid.path}: is not of the extent that the series began with; read it alone")
         x0, x1, y0, y1, z0, z1 = extent = information.Get(Pipeline.UPDATE_EXTENT())
         image = vtkImageData.GetData(information)

@@ -53,13 +53,13 @@ std::string remedy(int error, std::string_view key, const std::string& path) {
 
 bool may(const std::string& path, int mode) { return ::faccessat(AT_FDCWD, path.c_str(), mode, AT_EACCESS) == 0; }
 
-/// Whether something else is there.
+/// Returns whether `path` exists and is something else than a directory.
 bool is_no_directory(const std::string& path) {
   std::error_code ignored;
   return fs::exists(path, ignored) && !is_directory(path);
 }
 
-/// Whether the kernel alone makes files there; to root they look writable.
+/// Returns whether `directory` is on a file system in which only the kernel makes files. To root it looks writable.
 bool is_of_the_kernel(const std::string& directory) {
   constexpr std::array<std::uint32_t, 4> kTypes{PROC_SUPER_MAGIC, SYSFS_MAGIC, CGROUP_SUPER_MAGIC, CGROUP2_SUPER_MAGIC};
   struct statfs status {};
@@ -72,7 +72,7 @@ void require_writable_directory(const std::string& path, std::string_view key) {
   if (!may(path, W_OK | X_OK)) refuse_access(path, key, "written to", errno);
 }
 
-/// A file that is made where it is missing, in a directory that must be there.
+/// Requires a writable file. It may be missing if its directory exists and is writable.
 void require_file(const std::string& path, std::string_view key) {
   if (path.empty()) return;
   require_writable_directory(fs::path(path).parent_path().string(), key);
@@ -80,7 +80,7 @@ void require_file(const std::string& path, std::string_view key) {
   if (!may(path, R_OK | W_OK) && errno != ENOENT) refuse_access(path, key, "written to", errno);
 }
 
-/// As each conversion asks for it.
+/// Requires of the work directory what each conversion requires of it.
 void require_work_dir(const std::string& path) {
   if (path.empty()) return;
   require_writable_directory(path, "work_dir");
@@ -89,7 +89,7 @@ void require_work_dir(const std::string& path) {
   }
 }
 
-/// A directory that is made where it is missing, with those above it.
+/// Requires a writable directory. It and its parents may be missing if they can be made.
 void require_directory(const std::string& path, std::string_view key) {
   if (path.empty()) return;
   fs::path there = path;

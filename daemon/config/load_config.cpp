@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// One table of the file, in the daemon's own types.
+/// Reads one table of the configuration file into the daemon's own types.
 class ConfigReader {
  public:
   ConfigReader(const toml::table& table, std::string name, const std::string& path)
@@ -46,7 +46,7 @@ class ConfigReader {
     refuse(key, cat(key, " is \"", text, "\", it must be one of ", names));
   }
 
-  /// A whole number of bytes or a text such as "1GiB".
+  /// Reads a size: a whole number of bytes or a text such as "1GiB".
   void read_bytes(std::string_view key, std::uint64_t& value) {
     const toml::node* node = toml.find(key);
     if (node == nullptr) return;
@@ -62,7 +62,7 @@ class ConfigReader {
     value = *bytes;
   }
 
-  /// A number of seconds or a text such as "10min"; whether the key is there.
+  /// Reads a number of seconds or a text such as "10min". Returns whether the key is there.
   bool read_seconds(std::string_view key, double& value, Bounds bounds) {
     const toml::node* node = toml.find(key);
     if (node == nullptr) return false;
@@ -78,7 +78,7 @@ class ConfigReader {
     return true;
   }
 
-  /// Absolute and normal, without a slash at its end.
+  /// Reads a path and makes it absolute and normal, without a slash at its end. Returns whether the key is there.
   bool read_path(std::string_view key, std::string& value) {
     std::string text;
     if (!toml.read(key, text)) return false;
@@ -112,7 +112,8 @@ std::string read_whole(const std::string& path) {
   return text;
 }
 
-// At the key, and of the kind that the file's error has: one that may not be read makes no configuration wrong.
+// Returns the token of the file. Throws at the key token_file, but with the kind of the file's error: a file that this
+// user may not read does not make the configuration wrong.
 std::string token_of_file(ConfigReader& reader, const std::string& path) {
   try {
     return read_token_file(path);
@@ -176,9 +177,9 @@ void read_viewer_memory(ConfigReader& reader, ServiceConfig& service) {
   }
 }
 
-// systemd gives a service a directory to write to; that of its configuration, /etc/weir, is none.
+// systemd gives a service a writable directory, STATE_DIRECTORY. The configuration's directory, /etc/weir, is not one.
 std::string standard_state(const std::string& path) {
-  const char* const given = std::getenv("STATE_DIRECTORY");  // several have a colon between them
+  const char* const given = std::getenv("STATE_DIRECTORY");  // several directories have colons between them
   const std::string own = given == nullptr ? "" : split(given, ':').front();
   return ((own.starts_with('/') ? fs::path(own) : fs::path(path).parent_path()) / "weir.db").string();
 }

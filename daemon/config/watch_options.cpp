@@ -31,8 +31,8 @@ std::string value_text(const toml::node& node, const std::string& key, const cha
   return joined;
 }
 
-/// Throws what is wrong with the given options in terms of keys, at the last of them that the message names: the one
-/// that made it wrong.
+/// Throws Error(input) with `message` worded for keys. Its place is the last key in the file that the message names,
+/// because this key completed the contradiction.
 [[noreturn]] void fail_at_key(TomlReader& reader, const toml::table& table, const Message& message,
                               const std::map<std::string, const toml::node*>& nodes) {
   const toml::node* place = &table;
@@ -68,7 +68,7 @@ std::vector<std::string> read_watch_options(TomlReader& reader, const toml::tabl
         value = (std::filesystem::path(reader.path()).parent_path() / value).lexically_normal();
       if (value.empty()) continue;
       given[option] = value;
-      // One word, so that a negative number is never taken for an option.
+      // Option and value are one word, so that a negative number is never taken for an option.
       for (const std::string& part : row.several ? split(value, '\n') : std::vector{value}) {
         arguments.push_back(cat("--", option, "=", part));
       }

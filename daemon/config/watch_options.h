@@ -1,5 +1,4 @@
-// The options of `weir convert` as keys of a TOML table: "--max-error 2" is
-// `max_error = 2`.
+// Reads the options of `weir convert` from keys of a TOML table: "--max-error 2" is `max_error = 2`.
 #pragma once
 
 #include <string>
@@ -9,11 +8,12 @@
 
 namespace weir {
 
-/// The arguments of `weir convert` that the keys of `table` stand for: {"--rate=8", "--lossless"}. The keys are the
-/// input options, but for `stack`, and those of the method (compressor/options). A value is a string, a number, an
-/// array of them (joined by commas) or, of a flag, a boolean; a scene is looked for beside the configuration. Throws
-/// Error(input) at the key that `weir convert` would refuse, for the same reason, a scene's with its own path and place
-/// behind that of the key. `reader` is the one of `table`.
+/// Returns the arguments of `weir convert` that the keys of `table` stand for: {"--rate=8", "--lossless"}. The keys are
+/// the input options, except `stack`, and the method options (compressor/options). A value is a string, a number or an
+/// array of them (joined by commas). The value of a flag is a boolean. A relative scene path is relative to the
+/// configuration's directory. Throws Error(input) at the key that `weir convert` would refuse, with the same reason.
+/// For an error in a scene file, the message gives the key's place, then the scene's path and place. `reader` reads
+/// `table`.
 std::vector<std::string> read_watch_options(TomlReader& reader, const toml::table& table);
 
 }  // namespace weir

@@ -23,9 +23,9 @@ using std::chrono::milliseconds;
 
 /// How often full disks, missing mounts, a state file that cannot be written and short memory are looked at again.
 constexpr milliseconds kLook{1000};
-/// A process that was asked to end and does not.
+/// How long a process that was asked to end may take before it is killed.
 constexpr milliseconds kAbandon{5000};
-/// One that was killed and does not end.
+/// How long a killed process may take to end before it is left behind.
 constexpr milliseconds kLeave{1000};
 
 std::string seconds_text(double seconds) { return cat(static_cast<double>(static_cast<long>(seconds * 1000)) / 1000); }
@@ -81,7 +81,7 @@ void JobRunner::wake() {
     writes_.clear_fault();
   } catch (const CorruptDatabase&) {
     throw;
-  } catch (const Error& error) {  // the state file: nothing was changed
+  } catch (const Error& error) {  // an error of the state file; nothing was changed
     writes_.log_fault(error);
   }
   arm_timer();
@@ -108,18 +108,18 @@ bool JobRunner::start_next() {
   return true;
 }
 
-// The first that may start: a job may wait again while the processes of its last attempt still end, or for room.
+// Returns the first job that may start. A job may not while processes of its last attempt are ending or room is short.
 std::optional<Job> JobRunner::next_job(const WatchConfig& watch) const {
-  constexpr std::size_t kMostLooked = 100;  // for one that fits where the first does not
+  constexpr std::size_t kMostLooked = 100;  // to find a job that fits if the first does not
   const std::size_t looked = full_disks_.empty() ? running_.size() + 1 : kMostLooked;
   const std::vector<Job> candidates = store_.candidates(watch.label, watch.priority, looked);
-  // WatchedTree wakes the runner once it is back.
+  // WatchedTree wakes the runner when a missing directory is back.
   if (candidates.empty() || !is_directory(watch.directory)) return std::nullopt;
   if (!mounts_.mounted(watch.output_mount)) return std::nullopt;
   for (const Job& job : candidates) {
     if (running_.contains(job.id)) continue;
     if (full_disks_.empty()) return job;
-    // Where that is not known yet, in the next round.
+    // While the room is not known, the job does not start. The next round asks again.
     const auto has_room = [&](const std::string& directory) {
       const std::optional<DiskRoom> room = disks_.room(directory);
       return room && full_disks_.admits(room->device, job.id, job.identity.bytes);
@@ -132,13 +132,13 @@ std::optional<Job> JobRunner::next_job(const WatchConfig& watch) const {
 }
 
 void JobRunner::start(const WatchConfig& watch, const Job& job) {
-  // Retried after the watch was given another directory: its output has no place.
+  // A retried job, after its watch was given another directory: no place is defined for its output.
   if (!is_source_of(watch, job.source)) {
     log_.warn("not-watched", {{"job", job.id}, {"source", job.source}, {"directory", watch.directory}});
     store_.cancel(job.id);
     return;
   }
-  // KnownJobs may not have come to it yet.
+  // The watch no longer takes the source. KnownJobs removes such jobs, but may not have reached this one yet.
   if (!takes_source(watch, job.source)) {
     store_.remove(job.id);
     return;
@@ -227,15 +227,15 @@ void JobRunner::attempt_ended(const RunningJob& run, const TaskReport& report) {
   }
 }
 
-// A plane of a stack or a header's data may still be written to while the file that is watched stays as it is: then
-// nothing else keeps the next attempt from beginning at once.
+// A plane of a stack or the data file of a header may still be written to while the watched file itself is unchanged.
+// Then only this delay keeps the next attempt from beginning at once.
 std::int64_t JobRunner::settle_ms(const Job& job) const {
   const WatchConfig* watch = watch_of(job.watch);
   const double settle_s = watch == nullptr ? WatchConfig{}.settle_s : watch->settle_s;
   return std::max<std::int64_t>(1, std::llround(settle_s * 1000));
 }
 
-// The job waits; from here on it is discovered with what is there now, or forgotten where nothing is.
+// The job is waiting. If its source exists, it is discovered again with the new identity; if not, it is removed.
 void JobRunner::source_changed(const Job& job) {
   const WatchConfig* watch = watch_of(job.watch);
   if (const auto now =
@@ -350,7 +350,7 @@ void JobRunner::cancelled(const Job& job) {
   }
 }
 
-// Whoever cancels wants the disk back; `retry` converts from the beginning.
+// A user who cancels a job wants its disk space back. A retry then converts from the beginning.
 void JobRunner::discard_work(const Job& job, const std::string& directory) const {
   const CleaningReport report = discard_interrupted(directory, job.source);
   for (const std::string& path : report.removed) log_.info("cleaned", {{"job", job.id}, {"removed", path}});
@@ -378,8 +378,8 @@ void JobRunner::kill() {
   end_stop_after(kLeave);
 }
 
-// A process that waits for a device or a file server that hangs ends when that answers, whoever kills it. Its job is
-// running in the state file, and waits at the next start.
+// A killed process that waits for a hanging device or file server ends only when the device or server answers. Its job
+// stays running in the state file, and waits at the next start of the service.
 void JobRunner::end_stop_after(milliseconds patience) {
   grace_timer_.expires_after(patience);
   grace_timer_.async_wait([this](boost::system::error_code error) {

@@ -106,7 +106,7 @@ TEST_F(WatchedTreeTest, JobsOfFilesThatAreGone_AreForgotten) {
   EXPECT_TRUE(store_.job(done)) << "the record of its result";
 }
 
-// The same holds for cancelled jobs whose sources go away while no service runs: they stay for the time of `history`.
+// A cancelled job stays for the time of `history` if its source goes away, even while no service runs.
 TEST_F(WatchedTreeTest, ACancelledJob_IsKeptWhenItsSourceGoes) {
   std::filesystem::create_directory(watch().directory);
   const auto path = [&](const char* name) { return watch().directory + '/' + name; };

@@ -1,5 +1,6 @@
-// libFuzzer target for the headers of AMReX plotfiles. The first byte says which: any bytes parse to a header whose
-// parts fit each other, or throw Error(input) of one line; and the header is the same however the bytes come.
+// libFuzzer target for the headers of AMReX plotfiles. The first byte selects the kind of header and the size of the
+// pieces in which its text arrives. Any bytes must parse to a header with consistent parts, or throw Error(input) with
+// a message of one line.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>

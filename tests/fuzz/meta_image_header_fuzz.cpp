@@ -1,5 +1,5 @@
-// libFuzzer target for MetaImage headers: any bytes parse to a header whose parts fit each other, or throw
-// Error(input) of one line.
+// libFuzzer target for MetaImage headers. Any bytes must parse to a header with consistent parts, or throw Error(input)
+// with a message of one line.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>

@@ -1,5 +1,5 @@
-// libFuzzer target for NIfTI headers: any bytes parse to a header within the format's limits, or throw Error(input)
-// of one line.
+// libFuzzer target for NIfTI headers. Any bytes must parse to a header within the format's limits, or throw
+// Error(input) with a message of one line.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

@@ -1,5 +1,5 @@
-// libFuzzer target for NRRD headers: any bytes parse to a header whose parts fit each other, or throw Error(input)
-// of one line.
+// libFuzzer target for NRRD headers. Any bytes must parse to a header with consistent parts, or throw Error(input) with
+// a message of one line.
 #include <cstdint>
 #include <cstdlib>
 #include <string_view>

@@ -1,10 +1,8 @@
-// libFuzzer target for the reader: whatever the bytes, `open` returns a grid that
-// can be walked, decoded and sampled without a read outside them, in bounded
-// time, or throws Error(input).
+// libFuzzer target for the reader of NanoVDB files. For any bytes, `open` must throw Error(input) or return a grid that
+// can be walked, decoded and sampled in bounded time and without a read outside the bytes.
 //
-// The first byte of an input selects a base: a small valid file of each type,
-// which the rest of the input damages field by field (blind bytes hardly ever get
-// past the first offsets); or none, and the rest is the file.
+// The first byte of an input selects one of two modes. Either the rest of the input damages a small valid file of one
+// grid type field by field, because random bytes hardly ever get past the first offsets. Or the rest is the file.
 #include <array>
 #include <cstdint>
 #include <cstdlib>
@@ -32,7 +30,7 @@ const std::array<test::TinyGrid, kTypes.size()>& bases() {
   return built;
 }
 
-// Bytes of the input, zeros after its end.
+// Takes values from the bytes of the input. After their end it returns zeros.
 class Input {
  public:
   Input(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) {}
@@ -60,7 +58,7 @@ class Input {
   std::size_t size_;
 };
 
-// Start of the part of the file that selector `part` (0..9) names.
+// Returns the offset of the part of the file that the selector `part` (0..9) stands for.
 std::uint64_t part_offset(const test::TinyGrid& base, unsigned part) {
   const std::array<std::uint64_t, 10> parts{0,
                                             base.grid,
@@ -83,8 +81,8 @@ void set_grid_bytes(std::vector<std::byte>& file, const test::TinyGrid& base) {
   }
 }
 
-// A few edits: a value of 1, 2, 4 or 8 bytes at an offset from a part, small additions to what stands
-// there, or another length of the file, with or without telling the head.
+// Returns the base file after at most eight edits. An edit replaces a value of 1, 2, 4 or 8 bytes at an offset from a
+// part, adds a small number to it, or changes the file's length with or without the lengths that its head records.
 std::vector<std::byte> damaged(const test::TinyGrid& base, Input& input) {
   std::vector<std::byte> file = base.file;
   for (int edit = 0; edit < 8 && !input.empty(); ++edit) {
@@ -113,7 +111,8 @@ void require(bool holds) {
   if (!holds) std::abort();
 }
 
-// Leaves that open leaves unread may have an invalid width; then decoding throws and nothing else.
+// Runs `call`, which may throw Error(input) but no other error: open() does not read the leaves, so that a leaf may
+// have an invalid bit width.
 template <typename Call>
 void may_throw_input(const Call& call) {
   try {
@@ -124,7 +123,7 @@ void may_throw_input(const Call& call) {
 }
 
 void use(const NvdbGrid& grid, Input& input) {
-  if (grid.packed() != nullptr) return;  // packed_data_fuzz sees to those
+  if (grid.packed() != nullptr) return;  // packed_data_fuzz tests packed grids
   std::uint64_t blocks = 0;
   std::uint64_t leaves = 0;
   float sum = 0;

@@ -1,8 +1,8 @@
-// libFuzzer target for packed data: whatever its bytes, `open` returns a grid whose blocks can be looked up and decoded
-// without a read outside the file, in bounded time, or throws Error(input).
+// libFuzzer target for packed data. For any bytes, `open` must throw Error(input) or return a grid. Its blocks can be
+// looked up and decoded in bounded time and without a read outside the file.
 //
-// The bytes of an input damage a small valid file field by field: header, region table, directory and streams; or
-// put another stream in the place of a block's.
+// An input either damages a small valid file field by field (header, region table, directory and streams), or is the
+// stream of one block.
 #include <array>
 #include <cstdint>
 #include <cstdlib>
@@ -18,13 +18,13 @@
 namespace weir {
 namespace {
 
-constexpr std::size_t kMostBytes = 2500;  // of a stream
+constexpr std::size_t kMostBytes = 2500;  // the longest stream that an input may give to the block
 
 void require(bool holds) {
   if (!holds) std::abort();
 }
 
-// Bytes of the input, zeros after its end.
+// Takes values from the bytes of the input. After their end it returns zeros.
 class Input {
  public:
   explicit Input(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
@@ -49,7 +49,7 @@ class Input {
   std::span<const std::uint8_t> bytes_;
 };
 
-// Two regions, of which the second has no chunk; `stream` is that of the first block.
+// Returns a file with two regions. The first block has the stream `stream`; the second region has no chunk.
 test::PackedFile file_with(const test::PackedBytes& stream) {
   test::PackedGridOptions options;
   options.domain = {{0, 0, 0}, {130, 12, 20}};
@@ -60,7 +60,8 @@ test::PackedFile file_with(const test::PackedBytes& stream) {
   return test::PackedGridBuilder::build(options);
 }
 
-// A few edits: a value of 1, 2, 4 or 8 bytes at an offset from a part, or a small addition to what stands there.
+// Makes at most eight edits. An edit replaces a value of 1, 2, 4 or 8 bytes at an offset from a part, or adds a small
+// number to it.
 void damage(test::PackedFile& made, Input& input) {
   const std::array parts{
       made.packed,       made.packed + packed::kHeaderBytes,        made.table,

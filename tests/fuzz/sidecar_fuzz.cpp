@@ -1,5 +1,5 @@
-// libFuzzer target for the sidecar: any text parses or throws Error(input), and
-// what was parsed is written as text that reads back the same.
+// libFuzzer target for the sidecar. Any text must parse or throw Error(input). A parsed sidecar is written as text that
+// parses to the same sidecar.
 #include <cstdint>
 #include <cstdlib>
 #include <string>

@@ -1,6 +1,5 @@
-// A small valid NanoVDB file of every type, put together field by field: the
-// ground that the fuzzer damages. Two root entries (a child and a value tile), one
-// upper node with two lower nodes and two tiles, three leaves, macrocells.
+// Builds a small valid NanoVDB file of any grid type field by field. The fuzzer damages it. It has two root entries (a
+// child and a value tile), an upper node with two lower nodes and a tile, a lower tile, three leaves, and macrocells.
 #pragma once
 
 #include <cstddef>
@@ -13,15 +12,15 @@
 
 namespace weir::test {
 
-/// Offsets from the file's start, for those who want to damage something in particular.
+/// The file, and the offsets of its parts from the file's start.
 struct TinyGrid {
   std::vector<std::byte> file;
   std::uint64_t grid = 0;
   std::uint64_t upper = 0;
-  std::uint64_t lower = 0;  ///< the first of two
-  std::uint64_t leaf = 0;   ///< the first of three
-  std::uint64_t blind = 0;  ///< the record
-  std::uint64_t end = 0;    ///< of the data; padding follows
+  std::uint64_t lower = 0;  ///< the first of two lower nodes
+  std::uint64_t leaf = 0;   ///< the first of three leaves
+  std::uint64_t blind = 0;  ///< the record of the macrocells
+  std::uint64_t end = 0;    ///< end of the data; padding follows
 };
 
 class TinyGridBuilder {
@@ -50,7 +49,7 @@ class TinyGridBuilder {
     tiny_.file.resize(tiny_.end + kPadding);
   }
 
-  // FpN leaves of 1, 4 and 16 bits.
+  // Returns log2 of the bits per value of a leaf. FpN leaves have 1, 4 and 16 bits.
   unsigned bits_log2(std::size_t leaf) const {
     switch (type_) {
       case GridType::fp4:

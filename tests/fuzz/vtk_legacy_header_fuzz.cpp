@@ -1,5 +1,5 @@
-// libFuzzer target for legacy VTK files: any bytes parse to a header whose arrays lie in the file, or throw
-// Error(input) of one line.
+// libFuzzer target for legacy VTK files. Any bytes must parse to a header with arrays inside the file, or throw
+// Error(input) with a message of one line.
 #include <cstdint>
 #include <cstdlib>
 #include <sstream>

@@ -1,5 +1,5 @@
-// libFuzzer target for the markup of .vti files: any bytes parse to a header whose parts fit each other, or throw
-// Error(input) of one line; and the markup is the same however the bytes come.
+// libFuzzer target for the markup of .vti files. Any bytes must parse to a header with consistent parts, or throw
+// Error(input) with a message of one line. The markup must be the same if the bytes arrive whole or in two halves.
 #include <cstdint>
 #include <cstdlib>
 #include <string_view>

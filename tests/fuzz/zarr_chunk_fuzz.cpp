@@ -1,5 +1,6 @@
-// libFuzzer target for the chunks of Zarr arrays. The first byte says how: any bytes decode to as many as a chunk has,
-// or give the places of a shard, all inside it, or throw Error of one line.
+// libFuzzer target for the chunks and shards of Zarr arrays. The first byte selects a codec chain or a shard index. Any
+// bytes must decode to the size of a chunk, parse to places inside the shard, or throw Error with a message of one
+// line.
 #include <algorithm>
 #include <array>
 #include <cstdint>

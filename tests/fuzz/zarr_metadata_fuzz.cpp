@@ -1,5 +1,5 @@
-// libFuzzer target for the metadata of Zarr. The first byte says which: any bytes are read as an array whose parts fit
-// each other, or as images, or throw Error of one line.
+// libFuzzer target for the metadata of Zarr. The first byte selects an array of version 2 or 3, or multiscale images.
+// Any bytes must parse to metadata with consistent parts, or throw Error with a message of one line.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>

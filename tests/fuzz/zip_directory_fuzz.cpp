@@ -1,5 +1,5 @@
-// libFuzzer target for the directory of a zip file: any bytes give entries that lie inside, or throw Error of one line;
-// nothing outside is read.
+// libFuzzer target for the directory of a zip file. Any bytes must parse to entries inside the file, or throw Error
+// with a message of one line. The parser must not read outside the file.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>

@@ -1,3 +1,4 @@
+// Tests which datasets a pattern in --dataset matches, and the messages about the others.
 #include "ingest/dataset_pattern.h"
 
 #include <gtest/gtest.h>
@@ -37,7 +38,7 @@ TEST(DatasetPattern, OfNothingButThoseIsAnErrorThatSaysWhy) {
             "--dataset names it");
 }
 
-// Of a volume whose type weir does not read, of coordinates, and of planes over time.
+// `label` has a type that weir does not read, `lat` is a coordinate array, and `rain` has planes over time.
 TEST(DatasetPattern, VolumesWithAnObstacleAreNamed) {
   std::vector<DatasetInfo> all = datasets();
   all.resize(6);

@@ -1,3 +1,4 @@
+// Tests which arrays and grids count towards the number of values that a file holds.
 #include "ingest/file_values.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// Published volumes, read as they are named; expected figures from the data's
-// own manifest. Skipped where the data is not there.
+// Reads published volumes with what their file names say, and compares them with the figures in the data's manifest.
+// Volumes that are not on this machine are skipped.
 #include <algorithm>
 #include <cstdlib>
 #include <limits>
@@ -18,7 +18,7 @@ struct Volume {
   float min;
   float max;
   float mode;
-  double mode_percent;  ///< of all voxels, to two decimals
+  double mode_percent;  ///< share of the voxels with the value `mode`, to two decimals
 };
 
 class RealVolumes : public ::testing::TestWithParam<Volume> {};
@@ -33,7 +33,7 @@ TEST_P(RealVolumes, StreamInBlocksWithTheirPublishedFigures) {
 
   const auto source = open_source(path, {});
   ASSERT_EQ(source->info().extent, expected.extent);
-  // Small blocks, so that there are many.
+  // Blocks are small, so that the volume has several.
   const BlockPlan plan = plan_blocks(source->info().domain(), source->access(), 300'000);
   std::vector<Box> boxes;
   for (std::int64_t i = 0; i < plan.size(); ++i) boxes.push_back(plan.voxel_box(plan.leaf_box(i)));

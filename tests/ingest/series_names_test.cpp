@@ -1,3 +1,4 @@
+// Tests the names of output files: the words in braces, the default names, and the names that are refused.
 #include "ingest/series_names.h"
 
 #include "tests/ingest/support/scratch.h"
@@ -30,7 +31,8 @@ TEST(SeriesNames, StepsMayNotShareAName) {
       "slash at its end, or a name with {stem}");
 }
 
-// Slashes in a file's name become dots: neither a directory nor {dataset} tells these apart.
+// Slashes of a dataset's path become dots in a file's name. Neither a directory nor {dataset} thus tells `/a.b` and
+// `/a/b` apart.
 TEST(SeriesNames, DatasetsOfOnePart_AreToBeConvertedOneAtATime) {
   const std::vector<SeriesStep> steps{{"c.h5", "/a.b", {}, "c", ""}, {"c.h5", "/a/b", {}, "c", ""}};
   for (const auto& [output, name] :
@@ -107,7 +109,7 @@ TEST(SeriesNames, WordsInADirectorysName_AreRefused) {
   EXPECT_EQ(series_outputs(one, "run{1}/{stem}.nvdb"), Names{"run{1}/a.nvdb"}) << "other braces are its own";
 }
 
-// Of a file that cannot be listed, or holds one volume.
+// The name is the stem alone if the file holds one volume, or if it cannot be listed.
 TEST(SeriesNames, OfAFileThatHoldsOneVolume_AreItsStem) {
   const Scratch scratch;
   scratch.write("a.raw", std::vector<std::byte>(4 * 3 * 2));

@@ -1,3 +1,4 @@
+// Tests how inputs and options expand to the volumes of a call, with the names of their output files.
 #include "ingest/series.h"
 
 #include "ingest/series_names.h"
@@ -20,7 +21,7 @@ TEST(Series, AFileIsOneStep) {
   EXPECT_EQ(series_outputs(steps, ""), (std::vector<std::string>{"runs/a_4x3x2_uint8.nvdb"}));
   EXPECT_EQ(series_outputs(steps, "b.nvdb"), (std::vector<std::string>{"b.nvdb"}));
   EXPECT_EQ(series_outputs(steps, "out/{stem}_x.nvdb"), (std::vector<std::string>{"out/a_4x3x2_uint8_x.nvdb"}));
-  // What else stands in braces in a directory's name is a part of it.
+  // Braces in a directory's name are part of it, unless they enclose stem, dataset or step.
   EXPECT_EQ(series_outputs(steps, "run{1}/case {time} x/{stem}.nvdb"),
             (std::vector<std::string>{"run{1}/case {time} x/a_4x3x2_uint8.nvdb"}));
   EXPECT_EQ(series_outputs(steps, "out{run}/"), (std::vector<std::string>{"out{run}/a_4x3x2_uint8.nvdb"}));
@@ -101,7 +102,7 @@ TEST(Series, Datasets_OneALine_AreAStepEach) {
   EXPECT_EQ(series_outputs(steps, ""), (std::vector<std::string>{"a_rho.nvdb", "a_fields.T.nvdb"}));
 }
 
-// A header format's axes come in the file's order, x first, and --index takes the slowest first.
+// The header lists the axes from x on. --index takes the slowest axis first.
 TEST(Series, IndexChoices_AreOfTheAxesAfterTheThird) {
   const Scratch scratch;
   scratch.write("a.raw", std::vector<std::byte>(7 * 6 * 5 * 2 * 3));

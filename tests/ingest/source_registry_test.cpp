@@ -1,3 +1,4 @@
+// Tests that each format is recognised and opened, and that options of other formats are refused.
 #include "ingest/source_registry.h"
 
 #include <sys/stat.h>
@@ -21,7 +22,7 @@ namespace {
 
 constexpr Index3 kExtent{4, 3, 2};
 
-/// `header`, then the bytes 0 ... 23.
+/// Writes `header` and then the bytes 0 to 23. Returns the path of the file.
 std::string write_with_header(const Scratch& scratch, const std::string& name, const std::string& header) {
   std::vector<std::byte> bytes(header.size() + 24);
   std::memcpy(bytes.data(), header.data(), header.size());
@@ -35,7 +36,8 @@ test::OpenVdbGrid ramp_grid() {
   return grid;
 }
 
-/// A file of each format, all with the values 0 ... 23 in 4 x 3 x 2 voxels.
+/// Functions that write a sample of each format and return its path. All samples hold the values 0 to 23 in 4 x 3 x 2
+/// voxels.
 const std::map<std::string_view, std::function<std::string(const Scratch&)>> kSamples{
     {"nrrd",
      [](const Scratch& scratch) {
@@ -224,7 +226,7 @@ TEST(SourceRegistry, MissingFilesAreAnErrorOfTheInput) {
 
 TEST(SourceRegistry, ExtensionsInCapitals_AreThoseInSmallLetters) {
   const Scratch scratch;
-  // Nothing but the name says what these are.
+  // Only the name tells the format of these files.
   const auto format = [&](const std::string& name) {
     return format_of(scratch.write(name, std::vector<std::byte>(24))).name;
   };
@@ -245,7 +247,7 @@ TEST(SourceRegistry, ExtensionsInCapitals_AreThoseInSmallLetters) {
                                                                                        {"a.RAW", "raw"}}) {
     EXPECT_EQ(format(name), expected) << name;
   }
-  // A raw file whose values begin as a zip file does.
+  // The values of this raw file begin with the same bytes as a zip file.
   std::vector<std::byte> bytes(24);
   std::memcpy(bytes.data(), "PK\3\4", 4);
   EXPECT_EQ(open_source(scratch.write("Scan_4x3x2_uint8.RAW", bytes), {})->info().extent, kExtent);

@@ -1,6 +1,6 @@
-// SourceInfo::origin is the world position of the centre of the voxel with index 0,0,0, whatever a format calls a
-// place. Each test quotes what the format's specification says. HDF5, NetCDF, openPMD and VTKHDF: hdf5/meaning;
-// OpenVDB: vdb.
+// Checks that SourceInfo::origin is the world position of the centre of voxel 0,0,0, however a format states the place
+// of its volume. Each test quotes the format's specification. The tests in hdf5/meaning check HDF5, NetCDF, openPMD and
+// VTKHDF; those in vdb check OpenVDB.
 #include "ingest/source_registry.h"
 #include "tests/ingest/support/header_file.h"
 #include "tests/ingest/support/nifti_file.h"
@@ -13,7 +13,7 @@ using Place = std::array<double, 3>;
 
 std::vector<std::uint8_t> values(std::size_t count) { return std::vector<std::uint8_t>(count, 1); }
 
-/// World position of the centre of the first voxel in the file.
+/// Returns the world position of the centre of the first voxel in the file.
 Place first_centre(const std::string& path, const SourceOptions& options = {}) {
   const SourceInfo info = open_source(path, options)->info();
   const Index3 first = info.index_origin;
@@ -49,7 +49,7 @@ Place legacy_vtk_centre(const std::string& data) {
                                        data));
 }
 
-// weir's own: --origin is the place of voxel 0,0,0, and --roi moves no voxel.
+// weir's own rule: --origin is the position of the centre of voxel 0,0,0, and --roi moves no voxel.
 TEST(VoxelCentre, RawOriginOption_IsTheCentreOfVoxel0) {
   const Scratch scratch;
   const std::string path = scratch.write("a_4x3x2_uint8.raw", stored(values(24)));
@@ -63,23 +63,23 @@ TEST(VoxelCentre, RawOriginOption_IsTheCentreOfVoxel0) {
 }
 
 // teem.sourceforge.net/nrrd/format.html, "space origin": "the location of the center of the first (lowest memory
-// address) sample", whatever the centering.
+// address) sample". This holds for every centering.
 TEST(VoxelCentre, NrrdSpaceOrigin_IsTheCentreOfTheFirstSample) {
   const std::string place = "space dimension: 3\nspace directions: (2,0,0) (0,4,0) (0,0,8)\nspace origin: (10,20,30)\n";
   EXPECT_EQ(nrrd_centre(place), (Place{10, 20, 30}));
   EXPECT_EQ(nrrd_centre(place + "centers: cell cell cell\n"), (Place{10, 20, 30}));
 }
 
-// The same, "axis mins": with node centering the position of the first sample, with cell centering the lower border of
-// its cell, half a spacing before its centre.
+// teem.sourceforge.net/nrrd/format.html, "axis mins": with node centering, the position of the first sample. With cell
+// centering, it is the lower border of the first sample's cell, half a spacing before the centre.
 TEST(VoxelCentre, NrrdAxisMins_AreTheFirstSampleOfNodesAndTheBorderOfCells) {
   const std::string place = "spacings: 2 4 8\naxis mins: 10 20 30\n";
   EXPECT_EQ(nrrd_centre(place + "centers: node node node\n"), (Place{10, 20, 30}));
   EXPECT_EQ(nrrd_centre(place + "centers: cell cell cell\n"), (Place{11, 22, 34}));
 }
 
-// itk.org/Wiki/MetaIO/Documentation: Offset, Position and Origin are one field; ITK, whose format it is: "the origin is
-// the physical coordinates of the center of the first pixel".
+// itk.org/Wiki/MetaIO/Documentation: Offset, Position and Origin are names of the same field. ITK, which defines the
+// format: "the origin is the physical coordinates of the center of the first pixel".
 TEST(VoxelCentre, MetaImageOffset_IsTheCentreOfTheFirstElement) {
   for (const std::string field : {"Offset", "Position", "Origin"}) {
     EXPECT_EQ(meta_image_centre("ElementSpacing = 2 4 8\n" + field + " = 10 20 30\n"), (Place{10, 20, 30})) << field;
@@ -88,7 +88,7 @@ TEST(VoxelCentre, MetaImageOffset_IsTheCentreOfTheFirstElement) {
 }
 
 // nifti1.h, "3D IMAGE (VOLUME) ORIENTATION AND LOCATION IN SPACE": "the (x,y,z) coordinates refer to the CENTER of a
-// voxel", by all three methods.
+// voxel". This holds for all three methods.
 TEST(VoxelCentre, Nifti_PlacesCentresByEveryMethod) {
   NiftiBytes none(1);
   none.set_all<float>(76, {1, 2, 4, 8});
@@ -101,8 +101,8 @@ TEST(VoxelCentre, Nifti_PlacesCentresByEveryMethod) {
   EXPECT_EQ(nifti_centre(sform), (Place{10, 20, 30}));
 }
 
-// "VTK File Formats": ORIGIN is the position of the first point; CELL_DATA belongs to the cells between points, whose
-// centres lie half a spacing further.
+// "VTK File Formats": ORIGIN is the position of the first point. CELL_DATA belongs to the cells between points; the
+// centre of a cell lies half a spacing further.
 TEST(VoxelCentre, VtkLegacy_PointsLieAtTheOriginAndCellsHalfASpacingOn) {
   const std::string scalars = "SCALARS a unsigned_char\nLOOKUP_TABLE default\n";
   EXPECT_EQ(legacy_vtk_centre("POINT_DATA 18\n" + scalars + "1 2 3 4 5 6 7 8 9 1 2 3 4 5 6 7 8 9\n"),
@@ -110,8 +110,9 @@ TEST(VoxelCentre, VtkLegacy_PointsLieAtTheOriginAndCellsHalfASpacingOn) {
   EXPECT_EQ(legacy_vtk_centre("CELL_DATA 4\n" + scalars + "1 2 3 4\n"), (Place{11, 22, 34}));
 }
 
-// The same of ImageData; vtkImageData::TransformContinuousIndexToPhysicalPoint: the origin is that of index 0,0,0, at
-// which an extent need not begin, and the direction turns the half spacing of cells, too.
+// "VTK File Formats": ImageData places points and cells as legacy files do.
+// vtkImageData::TransformContinuousIndexToPhysicalPoint: Origin is the position of index 0,0,0, but an extent may begin
+// at any index. Direction also turns the half spacing of cells.
 TEST(VoxelCentre, VtkXml_PointsAndCellsOfExtentsThatBeginElsewhere) {
   const Scratch scratch;
   const auto centre = [&](const std::string& extent, const std::string& placement, const std::string& arrays) {
@@ -128,7 +129,8 @@ TEST(VoxelCentre, VtkXml_PointsAndCellsOfExtentsThatBeginElsewhere) {
   EXPECT_EQ(centre("0 1 0 1 0 1", "", cells), (Place{11, 22, 34}));
   EXPECT_EQ(centre("5 6 0 1 -1 0", "", points), (Place{20, 20, 22}));
   EXPECT_EQ(centre("5 6 0 1 -1 0", "", cells), (Place{21, 22, 26}));
-  // x runs along +y of the world, y along -x: the cell's centre is at (10 - 2, 20 + 1, 30 + 4), in the axes' order.
+  // x runs along +y of the world, y along -x. The cell's centre is at (10 - 2, 20 + 1, 30 + 4) in the world. The result
+  // has these numbers in the order of the volume's axes.
   EXPECT_EQ(centre("0 1 0 1 0 1", " Direction=\"0 -1 0 1 0 0 0 0 1\"", cells), (Place{21, 8, 34}));
 }
 

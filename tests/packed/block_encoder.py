@@ -1,4 +1,4 @@
-"""Streams of blocks, for tests of what decodes them: no thought of rate or error, every choice is the caller's."""
+"""Encodes streams of blocks for tests of the decoder. The caller makes every choice; rate and error play no role."""
 
 import numpy
 
@@ -8,12 +8,12 @@ from coefficients import BANDS, ESCAPE, LEVEL, LEVELS, LOWEST_STATE, MOST_MAGNIT
 
 
 def bits(value, count):
-    """The lowest first."""
+    """Returns the bits of a number, the lowest first."""
     return [value >> n & 1 for n in range(count)]
 
 
 def pack(values):
-    """Bytes of a list of bits."""
+    """Packs a list of bits into bytes."""
     return bytes(sum(bit << n for n, bit in enumerate(values[at:at + 8])) for at in range(0, len(values), 8))
 
 
@@ -42,7 +42,7 @@ class Coder:
 
 
 def steps_of(numbers, end, banded):
-    """(place, context, symbol, [(value, bits) that follow as they are]) of the first 16 `end` places."""
+    """Returns (place, context, symbol, [(value, bits) that follow uncoded]) for each of the first 16 `end` places."""
     capped = [min(abs(m), MOST_MAGNITUDE) for m in numbers] + [0]
     for place in range(1, 16 * end):
         at, a, b, c, weight, its_band = PLACES[place]
@@ -57,7 +57,8 @@ def steps_of(numbers, end, banded):
 
 
 def encode(first_bytes, end, end_bits, numbers, code, code_bits, tables, banded, gap=b""):
-    """A stream of coded values. `end`: in 16 places; `end_bits`: (value, bits) in the front; `gap`: bytes after it."""
+    """Returns a stream of coded values. `end`: in units of 16 places; `end_bits`: (value, bits) in the front; `gap`:
+    bytes after the front."""
     count = 0 if end == 0 else 1 if end <= 8 else 2
     signs = [int(numbers[at] < 0) for at, *_ in PLACES[1:16 * end] if numbers[at]]
     inside = min(len(signs), 16 * count)
@@ -84,13 +85,13 @@ def mean_stream(field, code, constants, means):
 
 
 def transform_stream(field, end, numbers, code, constants, means, gap=b""):
-    """Kind 1; `numbers`: 512 by index, of which those at places from 16 `end` on are zero."""
+    """Returns a stream of kind 1. `numbers`: 512 numbers by index; those at places from 16 `end` on are zero."""
     return encode(bytes([blocks.TRANSFORM | field << 2]), end, (end - 1, 5), numbers, code,
                   mean_bits(field, constants, means), constants.tables, True, gap)
 
 
 def lattice_stream(predictor, codes, constants, lattice=0, own=(0, 0), end=None):
-    """Kind 2; `codes`: 512 by index, u32 or, where ordered, i32. `end`: none for the shortest."""
+    """Returns a stream of kind 2. `codes`: 512 by index, u32, or i32 if ordered. `end`: None for the shortest."""
     code = numpy.array(codes, numpy.int64).reshape(1, 8, 8, 8)
     residuals = [0] * 512
     for n, at in enumerate(numpy.ndindex(8, 8, 8)):
@@ -107,5 +108,5 @@ def lattice_stream(predictor, codes, constants, lattice=0, own=(0, 0), end=None)
 
 
 def raw_stream(values):
-    """Kind 3 of 512 values, or of one for all."""
+    """Returns a stream of kind 3, of 512 values or of one value for all voxels."""
     return bytes([blocks.RAW | (len(values) == 1) << 2]) + numpy.array(values, "<f4").tobytes()

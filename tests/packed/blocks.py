@@ -15,7 +15,7 @@ from coefficients import BitReader, Invalid
 KINDS = ("mean", "transform", "lattice", "raw")
 MEAN, TRANSFORM, LATTICE, RAW = range(4)
 MOST_STEP = 250
-MOST_CODES = 16777214  # of a mean, two below 2^24
+MOST_CODES = 16777214  # the largest number of a mean's codes, 2^24 - 2
 OWN_LATTICE, ORDERED = 1, 2
 LORENZO, AVERAGE, MINIMUM, MEDIAN = range(4)
 F32 = numpy.float32
@@ -26,7 +26,7 @@ COSINE = [F32(math.cos(n * math.pi / 16) / 2) for n in range(8)]
 
 @dataclasses.dataclass
 class Constants:
-    """What the header of the packed data says for all streams."""
+    """The fields of the packed data's header that apply to all streams."""
 
     minimum: numpy.float32
     maximum: numpy.float32
@@ -41,7 +41,7 @@ class Constants:
 
 @dataclasses.dataclass
 class Stream:
-    """A block's stream after its entropy decoding. `numbers`: 512 integers by index; of a raw block its values."""
+    """A block's stream after entropy decoding. `numbers`: 512 integers by index, or the values of a raw block."""
 
     kind: int
     numbers: object = None
@@ -63,7 +63,7 @@ def step_size(number):
 
 
 def mean_lattice(step, means):
-    """(distance of two codes, bits of a code) for blocks of a region whose means are from means[0] to means[1]."""
+    """Returns (distance of two codes, bits of a code) for a region with block means from means[0] to means[1]."""
     quantum = step * BLOCK_STEP
     with numpy.errstate(over="ignore"):
         codes = (means[1] - means[0]) / quantum
@@ -73,7 +73,7 @@ def mean_lattice(step, means):
 
 
 def parse(stream, constants, means):
-    """A Stream. `means`: the region's lowest and highest mean, float32."""
+    """Parses a block's stream into a Stream. `means`: the region's lowest and highest mean, float32."""
     if not stream:
         raise Invalid("an empty stream")
     kind = stream[0] & 3
@@ -123,7 +123,7 @@ def parse_lattice(stream, constants):
 
 
 def values_of(streams, constants):
-    """float32 [block, x, y, z] of parsed streams."""
+    """Returns the values of parsed streams as float32 [block, x, y, z]."""
     values = numpy.empty((len(streams), 8, 8, 8), numpy.float32)
     with numpy.errstate(all="ignore"):
         for kind, decode in ((MEAN, means_only), (TRANSFORM, transformed), (LATTICE, on_lattices), (RAW, raw)):
@@ -198,12 +198,12 @@ def on_lattice(streams, predictor, ordered, constants):
 
 
 def wrapped(numbers, ordered):
-    """Modulo 2^32, as i32 or u32 in 64 bits."""
+    """Reduces numbers modulo 2^32 to the range of i32 or u32, stored in 64 bits."""
     return numbers.astype(numpy.int32 if ordered else numpy.uint32).astype(numpy.int64)
 
 
 def undo_prediction(residuals, predictor, ordered):
-    """Codes of residuals [block, x, y, z], (0, 0, 0) being the base; int64."""
+    """Returns the codes, int64, from residuals [block, x, y, z]. The residual at (0, 0, 0) is the base code."""
     codes = numpy.zeros_like(residuals)
     codes[:, 0, 0, 0] = wrapped(residuals[:, 0, 0, 0], ordered)
     for x, y, z in numpy.ndindex(8, 8, 8):
@@ -214,7 +214,7 @@ def undo_prediction(residuals, predictor, ordered):
 
 
 def predict(u, x, y, z, predictor):
-    """Of the code at (x, y, z), from those before it."""
+    """Predicts the code at (x, y, z) from the codes before it."""
     near = [u[:, x - 1, y, z]] * (x > 0) + [u[:, x, y - 1, z]] * (y > 0) + [u[:, x, y, z - 1]] * (z > 0)
     if predictor == AVERAGE:
         return sum(near) // len(near)

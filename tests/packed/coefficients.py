@@ -4,17 +4,17 @@ import numpy
 
 SYMBOLS = 16
 ESCAPE = SYMBOLS - 1
-TOTAL = 4096  # of a table's frequencies
+TOTAL = 4096  # the sum of a table's frequencies
 LEVELS = 24
 BANDS = 4
 TABLES = LEVELS * (BANDS + 1)
-MOST_MAGNITUDE = 1 << 20  # larger ones count as this in a sum of neighbours
+MOST_MAGNITUDE = 1 << 20  # in a sum of neighbours, larger magnitudes count as this
 NONE = 512  # the index of a neighbour that does not exist
-LOWEST_STATE = 1 << 16  # of a state, before and after each step
+LOWEST_STATE = 1 << 16  # the lowest value of a state before and after each step
 
 
 class Invalid(ValueError):
-    """A stream, or packed data, that is not as specified."""
+    """The stream or the packed data does not follow the specification."""
 
 
 def index(i, j, k):
@@ -22,14 +22,14 @@ def index(i, j, k):
 
 
 def scan_order():
-    """(i, j, k) by place."""
+    """Returns (i, j, k) for each place."""
     every = [(i, j, k) for i in range(8) for j in range(8) for k in range(8)]
     shell = [0, 0, 1, 1, 2, 2, 2, 2]
     return sorted(every, key=lambda p: (shell[max(p)], sum(p), index(*p)))
 
 
 def neighbours(place, order):
-    """Indices of the coefficients that the level of the one at `place` depends on."""
+    """Returns the indices of the coefficients on which the level at `place` depends."""
     i, j, k = order[place]
     if i + j + k == 1:
         return [index(*order[p]) for p in range(1, place)]
@@ -41,17 +41,17 @@ def band(i, j, k):
 
 
 def level(t):
-    """floor(3 log2(1 + 4 t / 6)), at most 23, in integers: the largest l with 2^l <= ((3 + 2 t) / 3)^3."""
+    """Returns floor(3 log2(1 + 4 t / 6)), at most 23, in integers: the largest l with 2^l <= ((3 + 2 t) / 3)^3."""
     return min(LEVELS - 1, ((3 + 2 * t) ** 3 // 27).bit_length() - 1)
 
 
 def extra_bits(t):
-    """The lowest bits of a magnitude that are coded as they are."""
+    """Returns how many of a magnitude's lowest bits are stored uncoded."""
     return 0 if t <= 36 else min(16, (t // 18).bit_length() - 1)
 
 
 def make_places():
-    """Of each place: its index, three neighbours' indices (NONE: missing), 6 / their number, its band."""
+    """Returns for each place: its index, three neighbours' indices (NONE if missing), 6 / their number, its band."""
     order, places = scan_order(), []
     for place, at in enumerate(order):
         near = neighbours(place, order) if place else []
@@ -61,11 +61,11 @@ def make_places():
 
 
 PLACES = make_places()
-LEVEL = [level(t) for t in range(321)]  # larger t: the last
+LEVEL = [level(t) for t in range(321)]  # a larger t has the last level
 
 
 class Tables:
-    """Cumulative frequencies [TABLES, SYMBOLS] and, of each of the 4096 slots of each table, the symbol."""
+    """Cumulative frequencies [TABLES, SYMBOLS], and the symbol of each of the 4096 slots of each table."""
 
     def __init__(self, cumulative):
         table = numpy.asarray(cumulative, numpy.int64).reshape(TABLES, SYMBOLS)
@@ -79,7 +79,7 @@ class Tables:
 
 
 class BitReader:
-    """Bits of `stream` from byte `at` on, the lowest of each byte first."""
+    """Reads bits of `stream` from byte `at` on, the lowest bit of each byte first."""
 
     def __init__(self, stream, at):
         self.bits = int.from_bytes(stream[at:], "little")
@@ -97,12 +97,12 @@ class BitReader:
         return value
 
     def end(self):
-        """The first byte that none of the bits taken is in."""
+        """Returns the position of the first byte after the bits that were read."""
         return self.at + (self.read + 7) // 8
 
 
 class States:
-    """One or two states at the end of a stream, and the words before them. All steps of all states share the words."""
+    """One or two decoder states at the end of a stream, and the words before them, which all states share."""
 
     def __init__(self, stream, short):
         self.stream = stream
@@ -142,7 +142,7 @@ class States:
 
 
 def decode_magnitudes(states, tables, end, banded):
-    """Magnitudes by index, of the first 16 `end` places; `banded`: of a transform, not of residuals."""
+    """Returns the magnitudes of the first 16 `end` places by index. `banded`: of a transform, not of residuals."""
     magnitudes, capped = [0] * 512, [0] * 513
     count = len(states.x)
     symbol, bypass = states.symbol, states.bypass
@@ -167,8 +167,8 @@ def decode_magnitudes(states, tables, end, banded):
 
 
 def decode_coefficients(stream, front, end, number_bits, tables, banded):
-    """The signed numbers by index (512 i32) and the number of `number_bits` bits that lies between them. `front`:
-    a BitReader of what follows `end`."""
+    """Returns the signed numbers by index (512 i32) and the number of `number_bits` bits that is stored between them.
+    `front`: a BitReader of the stream after `end`."""
     count = 0 if end == 0 else 1 if end <= 8 else 2
     states = States(stream, [front.take(1) for _ in range(count)])
     numbers = decode_magnitudes(states, tables, end, banded)

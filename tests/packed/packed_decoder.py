@@ -20,12 +20,12 @@ from coefficients import TABLES, SYMBOLS, Invalid, Tables
 NAME = "weir_packed:1"
 HEADER_BYTES = 96
 REGION_BYTES = 16
-GROUPS = 1548  # first group of a chunk
+GROUPS = 1548  # byte offset of the first group in a chunk
 NO_STREAM = "no stream"
 
 
 def unpack(layout, data, at):
-    """Little-endian values at an offset; one alone as itself."""
+    """Returns the little-endian values at an offset. A single value is returned without a tuple."""
     if at < 0 or at + struct.calcsize("<" + layout) > len(data):
         raise Invalid(f"an offset of {at} lies outside of {len(data)} bytes")
     values = struct.unpack_from("<" + layout, data, at)
@@ -33,7 +33,7 @@ def unpack(layout, data, at):
 
 
 def float32(data, at):
-    """Bit for bit, which a Python float of a NaN would not be."""
+    """Reads a float32 bit for bit. A Python float would change the bits of a NaN."""
     unpack("I", data, at)
     return numpy.frombuffer(data, "<f4", 1, at)[0]
 
@@ -77,7 +77,7 @@ class Grid:
         raise Invalid(f"the grid has no blind data {NAME}")
 
     def read(self, low, high):
-        """(float32 [z, y, x] of the voxels from `low` up to `high`, blocks by kind)."""
+        """Returns (float32 [z, y, x] of the voxels in [low, high), number of blocks by kind)."""
         values = numpy.full([b - a for a, b in zip(low, high)], self.background, numpy.float32)
         inner = [max(a, b) for a, b in zip(low, self.low)], [min(a, b) for a, b in zip(high, self.high)]
         counts = collections.Counter()
@@ -88,7 +88,7 @@ class Grid:
 
 
 class PackedData:
-    """Regions, chunks and streams; [low, high): the index box of the grid."""
+    """The regions, chunks and streams of packed data. [low, high): the index box of the grid."""
 
     def __init__(self, data, low, high):
         self.data = data
@@ -117,7 +117,7 @@ class PackedData:
         return blocks.Constants(*numbers[:2], coarsest, *numbers[2:4], bits, *numbers[4:], Tables(table))
 
     def read(self, low, high, counts):
-        """float32 [x, y, z] of a box inside the index box; adds its blocks to `counts`."""
+        """Returns float32 [x, y, z] of a box inside the index box. Adds the box's blocks to `counts`."""
         first, last = [a // 8 for a in low], [(b - 1) // 8 for b in high]
         size = [b - a + 1 for a, b in zip(first, last)]
         values = numpy.empty((size[0], 8, size[1], 8, size[2], 8), numpy.float32)
@@ -134,7 +134,7 @@ class PackedData:
         return whole[tuple(slice(a - 8 * f, b - 8 * f) for a, b, f in zip(low, high, first))]
 
     def decode(self, region, positions, counts):
-        """float32 [block, x, y, z] of blocks by position in the region (in units of 128 voxels)."""
+        """Returns float32 [block, x, y, z] of blocks, by their position in the region (in units of 128 voxels)."""
         x, y, z = (r - f for r, f in zip(region, self.first))
         entry = self.table + REGION_BYTES * (x + self.count[0] * (y + self.count[1] * z))
         at, _, size = unpack("Q2I", self.data, entry)
@@ -160,7 +160,7 @@ class PackedData:
 
 
 class Chunk:
-    """The streams of a region's blocks, and the range of their means."""
+    """The streams of a region's blocks and the range of the blocks' means."""
 
     def __init__(self, data):
         self.data = data
@@ -174,7 +174,7 @@ class Chunk:
             raise Invalid("the groups of a chunk do not follow each other")
 
     def stream(self, position):
-        """The bytes of a block's stream; None: it has none."""
+        """Returns the bytes of a block's stream; None if the block has no stream."""
         group, bit = divmod(position, 16)
         mask = self.masks[group]
         if not mask >> bit & 1:

@@ -1,4 +1,4 @@
-"""What the tests share: constants of a file, random numbers of a block, the decoding of one stream, damage."""
+"""Helpers of the tests: constants of a file, random numbers of a block, the decoding of one stream, damage."""
 
 import numpy
 
@@ -12,7 +12,7 @@ MEANS = (F32(-1), F32(2))
 
 
 def uneven_tables(rng):
-    """Frequencies from 1 up."""
+    """Returns random tables of cumulative frequencies, in which each frequency is at least 1."""
     return [v for _ in range(coefficients.TABLES) for v in [0, *sorted(rng.sample(range(1, 4096), 15))]]
 
 
@@ -23,7 +23,7 @@ def constants(tables=UNIFORM, **changed):
 
 
 def random_numbers(rng, end, size):
-    """512 by index, zero from place 16 end on; `size`: most bits of a magnitude."""
+    """Returns 512 random numbers by index, zero from place 16 `end` on. `size`: the most bits of a magnitude."""
     numbers = [0] * 512
     for at, *_ in PLACES[1:16 * end]:
         numbers[at] = rng.choice((-1, 1)) * rng.getrandbits(rng.randrange(size + 1)) if size else 0

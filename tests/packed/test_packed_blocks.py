@@ -1,4 +1,4 @@
-"""The independent decoder of streams against an encoder of its own: `python3 -m unittest` in this folder."""
+"""Tests the independent decoder of streams with block_encoder.py: `python3 -m unittest` in this folder."""
 
 import pathlib
 import random
@@ -154,7 +154,7 @@ class Lattice(unittest.TestCase):
 
 
 class Wrapping(unittest.TestCase):
-    """Numbers of the whole range of 32 bits, which no sensible block has."""
+    """Tests numbers of the whole range of 32 bits, which no ordinary block has."""
 
     def test_the_largest_magnitude_of_a_transform_is_a_negative_number(self):
         numbers = [0] * 512

@@ -1,4 +1,4 @@
-"""The independent decoder of files, on one that is put together here: `python3 -m unittest` in this folder."""
+"""Tests the independent decoder of files on a file that is built here: `python3 -m unittest` in this folder."""
 
 import contextlib
 import io
@@ -21,7 +21,7 @@ from samples import F32, MEANS, UNIFORM, constants, random_numbers, values_of  #
 
 
 class File(unittest.TestCase):
-    """A file of three regions along x, put together here; its blocks take all kinds by turns."""
+    """A file of three regions along x. The blocks take all kinds in turn."""
 
     LOW, HIGH = (-5, 3, 10), (260, 20, 30)  # the index box, without HIGH
     TWO_BLOCKS = "mean 0, transform 2, lattice 0, raw 0, no stream 0\n"
@@ -29,7 +29,7 @@ class File(unittest.TestCase):
 
     @classmethod
     def block(cls, x, y, z):
-        """(stream, float32 [8, 8, 8]) of a block; None where it has none."""
+        """Returns (stream, float32 [8, 8, 8]) of a block. The stream is None if the block has none."""
         rng = random.Random(x * 10007 + y * 101 + z)
         given = constants()
         kind = rng.randrange(5)
@@ -143,7 +143,7 @@ class File(unittest.TestCase):
 
     @staticmethod
     def command(*arguments):
-        """(exit code, what it prints)"""
+        """Runs the decoder. Returns (exit code, printed text)."""
         printed = io.StringIO()
         with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(printed):
             code = packed_decoder.main([str(argument) for argument in arguments])

@@ -1,4 +1,4 @@
-// What tests do differently in a build with a sanitizer. The sanitizer's memory counts as the process's own, so that no
+// Tells tests whether the build has a sanitizer. The sanitizer's memory counts as the process's own, so that no
 // test of a memory ceiling can pass. It also reports memory that foreign libraries never free.
 #pragma once
 

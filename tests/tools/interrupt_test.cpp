@@ -1,5 +1,5 @@
-// Signals during a conversion: exit code 130, and the output's directory keeps nothing of it but what the same
-// command continues, with the same bytes in the end; what it held before stays.
+// Tests signals during a conversion. The exit code is 130. The output's directory keeps its former files and, of the
+// conversion, only the work that the same command continues. The continued conversion gives the same bytes.
 #include <gtest/gtest.h>
 
 #include <csignal>
@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 using Names = std::vector<std::string>;
 
-/// Converts `volume` to out/volume.nvdb below `directory` and sends `signal` as soon as `now` holds.
+/// Converts `volume` to out/volume.nvdb below `directory` and sends `signal` as soon as `now` returns true.
 CommandResult interrupt(const TemporaryDirectory& directory, const std::string& volume, int signal,
                         const std::function<bool()>& now, const Names& options = {}) {
   Names command{WEIR_COMMAND, "convert",     volume,      "-o", directory / "out/volume.nvdb",
@@ -32,7 +32,7 @@ CommandResult interrupt(const TemporaryDirectory& directory, const std::string& 
   return child.wait();
 }
 
-/// Whether the file holds a byte other than zero in the KiB at `offset`: reserved space reads as zeros.
+/// Returns whether the KiB at `offset` of the file has a byte other than zero. Reserved space reads as zeros.
 bool written_at(const fs::path& path, std::streamoff offset) {
   std::ifstream file(path, std::ios::binary);
   std::string piece(1024, '\0');
@@ -47,7 +47,7 @@ std::string noise(std::size_t bytes) {
   return values;
 }
 
-// Behind what is said of the progress where a conversion takes long.
+// Returns whether `text` is one line with this beginning. Lines of progress before it are ignored.
 bool is_one_line(std::string_view text, std::string_view beginning) {
   for (const char* pass : {"weir: survey ", "weir: encode "}) {
     while (text.starts_with(pass)) text.remove_prefix(text.find('\n') + 1);
@@ -58,7 +58,7 @@ bool is_one_line(std::string_view text, std::string_view beginning) {
 TEST(Interrupt, InTheSurveyLeavesNothing) {
   const TemporaryDirectory directory;
   fs::create_directory(directory / "out");
-  // A gibibyte that takes no disk, and long enough to read that the signal meets the conversion at work.
+  // A gibibyte that takes no disk space. Reading it takes so long that the signal arrives during the conversion.
   const std::string volume = directory / "zeros_1024x1024x1024_uint8.raw";
   write_file(volume, "");
   fs::resize_file(volume, std::uintmax_t{1} << 30U);
@@ -80,7 +80,8 @@ TEST(Interrupt, InTheEncodePass_KeepsTheOldOutput) {
   write_file(directory / "out/volume.nvdb.json", "the old sidecar");
 
   const CommandResult result = interrupt(directory, volume, SIGINT, [&] {
-    return written_at(directory / "out/volume.nvdb.partial", 16 << 20);  // of 135 MiB, leaves from 1.4 MiB on
+    return written_at(directory / "out/volume.nvdb.partial",
+                      16 << 20);  // the file has 135 MiB; leaves begin at 1.4 MiB
   });
   EXPECT_EQ(result.exit_code, 130);
   EXPECT_TRUE(is_one_line(result.err, "weir: interrupted")) << result.err;
@@ -105,7 +106,7 @@ TEST(Interrupt, KeepsALargeConversionThatTheSameCommandContinues) {
             (Names{".volume.nvdb.work/", ".volume.nvdb.work/journal", ".volume.nvdb.work/rows"}));
 }
 
-// Long before the first save is due, and with bytes to wait for.
+// The signal comes long before the first save is due, while the conversion waits for its bandwidth.
 TEST(Interrupt, WithABandwidthLimit_KeepsTheFinishedPart) {
   const TemporaryDirectory directory;
   fs::create_directory(directory / "out");
@@ -146,8 +147,8 @@ TEST(Interrupt, KilledRepeatedly_EndsWithTheSameBytes) {
     return result.err;
   };
   kill([&] { return fs::exists(work / "journal"); });
-  // The encode pass saves once, when it is half way through z; in the file regions follow each other along z first,
-  // 2.4 MiB each from 2.4 MiB on.
+  // The encode pass saves once, half way through z. In the file, regions follow each other along z first. They begin at
+  // 2.4 MiB and have 2.4 MiB each.
   kill([&] { return written_at(work / "volume", 4 << 20); });
   EXPECT_NE(kill([&] { return written_at(work / "volume", 11 << 20); }).find("continues a conversion"),
             std::string::npos);

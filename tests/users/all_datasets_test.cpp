@@ -1,5 +1,5 @@
-// A model's file with fields of several shapes, converted as a whole: what the options make no volume of is named, with
-// the option that would.
+// Tests the conversion of all datasets of a model's file with fields of several shapes. A message names each dataset
+// that the options do not convert, and the option that would convert it.
 #include "tests/users/user_script.h"
 
 namespace weir::all_datasets_test {

@@ -1,4 +1,5 @@
-// A meteorologist's first hour: output of a cloud model (CM1), fields over time and one of two axes, and WRF's.
+// Tests a meteorologist's first hour with output of the cloud model CM1 (fields over time and a field of two axes) and
+// of WRF.
 #include <filesystem>
 
 #include "tests/users/user_script.h"
@@ -123,7 +124,7 @@ TEST_F(CloudModel, EveryTimeIsAFileThatKeepsItsTimeUnitsAndHeights) {
   EXPECT_NE(inspected.out.find("time        1200 seconds since 2000-01-01 00:00:00\n"), std::string::npos);
 }
 
-// As weir watch hears it, whose users set keys and type no commands.
+// `weir watch` reads this message. Its users set keys of the configuration and type no commands.
 TEST_F(CloudModel, FailureForAService_NamesKeysAndNoCommands) {
   ASSERT_EQ(type("weir convert cm1_out.nc --progress-fd 9 9>lines").exit_code, 2);
   const auto told = nlohmann::json::parse(read_file(directory_ / "lines"));

@@ -1,5 +1,5 @@
-// A reanalysis on latitudes from north to south, as ERA5 has them: positions, regions and errors are those of the rows
-// that the file has there.
+// Tests a reanalysis with latitudes from north to south, as in ERA5. Positions, regions and errors must belong to the
+// rows that the file has there.
 #include "tests/users/user_script.h"
 
 namespace weir::falling_latitudes_test {

@@ -1,4 +1,5 @@
-// Vectors of small integers, an RGB photograph or a displacement field: their lengths are no integers of that type.
+// Tests vectors of small integers, for example an RGB photograph or a displacement field. The lengths of the vectors
+// are no integers of the components' type.
 #include "tests/users/user_script.h"
 
 namespace weir::integer_vectors_test {
@@ -8,7 +9,7 @@ class IntegerVectors : public UserScript, public testing::WithParamInterface<con
  protected:
   void SetUp() override {
     if (!can_write()) GTEST_SKIP() << "python3 with h5py and netCDF4 is missing";
-    // Most vectors are (3, 4, 12), of length 13; the longest are longer than any number of the type.
+    // Most vectors are (3, 4, 12) and have length 13. The longest vectors are longer than the type's largest number.
     write_inputs("kind = \"" + std::string(GetParam()) + "\"" + R"(
 info = np.iinfo(kind)
 rng = np.random.default_rng(5)

@@ -1,4 +1,5 @@
-// A cloud in clear air, where most values are exactly zero: how many of them a lossy file does not keep.
+// Tests the reported number of exact zeros that a lossy file does not keep. The volume is a cloud in clear air, with
+// mostly zeros.
 #include "tests/users/user_script.h"
 
 namespace weir::lost_zeros_test {

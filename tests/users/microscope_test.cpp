@@ -1,5 +1,5 @@
-// A stack of two channels from a microscope, as ilastik and Fiji write it into HDF5: the size of a voxel in
-// micrometres, in the order of the file's axes, and thicker planes than pixels.
+// Tests a stack of two channels from a microscope, as ilastik and Fiji write it into HDF5. The voxel size is in
+// micrometres, in the order of the file's axes. The planes are thicker than the pixels are wide.
 #include "tests/users/user_script.h"
 
 namespace weir::microscope_test {

@@ -1,5 +1,5 @@
-// An ocean model's output with a land mask, as its user converts it: what is missing is refused, replaced or kept, and
-// all that weir says of the file agrees about it.
+// Tests the conversion of an ocean model's output with a land mask. Missing values are refused, replaced or kept. All
+// reports of weir about the file must agree about the missing values.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-// 40 x 30 x 20 voxels, of which the first ten along x are land: 6000 of 24000.
+// Writes 40 x 30 x 20 voxels. The first ten along x are land: 6000 of 24000 voxels.
 constexpr const char* kOcean = R"(
 import sys, os, numpy as np, h5py
 os.chdir(sys.argv[1])
@@ -97,7 +97,7 @@ TEST_P(MissingValues, LossyFile_PromisesTheBackgroundForExactBlocksOnly) {
   }
 }
 
-// A background outside the range of the data is what missing voxels read, in blocks that hold both, too.
+// Missing voxels read as the background even if it lies outside the data's range and their block has valid voxels, too.
 TEST_P(MissingValues, BackgroundBeyondTheValidRange_TakesTheirPlace) {
   ASSERT_TRUE(run_python(kOcean + std::string(R"(
 for name, values in (("ocean.nc", temperature), ("packed.nc", stored * 0.01 + 20)):
@@ -121,7 +121,7 @@ for name, values in (("ocean.nc", temperature), ("packed.nc", stored * 0.01 + 20
         {"--max-error", "0.01", "--missing-policy", "background", "--background", background, "--encoding", "packed"});
     ASSERT_EQ(near.exit_code, 0) << near.err;
     EXPECT_LE(Json::parse(run_weir({"compare", filled, output_, "--json"}).out)["max_abs"], 0.01) << bound;
-    // Blocks whose means lie outside those of the others are no worse for it.
+    // Blocks whose mean lies outside the range of the other blocks' means do not lose quality.
     const CommandResult small =
         convert({"--rate", "8", "--missing-policy", "background", "--background", background, "--encoding", "packed"});
     ASSERT_EQ(small.exit_code, 0) << small.err;

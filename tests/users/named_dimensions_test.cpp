@@ -1,5 +1,5 @@
-// NetCDF gives every axis a name: vectors along a last axis that is called nv, dim or three, and times that are not the
-// first axis.
+// Tests NetCDF files, which name every axis: vectors along a last axis with the name nv, dim or three, and time axes
+// that are not the first axis.
 #include "tests/users/user_script.h"
 
 namespace weir::named_dimensions_test {

@@ -1,5 +1,5 @@
-// A step of a particle-in-cell code in the layout of openPMD: cells whose values lie at centres and on faces, vectors
-// of three datasets, a time and units in SI.
+// Tests a step of a particle-in-cell code in the openPMD layout: values at cell centres and on faces, vectors of three
+// datasets, a time, and units in SI.
 #include "tests/users/user_script.h"
 
 namespace weir::particle_code_test {

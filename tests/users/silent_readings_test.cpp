@@ -1,4 +1,4 @@
-// What a file says of its axes and values, and a reader may miss: it is done, or said.
+// Tests statements of a file about its axes and values that a reader could miss. weir follows them or reports them.
 #include "tests/users/user_script.h"
 
 namespace weir::silent_readings_test {

@@ -1,4 +1,4 @@
-// A small volume converted without a budget: its values are there, and what was done is said.
+// Tests small volumes that are converted without a budget: their values survive, and a message says how.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>

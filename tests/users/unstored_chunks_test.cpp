@@ -1,4 +1,4 @@
-// A Zarr array of which a chunk was never written: the sidecar of its volume says so.
+// Tests a Zarr array with a chunk that was never written. The sidecar of its volume records this.
 #include "tests/users/user_script.h"
 
 namespace weir::unstored_chunks_test {

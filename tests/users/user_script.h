@@ -1,4 +1,4 @@
-// A user's own directory: inputs that the programs of a trade write, and the commands typed on them.
+// Test fixture: a user's directory with inputs as other programs write them, and functions that run commands in it.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -15,24 +15,24 @@ namespace weir {
 
 class UserScript : public testing::Test {
  protected:
-  /// Runs a script of Python in the directory; it holds no single quote.
+  /// Runs a Python script in the directory. `script` must hold no single quote.
   void write_inputs(const std::string& script) const {
     ASSERT_TRUE(run_python("import sys, os, numpy as np, h5py, netCDF4\nos.chdir(sys.argv[1])\n" + script,
                            directory_.path().string()));
   }
-  /// `weir ARGUMENTS` in the directory.
+  /// Runs `weir ARGUMENTS` in the directory.
   CommandResult weir(const std::vector<std::string>& arguments) const {
     CommandOptions options;
     options.directory = directory_.path();
     return run_weir(arguments, options);
   }
-  /// A command as a message shows it, "weir convert a.nc --dataset /qc", typed into a shell.
+  /// Runs a line in a shell, as a message shows it ("weir convert a.nc --dataset /qc").
   CommandResult type(const std::string& line) const {
     CommandOptions options;
     options.directory = directory_.path();
     return run_command({"bash", "-c", "weir() { " WEIR_COMMAND " \"$@\"; }\n" + line}, options);
   }
-  /// The commands that inspect prints for `input`, typed one after the other; how many ended well.
+  /// Runs the convert commands that inspect prints for `input`. Returns how many succeeded.
   int run_printed_commands(const std::string& input) const {
     std::istringstream lines(weir({"inspect", input}).out);
     int done = 0;

@@ -1,4 +1,4 @@
-// An engineer's velocity field, with its components along the last axis, as flow solvers and h5py write it.
+// Tests a velocity field with its components along the last axis, as flow solvers and h5py write it.
 #include <filesystem>
 
 #include "tests/support/sanitized.h"

@@ -1,5 +1,5 @@
-// A Zarr store as xarray writes it, converted by its user: what xarray masks is missing, and coordinates place the
-// voxels.
+// Tests the conversion of a Zarr store that xarray wrote. Values that xarray masks are missing, and coordinates place
+// the voxels.
 #include "ingest/zarr/codecs/library_codecs.h"
 #include "tests/users/user_script.h"
 

@@ -15,15 +15,16 @@ from programs import BUDGET_EXIT_CODE, ProgramFailed
 SHARES = (5, 10)  # percent of dense float32
 METHODS = ("auto", "packed", "zfp")
 QUANTILES = ("0.5", "0.99", "0.999")
-SMALL_ERROR = 0.01  # of the source's power
-SEEDS = (1, 2, 3)  # of the components of a vector field
+SMALL_ERROR = 0.01  # as a share of the source's power
+SEEDS = (1, 2, 3)  # one for each component of a vector field
 FIELD_RATE = 20
 CHARTED = "turbulence"
 EQUAL = 1e-6  # relative: the certificate's gradient against that of compare
 
 
 def smallest_good_wavelength(spectrum):
-    """In voxels: down to which the error has at most SMALL_ERROR of the source's power; None where it has everywhere."""
+    """Returns the wavelength in voxels down to which the error has at most SMALL_ERROR of the source's power. None if
+    that holds for all wavelengths."""
     for wave_number, source, error in zip(spectrum["wave_number"], spectrum["source"], spectrum["error"]):
         if error > SMALL_ERROR * source:
             return 1 / wave_number
@@ -66,7 +67,8 @@ class Derived(Experiment):
         return {**describe(volume), "rows": rows}
 
     def _convert(self, bench, volume, path, method, share, output):
-        """Bytes, and what certifies the gradient of `output`, {} where nothing does; None: there is no file of that size."""
+        """Returns the bytes of `output` and the certificate of its gradient, {} if it has none. None if no file has
+        that size."""
         size = share * volume.dense_bytes // 100
         if method == "zfp":
             decoded = bench.scratch(f"decoded_{volume.size_text}_float32.raw")
@@ -99,7 +101,7 @@ class Derived(Experiment):
 
     @staticmethod
     def _field(bench, edge):
-        """Vorticity and divergence of three components, each packed by itself."""
+        """Measures vorticity and divergence of three components that are packed separately."""
         rows = []
         for method in ("auto", "packed"):
             files = []

@@ -1,4 +1,4 @@
-"""Error at 10 to 100 % of the dense size: the paper's preset, float leaves by squared error, auto, packed, and ZFP."""
+"""Error at 10 to 100 % of the dense size: the paper's preset, float leaves by squared error, auto, packed, ZFP."""
 
 import pathlib
 
@@ -7,8 +7,8 @@ from markdown import command, decibel, percent, scientific, table
 
 SHARES = (10, 20, 30, 40, 50, 60, 70, 80, 90, 100)  # percent of dense float32
 METHODS = ("paper", "float", "auto", "packed", "zfp")
-ENCODINGS = ("float", "auto", "packed")  # those of ours that choose by squared error
-PREVIEW_STEPS = {"packed": 1}  # more bytes may be more error once, where the preview comes in
+ENCODINGS = ("float", "auto", "packed")  # weir's encodings that select by squared error
+PREVIEW_STEPS = {"packed": 1}  # how often more bytes may give more error: once, at the size that adds the preview
 ERROR_KEYS = ("mse", "nmse", "psnr_db", "max_abs", "lossless")
 
 

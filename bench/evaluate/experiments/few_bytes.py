@@ -19,20 +19,21 @@ SHARES = (1, 2, 5, 10, 20)  # percent of dense float32; each divides 100
 METHODS = ("auto", "packed", "zfp")
 RIVALS = {"auto": "auto", "zfp": "ZFP's fixed rate", "accuracy": "ZFP's fixed accuracy"}
 NOTHING = {"bytes": None, "psnr_db": None, "lossless": False}
-JUDGED_SHARE = 1 / 3  # of a file that the fixed part may have
+JUDGED_SHARE = 1 / 3  # the largest share of a file that its fixed part may have, for the file to be judged
 MACROCELL_BYTES = 8
 ACCURACY_BITS = 40  # bounds from the range down to what float32 has nothing to gain from
 
 
 def fixed_bytes(inspected):
-    """Header, root, upper nodes and macrocells of a packed file, of what `weir inspect` says of it."""
+    """Returns the bytes of a packed file's header, root, upper nodes and macrocells, as `weir inspect` tells them."""
     tree = inspected["tree"]
     return (FRAME_BYTES + ROOT_ENTRY_BYTES * tree["root_entries"] + UPPER_BYTES * tree["upper"] + 2 * BLIND_RECORD_BYTES
             + MACROCELL_BYTES * math.prod(inspected["macrocells"]["dims"]))
 
 
 def gap_db(ours, theirs):
-    """By how much ours is ahead; infinite where one alone is lossless or ours is missing. None: theirs is missing."""
+    """Returns the dB by which ours is ahead: infinite if one alone is lossless or ours is missing; None without
+    theirs."""
     if theirs["bytes"] is None:
         return None
     if ours["bytes"] is None:
@@ -43,7 +44,7 @@ def gap_db(ours, theirs):
 
 
 def gaps(row):
-    """Of one share: by how many dB packed is ahead of each of RIVALS that has a figure."""
+    """Returns, for one share, by how many dB packed is ahead of each of RIVALS that has a figure."""
     found = {name: gap_db(row["packed_there" if name == "accuracy" else "packed"], row[name]) for name in RIVALS}
     return {name: gap for name, gap in found.items() if gap is not None}
 

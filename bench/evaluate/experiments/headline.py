@@ -1,4 +1,4 @@
-"""One large conversion by each encoding, cold, with all that follows it; and the same killed half-way and continued."""
+"""A large conversion with each encoding from a cold disk, with the steps after it; also killed and continued."""
 
 import json
 import mmap
@@ -13,7 +13,7 @@ from experiments.speed import forget
 from markdown import command, table
 
 RATE = 8
-SMALL_RATE = 50  # of another conversion, for its time alone
+SMALL_RATE = 50  # the rate of another conversion, of which only the time is measured
 ENCODINGS = ("auto", "packed")
 MEMORY = "512MiB"
 CEILING_BYTES = 512 << 20
@@ -21,11 +21,11 @@ CEILING_BYTES = 512 << 20
 # stay between the passes.
 SMALL_RUNS = {"small": (MEMORY, CEILING_BYTES), "large_memory": ("8GiB", 8 << 30)}
 READ_BYTES = 8 << 20
-PICTURE = "headline.png"  # of the first encoding
+PICTURE = "headline.png"  # the picture of the first encoding's file
 
 
 def read_cold(path):
-    """Seconds to read all of a file that is in no cache, once, past the page cache: what the disk gives one reader."""
+    """Returns the seconds to read an uncached file once, past the page cache: the disk's speed for one reader."""
     forget(path)
     buffer = mmap.mmap(-1, READ_BYTES)  # aligned, as direct reads want it
     start = time.monotonic()
@@ -88,7 +88,7 @@ class Headline(Experiment):
 
     @staticmethod
     def _kill(bench, arguments, seconds):
-        """Ends a conversion without a word after so many seconds; returns those it had."""
+        """Kills a conversion after `seconds` without warning. Returns the seconds that it ran."""
         command_line = [bench.weir.path, *(str(a) for a in arguments), "--progress", "never", "--log-level", "error"]
         start = time.monotonic()
         process = subprocess.Popen(command_line, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)

@@ -1,4 +1,4 @@
-"""The smallest files without any error: leaves, packed blocks, and the whole raw file by xz."""
+"""Compares the smallest lossless files: leaves, packed blocks, and the whole raw file compressed by xz."""
 
 import lzma
 
@@ -12,7 +12,7 @@ READ_BYTES = 8 << 20
 
 
 def xz_bytes(path):
-    """Bytes of `xz -9` of a file."""
+    """Returns the bytes that `xz -9` makes of a file."""
     compressor = lzma.LZMACompressor(preset=XZ_PRESET)
     total = 0
     with open(path, "rb") as file:

@@ -19,7 +19,7 @@ from programs import BUDGET_EXIT_CODE, ProgramFailed, run
 from search import smallest_that_reaches
 
 CHART = "peers.png"
-IMAGES = "images/evaluation"  # relative to the report
+IMAGES = "images/evaluation"  # path relative to the report
 ROUNDS = 3
 TOLERANCE_DB = 0.1  # above the target, where the search ends
 TOLERANCE_BYTES = 0.01  # below the size, as a share of it
@@ -68,7 +68,7 @@ class Peers(Experiment):
         return rows
 
     def first_text(self, measured):
-        """What opens the report."""
+        """Returns the report's opening section."""
         return "\n\n".join((f"![PSNR against bytes]({IMAGES}/{CHART})", targets_table(measured), command(
             "bench/evaluate.sh --only peers --sperr SPERR3D --sz3 SZ3",
             "weir convert VOLUME.raw --psnr 80 --encoding packed",
@@ -92,7 +92,7 @@ class Peers(Experiment):
 
 
 class _Ours:
-    """weir itself. It decompresses by `weir export`, since nothing else of it writes all values."""
+    """weir itself. Decompresses with `weir export`, because no other command writes all values."""
 
     def __init__(self, bench, volume, encoding):
         self._bench, self._volume, self._encoding = bench, volume, encoding
@@ -130,7 +130,7 @@ class _Ours:
 
 
 class _Theirs:
-    """A peer: its parameter is searched, with what is measured once kept."""
+    """A peer whose parameter is searched. Each point is measured once and kept."""
 
     def __init__(self, bench, volume, peer):
         self._bench, self._volume, self._peer = bench, volume, peer
@@ -164,11 +164,11 @@ class _Theirs:
         return found or nothing()
 
     def _for_bytes(self, size):
-        """The point of most quality that fits."""
+        """Returns the point of the highest quality that fits."""
         if self._peer.direct_bytes:
             point = self._point(self._peer.options_for_size(self._volume, size))
             return point if point["bytes"] <= size else nothing()
-        # From the point that is nearest in bytes; 6 dB are about a bit a voxel, less where most voxels are empty.
+        # Starts at the point nearest in bytes. 6 dB take about one bit per voxel, less if most voxels are empty.
         nearest = min(self._known, key=lambda x: abs(math.log(self._known[x]["bytes"] / size)))
         found = smallest_that_reaches(lambda x: self._keyed(-x, lambda point: -math.log2(point["bytes"])),
                                       -math.log2(size), -nearest, self._peer.slope / 20, self._peer.grain,
@@ -181,7 +181,7 @@ class _Theirs:
         return value(self._known[x]), self._known[x]
 
     def _point(self, options):
-        """Bytes and error of what it makes by one thread, decompressed and measured by weir."""
+        """Compresses with one thread. Returns the bytes, and the error of the decompressed values by weir."""
         run(self._peer.encode(self._volume, self._wide, self._stream, options, 1))
         run(self._peer.decode(self._volume, self._stream, self._decoded, options, threads_here()))
         output = self._bench.scratch("peers.nvdb")
@@ -200,12 +200,12 @@ class _Theirs:
 
 
 def kept_records(path):
-    """Of other methods than weir's, in a file by keep_records()."""
+    """Returns the records of methods other than weir's from a file that keep_records() wrote."""
     return json.loads(path.read_text()) if path.exists() else []
 
 
 def keep_records(measured, path):
-    """Leaves what was measured of others for runs that do not find them, but no seconds: weir's are of another day then."""
+    """Keeps the peers' figures for runs without the peers. Leaves out seconds: weir's would be of another day."""
     records = {record["name"]: record for record in kept_records(path)}
     records.update((record["name"], {**record, "result": {**record["result"], "speeds": []}})
                    for record in measured.records(Peers.name) if record["result"]["method"] not in OURS)

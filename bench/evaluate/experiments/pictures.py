@@ -1,4 +1,4 @@
-"""What one sees: pictures of our, the paper's and ZFP's volumes of equal bytes against those of the source."""
+"""Compares pictures of weir's, the paper's and ZFP's volumes of equal bytes with pictures of the source."""
 
 import dataclasses
 import pathlib
@@ -16,7 +16,7 @@ from programs import BUDGET_EXIT_CODE, ProgramFailed
 RATES = (20, 10, 6, 5, 4)
 SHEET_RATES = (20, 10, 5)
 METHODS = ("auto", "packed", "paper", "zfp")
-LEAST_ZFP_BITS = 9  # a block of 4^3 voxels
+LEAST_ZFP_BITS = 9  # per block of 4^3 voxels
 SIZE = "256x192"
 SCENES = pathlib.Path(__file__).resolve().parents[1] / "scenes"
 GAP = 4  # pixels between the pictures of a sheet
@@ -26,7 +26,7 @@ GAP = 4  # pixels between the pictures of a sheet
 class Scene:
     name: str
     volume: volumes.Volume
-    samples: int  # a pixel
+    samples: int  # per pixel
 
 
 class Pictures(Experiment):
@@ -65,7 +65,7 @@ class Pictures(Experiment):
                        "64x48" if bench.quick else SIZE, "--spp", scene.samples, "--backend", "cpu", *options)
 
     def _noise(self, bench, scene):
-        """The source's own picture, and how far another seed's is from it."""
+        """Renders the source and measures how far a picture with another seed differs from it."""
         directory = self._directory(bench, scene)
         with bench.files.file(scene.volume) as path:
             self._render(bench, scene, path, directory / "source.png", "--volume", "dense")
@@ -106,7 +106,8 @@ class Pictures(Experiment):
                 "lossless": made["error"]["lossless"], "bytes": made["file"]["bytes"]}
 
     def _by_zfp(self, bench, scene, method, rate):
-        """With the most whole bits a block that the asked bytes hold; the decoded volume is rendered as a dense one."""
+        """Compresses with the most whole bits per block that fit into the requested bytes. Renders the decoded volume
+        as a dense one."""
         block_bits = 8 * -(-scene.volume.dense_bytes // rate) // cells(scene.volume.extent, 4)
         if block_bits < LEAST_ZFP_BITS:
             return None
@@ -114,7 +115,7 @@ class Pictures(Experiment):
         with bench.files.float32_file(scene.volume) as path:
             theirs = zfp_statistics(["-i", path, "-f", "-3", *scene.volume.extent, "-r", repr(block_bits / 64),
                                      "-o", decoded])
-            # weir's own comparison, of the decoded values as a file without loss.
+            # weir compares the source with a lossless file of the decoded values.
             lossless = bench.scratch("decoded.nvdb")
             bench.weir.run("convert", decoded, "-o", lossless, "--overwrite", "--lossless")
             error = bench.weir.report("compare", path, lossless)

@@ -1,11 +1,11 @@
-"""White noise kept to the last bit: the most that a file takes besides the values themselves."""
+"""Keeps white noise to the last bit. Measures the largest overhead of a file beyond the values themselves."""
 
 import volumes
 from experiment import Experiment, method_options, remove_volume
 from experiments.sizes import FRAME_BYTES, LEAF_BYTES, LOWER_BYTES, UPPER_BYTES, cells
 from markdown import command, table, whole
 
-BOUNDS = {"auto": 1.055, "packed": 1.01}  # of the dense bytes, besides the fixed part
+BOUNDS = {"auto": 1.055, "packed": 1.01}  # limits as multiples of the dense bytes, without the fixed part
 ROOT_ENTRY_BYTES = 32
 BLIND_RECORD_BYTES = 288
 PACKED_HEAD_BYTES = 96 + 32 * 120  # header and tables
@@ -13,19 +13,21 @@ REGION_BYTES = 16 + 1548  # a region's entry in the table, and its directory
 
 
 def fixed_bytes(edge):
-    """What does not grow with the voxels: header, root, upper nodes, one lower node, the macrocells' record."""
+    """Returns the bytes that do not grow with the voxels: header, root, upper nodes, one lower node, macrocell
+    record."""
     return FRAME_BYTES + (UPPER_BYTES + ROOT_ENTRY_BYTES) * cells((edge,) * 3, 4096) + LOWER_BYTES + BLIND_RECORD_BYTES
 
 
 def packed_fixed_bytes(edge, preview):
-    """The same of a packed file: its tables and one region's directory as well, nodes and two leaves with a preview."""
+    """Returns the same for a packed file: also its tables and one region's directory; with a preview, nodes and two
+    leaves."""
     tree = UPPER_BYTES * cells((edge,) * 3, 4096) + LOWER_BYTES + 2 * LEAF_BYTES if preview else 0
     return (FRAME_BYTES + ROOT_ENTRY_BYTES * cells((edge,) * 3, 4096) + tree + 2 * BLIND_RECORD_BYTES
             + PACKED_HEAD_BYTES + REGION_BYTES)
 
 
 def expected_bytes(edge):
-    """By the format's formula, all of the cube's leaves kept as float32."""
+    """Returns the bytes by the format's formula if all leaves of the cube are kept as float32."""
     extent = (edge, edge, edge)
     macrocells = -(-8 * cells(extent, 16) // 32) * 32
     return (fixed_bytes(edge) + LOWER_BYTES * (cells(extent, 128) - 1) + LEAF_BYTES * cells(extent, 8) + macrocells)

@@ -22,7 +22,7 @@ MOST_BYTES = 2 << 30  # dense; the command holds the volume three times
 
 
 def zfp_statistics(arguments):
-    """The figures that `zfp -s` prints, by their names: zfp (bytes), rmse, maxe and others."""
+    """Returns the figures that `zfp -s` prints, by name: zfp (bytes), rmse, maxe and others."""
     printed = run(["zfp", *arguments, "-s"]).err
     return {key: float(value) for key, value in re.findall(r"(\w+)=([-+.\w]+)", printed) if value[0].isdigit()}
 
@@ -102,7 +102,7 @@ class Zfp(Experiment):
 
 
 def _ahead(ours, theirs):
-    """By how many dB, as text; two that are lossless have no difference."""
+    """Returns the difference in dB as text. Two lossless results have no difference."""
     if not ours["bytes_got"] or not theirs["bytes_got"]:
         return "-"
     if ours["lossless"]:
@@ -111,5 +111,5 @@ def _ahead(ours, theirs):
 
 
 def psnr(value_range, rmse):
-    """dB; `zfp -s` itself prints 6 dB less, from half the range."""
+    """Returns the PSNR in dB. `zfp -s` itself prints 6 dB less, because it uses half the range."""
     return 20 * math.log10(value_range / rmse) if rmse > 0 else None

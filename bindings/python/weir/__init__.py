@@ -1,4 +1,4 @@
-"""Volumes into NanoVDB files of exactly the size asked, each with a certificate of what it lost; and back.
+"""Converts volumes to NanoVDB files of exactly the requested size, with a certificate of the error; reads such files.
 
     import weir
     record = weir.convert(density, "density.nvdb", rate=10)      # a numpy array [z, y, x], or a path

@@ -1,4 +1,4 @@
-"""weir.convert."""
+"""Implements weir.convert: checks its arguments and passes files or arrays to the C++ module _core."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ from .undecoded import missing_number
 if TYPE_CHECKING:
     import xarray
 
-#: Called with the pass ("survey", "encode", "certify"), and its float32 bytes done and in all; of a .nvdb file that is
-#: converted with "check" before, and the file's bytes.
+#: A callback that gets the pass ("survey", "encode", "certify"), the float32 bytes of the pass that are done, and
+#: their total. If the source is a .nvdb file, the first pass is "check", which counts the file's bytes.
 Progress = Callable[[str, int, int], Any]
 Path = Union[str, "os.PathLike[str]"]
 Size = Union[int, str]  #: bytes, or "64MiB", "1.5GB"
@@ -82,88 +82,106 @@ def convert(
     overwrite: bool = False,
     progress: Optional[Progress] = None,
 ) -> Any:
-    """Converts a volume to a NanoVDB file at `output` and its sidecar beside it; returns the sidecar, a dictionary.
+    """Converts a volume to a NanoVDB file at `output` with a sidecar beside it. Returns the sidecar, a dictionary.
 
     source
-        A path of anything that `weir convert` reads, or a numpy array indexed [z, y, x] as HDF5 does it: of bool,
-        integers or floats of up to 64 bits in this machine's byte order, with any strides, read-only or not, a
-        numpy.memmap too. An array is read where it is and not copied; it must not change before the call returns.
-        Or an array of another library, [z, y, x] too, that has DLPack or __cuda_array_interface__ (CuPy, PyTorch, Numba,
-        JAX): of the host's memory as one of numpy's; on a CUDA device it is read there, after the work that the library
-        has queued, and float32 without gaps is coded there where encoding is "packed", backend not "cpu", memory 1 GiB
-        or more and no roi given: then only what becomes of the values crosses the bus. There bfloat16 is known as well.
-        Or an xarray.DataArray of three axes: in the order z, y, x where their names (x, y, lat, lon ...) or attributes
-        "axis" say which they are, else as they are. Its name, units, long_name and time are kept, its coordinates become
-        spacing and origin; an axis whose coordinates fall is turned round, and a notice says so. _FillValue and
-        missing_value in its attrs are taken as missing; with scale_factor or add_offset there, it is not decoded
-        (xarray.decode_cf), and refused.
+        One of these:
+        A path of anything that `weir convert` reads.
+        A numpy array indexed [z, y, x], as in HDF5, of bool, integers or floats of up to 64 bits in this machine's
+        byte order. Any strides, read-only arrays and numpy.memmap are allowed. The array is read in place and not
+        copied; it must not change before the call returns.
+        An array [z, y, x] of another library that has DLPack or __cuda_array_interface__ (CuPy, PyTorch, Numba, JAX).
+        An array in host memory is treated like a numpy array. An array on a CUDA device is read there, after the work
+        that the library has queued, and may also be of bfloat16. Float32 without gaps is also encoded on the device
+        if encoding is "packed", backend is not "cpu", memory is 1 GiB or more and roi is not given. Then only the
+        encoded result crosses the bus.
+        An xarray.DataArray of three axes. If the axes' names (x, y, lat, lon ...) or their attribute "axis" say which
+        they are, the array is brought into the order z, y, x; otherwise its order is kept. Name, units, long_name and
+        time are kept, and the coordinates become spacing and origin. An axis with falling coordinates is reversed,
+        and a notice says so. _FillValue and missing_value in attrs are used as missing. An array with scale_factor or
+        add_offset in attrs is refused, because it is not decoded (see xarray.decode_cf).
     output
-        May be left out for a path: its stem + ".nvdb", beside it; where the file holds several volumes, with what was
-        chosen in the name. An existing file is replaced with overwrite=True only.
+        The path of the NanoVDB file. If source is a path, output may be left out: it is then the source's stem +
+        ".nvdb" in the source's folder, and names the chosen volume if the source holds several. An existing file is
+        replaced only with overwrite=True.
 
-    How large, one of these; rate=8 where none is given, and of less than 128^3 voxels what keeps at least 40 dB:
+    At most one of rate, size, psnr, max_error and lossless sets the size. Without any of them rate is 8; a volume of
+    less than 128^3 voxels then gets what keeps at least 40 dB:
 
     rate
         The file has exactly ceil(float32 bytes of the volume / rate) bytes.
     size
-        The file has exactly so many bytes.
+        The file's exact size: bytes, or a text such as "64MiB".
     psnr, max_error
-        The smallest file of at least so many dB, or in which every voxel is within that of its value as float32; refused where
-        float32 rounds values by more.
+        psnr makes the smallest file of at least this many dB. max_error makes the smallest file in which every voxel
+        is within max_error of its source value, as float32; it is refused if float32 rounds values by more.
     lossless
         The smallest file that preserves every bit of every valid voxel as float32. Values of other types that float32
-        does not hold are rounded first: the record's conversion_loss counts them, and a warning says so.
+        cannot hold are rounded first: the sidecar's conversion_loss counts them, and a warning is logged.
     at_most
-        With rate or size: a shorter file, not padding, where the volume needs less.
+        With rate or size: the file is shorter instead of padded if the volume needs fewer bytes.
 
-    What is kept, as the options of `weir convert` of the same names: encoding "auto", "float", "fpn", "fp4", "fp8",
-    "fp16", "packed"; preview (of a packed file) "auto", "on", "off"; metric "sse", "farthest", "closest", "median"; fill "mean", "background"; background "auto" or a value;
-    brick 8, 16, 32 voxels; preset "paper"; nonfinite "error", "background", "keep"; scene, a path. certify="gradient" reads source and file once more for the
-    error of the gradient, the sidecar's error.gradient.
+    The encoding. The keywords mean the same as the options of `weir convert`: encoding "auto", "float", "fpn", "fp4",
+    "fp8", "fp16", "packed"; preview (of a packed file) "auto", "on", "off"; metric "sse", "farthest", "closest",
+    "median"; fill "mean", "background"; background "auto" or a value; brick 8, 16, 32 voxels; preset "paper";
+    nonfinite "error", "background", "keep"; scene, the path of a scene file. certify="gradient" reads source and file
+    once more to measure the error of the gradient, which the sidecar has as error.gradient.
 
-    The volume: spacing (x, y, z) in world units per voxel; origin, the world position of the centre of voxel (0, 0,
-    0); missing, a stored value that says "no data"; missing_policy "error", "background", "keep" (as data), what
-    becomes of such voxels, by default what nonfinite says, which is "error"; roi ((x0, y0, z0), (x1, y1, z1)) in
-    voxels, x0 inclusive, x1 exclusive, or a text as `--roi` takes it; where the coordinates of a file or of an
-    xarray.DataArray fall, the axis is turned round, and roi counts from the lowest one; ghost, layers of ghost
-    cells left out at both ends of each axis, a number or (x, y, z); dataset, the name in a container, or of what an
-    array holds. A list of datasets, in which "*" and "/step_%d/rho" stand for several, converts each of them and
-    returns a list of sidecars: output is then a directory ("out/"), a name with {stem}, {dataset} or {step}, or
-    left out. Of files also index, a position on each leading axis, (3, 0), or a text as `--index` takes it,
-    "time=3"; one with a range, "0:2" or "*", converts each and returns a list, too; component (0, 1, ..., "x", "y",
-    "z" or "magnitude" of vectors in HDF5, Zarr, VTK and OpenVDB files), magnitude (("u", "v", "w"), the datasets
-    that are the components of the vectors whose length is the volume), level (of an AMReX plotfile, 0 the coarsest)
-    and upsample ("constant", "linear"), levels ("composite", or "separate", which converts each level to a file of
-    its own, named _level_N with N from 0, the finest, on, and returns a list), missing_chunks (of a Zarr array or
-    an HDF5 dataset: "fill", "error"), dims (x, y, z), type, endian, offset, stack, direct_io.
+    The volume:
+
+    spacing, origin
+        (x, y, z): world units per voxel, and the world position of the centre of voxel (0, 0, 0).
+    missing, missing_policy
+        missing is a stored value that means "no data". missing_policy says what becomes of voxels without data:
+        "error", "background" or "keep" (as data); by default they are treated as nonfinite says, which is "error" by
+        default.
+    roi
+        ((x0, y0, z0), (x1, y1, z1)) in voxels, x0 inclusive, x1 exclusive, or a text as for `--roi`. If the
+        coordinates of a file's or an xarray.DataArray's axis fall, the axis is reversed, and roi counts from the
+        lowest coordinate.
+    ghost
+        Layers of ghost cells to leave out at both ends of each axis: a number, or (x, y, z).
+    dataset
+        The name of a dataset in a container, or the name of the quantity in an array. A list of datasets, in which
+        "*" and "/step_%d/rho" match several, converts each of them and returns a list of sidecars. output is then a
+        directory ("out/"), a name with {stem}, {dataset} or {step}, or left out.
+
+    For files only: index, a position on each leading axis, (3, 0), or a text as for `--index`, "time=3"; an index
+    with a range, "0:2" or "*", converts each position and returns a list of sidecars; component (0, 1, ..., "x", "y",
+    "z" or "magnitude") of vectors in HDF5, Zarr, VTK and OpenVDB files; magnitude, the datasets ("u", "v", "w") of
+    vector components: the volume is the length of the vectors; level of an AMReX plotfile, 0 is the coarsest;
+    upsample ("constant", "linear"); levels ("composite", or "separate", which converts each level to its own file,
+    named _level_N with N = 0 for the finest, and returns a list); missing_chunks of a Zarr array or an HDF5 dataset
+    ("fill", "error"); dims (x, y, z), type, endian, offset, stack, direct_io.
 
     memory
-        Bytes, or "512MiB" (the default): what the conversion may take besides what the process holds when it
-        begins; what is said of a memory that is too small counts both.
+        Bytes, or a text; "512MiB" by default. The conversion may take this much in addition to the memory that the
+        process holds when the conversion begins. The message about a memory that is too small counts both.
     threads
-        At most so many work; 0, the default: one for each core. Results do not depend on it.
+        The largest number of threads. 0, the default, means one for each core. Results do not depend on it.
     backend
-        "auto", "cpu" or "cuda": what surveys and encodes packed blocks, auto: a CUDA device where one answers, if weir was
-        built for one and memory is 1 GiB or more. Results do not depend on it.
+        "auto", "cpu" or "cuda": what surveys and encodes packed blocks. "auto" uses a CUDA device if weir was built
+        with CUDA, a device answers and memory is 1 GiB or more. Results do not depend on it.
     work_dir
-        For spill files; by default a hidden directory beside the output.
+        The directory for spill files. By default a hidden directory beside the output.
     resume
-        "auto", "on" or "off": whether what an interrupted conversion of a file did is kept for the next. Never of an
-        array, for which "on" is refused.
+        "auto", "on" or "off": whether the work of an interrupted conversion of a file is kept, so that the next call
+        continues it. The conversion of an array cannot be continued: "on" is refused for arrays.
     save_interval
-        Of files: seconds between two points that it can be continued from; 0: as many as there are.
+        For files: seconds between two points that a conversion can be continued from; 0 means as many points as
+        possible.
     progress
-        Called in this thread some twenty times a second at most as progress(pass, done, total), in float32 bytes.
-        What it raises, KeyboardInterrupt too, ends the conversion and goes on.
+        Called in the calling thread, at most about twenty times a second, as progress(pass, done, total), with done
+        and total in float32 bytes. An exception that it raises, KeyboardInterrupt too, ends the conversion and is
+        passed on.
 
-    The output is there whole or not at all: nothing is left of a conversion that fails or is interrupted, but for what
-    resume keeps. What a signal handler raises, as KeyboardInterrupt, may come when the files are complete already; then
-    they stay. The interpreter's lock is
-    free while it runs. Warnings, for instance that the least size is larger than the rate's, go to the logger
-    "weir".
+    The output is complete or absent: a conversion that fails or is interrupted leaves nothing behind except the work
+    that resume keeps. An exception from a signal handler, such as KeyboardInterrupt, may arrive after the files are
+    complete; then they stay. The interpreter's lock is released during the conversion. Warnings go to the logger
+    "weir", for example that the smallest possible file is larger than rate asks for.
 
-    Raises UsageError (a ValueError), InputError, BudgetError or IoError, of which those of missing and unreadable files
-    are FileNotFoundError or PermissionError too; TypeError where source is something else.
+    Raises UsageError (a ValueError), InputError, BudgetError or IoError. The error for a missing or unreadable file
+    is also a FileNotFoundError or PermissionError. Raises TypeError if source is anything else.
     """
     meaning: dict[str, Any] = {}
     if is_data_array(source):
@@ -246,7 +264,7 @@ def convert(
 
 
 def _remedy(source: Any) -> str:
-    """What to give instead of `source`, for the end of a message; empty where that is not known."""
+    """Returns the end of a message: what to give instead of `source`. Empty if that is not known."""
     if hasattr(source, "data_vars"):
         return "; give one of its arrays, source[NAME]"
     if source.__class__.__module__.partition(".")[0] in ("h5py", "zarr"):
@@ -256,7 +274,7 @@ def _remedy(source: Any) -> str:
 
 
 def _refuse_what_is_for_files(options: dict[str, bytes]) -> None:
-    """Raises UsageError for options without a meaning for arrays. Wrong values are left to the check of all options."""
+    """Raises UsageError for options that have no meaning for arrays. Leaves invalid values to the later checks."""
     remedy = "which is for files; the conversion of an array cannot be continued, leave it out"
     if options.get("resume") == b"on":
         raise UsageError(f"resume is 'on', {remedy}")
@@ -268,7 +286,7 @@ def _refuse_what_is_for_files(options: dict[str, bytes]) -> None:
 def _convert_array(
     source: Any, target: bytes, options: dict[str, bytes], meaning: dict[str, Any], progress: Optional[Progress]
 ) -> str:
-    """The sidecar's text."""
+    """Converts the array `source` and returns the sidecar's text."""
     array = source if isinstance(source, numpy.ndarray) else array_of(source)
     if isinstance(array, DeviceArray):
         kind = _scalar_type(array.type, len(array.shape))
@@ -286,7 +304,8 @@ def _convert_array(
 
 
 def _scalar_type(name: str, axes: int) -> str:
-    """weir's name of an array's type. Raises UsageError for what is no volume of scalars."""
+    """Returns weir's name for numpy's type `name`. Raises UsageError for unknown types and for other than 3
+    `axes`."""
     if axes != 3:
         raise UsageError(f"source has {axes} axes, it must have three: [z, y, x]")
     if name not in _TYPES:

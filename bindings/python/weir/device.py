@@ -1,4 +1,4 @@
-"""Arrays in the memory of a CUDA device, of whatever library: those with DLPack or __cuda_array_interface__."""
+"""Finds the values of arrays on a CUDA device, from any library that has DLPack or __cuda_array_interface__."""
 
 from __future__ import annotations
 
@@ -12,39 +12,40 @@ from numpy.typing import NDArray
 
 from .errors import UsageError
 
-#: Where DLPack says values lie.
-_HOST = (1, 3)  #: the host's memory, page-locked or not
-_CUDA = (2, 13)  #: a device's memory, managed memory
+#: DLPack's numbers of device types.
+_HOST = (1, 3)  #: host memory, page-locked host memory
+_CUDA = (2, 13)  #: device memory, managed memory
 
-#: The stream that work of any other stream waits for; CUDA's legacy default one.
+#: CUDA's legacy default stream, which synchronizes with all other streams.
 _DEFAULT_STREAM = 1
 
-#: What is raised where a protocol's answers have another form than it says.
+#: Exceptions that occur if the answer of an array's protocol does not have the form that the protocol prescribes.
 _NOT_AS_SAID = (AttributeError, IndexError, KeyError, TypeError, ValueError)
 
-#: DLPack's codes of types.
+#: DLPack's codes of value types.
 _KINDS = {0: "int", 1: "uint", 2: "float", 4: "bfloat", 6: "bool"}
 
 
 @dataclass(frozen=True)
 class DeviceArray:
-    """Values that lie on a device; `owner` keeps them there."""
+    """An array in device memory. `owner` keeps the memory allocated."""
 
     address: int
-    type: str  #: numpy's name of it, or "bfloat16"
+    type: str  #: numpy's name of the value type, or "bfloat16"
     shape: tuple[int, ...]
     strides: tuple[int, ...]  #: bytes
-    stream: Optional[int]  #: what computes the values has been queued there; None: it has ended
+    stream: Optional[int]  #: the stream on which the values are computed; None if they are complete
     owner: Any
 
 
 def is_array_elsewhere(source: Any) -> bool:
-    """Whether `source` says where its values lie."""
+    """Returns whether `source` has DLPack or __cuda_array_interface__."""
     return hasattr(source, "__dlpack_device__") or hasattr(source, "__cuda_array_interface__")
 
 
 def array_of(source: Any) -> Union[DeviceArray, NDArray[Any]]:
-    """The values of such an array, where they are: on a device, or in the host's memory. Raises UsageError."""
+    """Returns the values of an array for which is_array_elsewhere() holds: a DeviceArray, or a numpy array if they
+    are in host memory. Copies nothing. Raises UsageError."""
     if not hasattr(source, "__dlpack_device__"):
         return _of_interface(source, source.__cuda_array_interface__)
     try:
@@ -125,7 +126,7 @@ def _of_dlpack(source: Any) -> DeviceArray:
     size = tensor.dtype.bits // 8
     strides = tuple(size * tensor.strides[i] for i in range(tensor.ndim)) if tensor.strides else _packed(shape, size)
     name = kind if kind == "bool" else f"{kind}{tensor.dtype.bits}"
-    # A capsule that nobody takes over gives the values back when it goes.
+    # The capsule is not consumed, so its own destructor releases the values.
     return DeviceArray((tensor.data or 0) + tensor.byte_offset, name, shape, strides, _DEFAULT_STREAM, capsule)
 
 

@@ -1,4 +1,4 @@
-"""What weir raises: one line that says what, where, the value found and what to do."""
+"""The exceptions that weir raises. A message is one line: what is wrong, where, the value found and what to do."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ import errno
 
 
 class Error(Exception):
-    """Base of all of them; raised itself for a fault of weir."""
+    """The base class of weir's exceptions. Raised itself if weir has a bug."""
 
     def __str__(self) -> str:
-        # An OSError would put "[Errno 2]" before the message, and behind it the name that is in it.
+        # OSError's own text puts "[Errno 2]" before the message and repeats the file name after it.
         if isinstance(self, OSError) and self.strerror is not None:
             return str(self.strerror)
         return super().__str__()
@@ -20,11 +20,11 @@ class UsageError(Error, ValueError):
 
 
 class InputError(Error):
-    """A file or array is missing, unreadable or not what it says."""
+    """A file or array is missing, unreadable or invalid."""
 
 
 class BudgetError(Error):
-    """The size that was asked for cannot be met; the message names the least one that can."""
+    """The requested size cannot be met. The message names the smallest size that can."""
 
 
 class IoError(Error, OSError):
@@ -32,23 +32,23 @@ class IoError(Error, OSError):
 
 
 class InputSystemError(InputError, OSError):
-    """An InputError of a call of the system that failed, with errno and filename."""
+    """An InputError because a system call failed. Has errno and filename."""
 
 
 class InputNotFoundError(InputSystemError, FileNotFoundError):
-    """An input that is missing."""
+    """An input is missing."""
 
 
 class InputPermissionError(InputSystemError, PermissionError):
-    """An input that may not be read."""
+    """This user may not read an input."""
 
 
 class IoNotFoundError(IoError, FileNotFoundError):
-    """A directory that is missing."""
+    """A directory is missing."""
 
 
 class IoPermissionError(IoError, PermissionError):
-    """A file or directory that this user may not read or write."""
+    """This user may not read or write a file or directory."""
 
 
 _CLASS_OF_NUMBER = {errno.ENOENT: 0, errno.EACCES: 1, errno.EPERM: 1}
@@ -59,8 +59,8 @@ _CLASSES: dict[str, tuple[type[Error], type[Error], type[Error]]] = {
 
 
 def system_error(kind: str, number: int, message: str, filename: str) -> Error:
-    """The error of class `kind` where a call of the system failed with errno `number` on `filename`: an OSError too,
-    where `kind` is InputError or IoError."""
+    """Returns the error of class `kind` for a system call that failed with errno `number` on `filename`. The error is
+    also an OSError if `kind` is InputError or IoError."""
     if kind not in _CLASSES:
         classes: dict[str, type[Error]] = {"UsageError": UsageError, "BudgetError": BudgetError}
         return classes.get(kind, Error)(message)

@@ -1,4 +1,4 @@
-"""A file by any of fsspec's file systems."""
+"""Reads ranges of a file through any of fsspec's file systems."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from .remote_file import (
     sidecar_url,
 )
 
-#: What a file system says of one version of a file: its size and tag, or times.
+#: Keys of a file system's info() that identify a version of a file: its size, tag and times.
 _OF_VERSION = ("size", "ETag", "etag", "generation", "mtime", "created", "modified", "LastModified", "last_modified")
 
 
 class FsspecFile(RemoteFile):
-    """A file by any of fsspec's file systems."""
+    """A file that is read through one of fsspec's file systems."""
 
     def __init__(self, url: str, options: dict[str, Any]) -> None:
         super().__init__()
@@ -53,13 +53,13 @@ class FsspecFile(RemoteFile):
         self._system, self._path = fsspec.core.url_to_fs(self._url, **self._options)
 
     def _found_version(self, _: Range) -> Optional[dict[str, Any]]:
-        """What the file system says of the file now; None where it says nothing."""
+        """Returns the file's current version, see _OF_VERSION. None if the file system does not tell."""
         try:
             self._system.invalidate_cache(self._path)
             info = self._system.info(self._path)
-        except Exception:  # each file system has its own; what it means is seen by reading
+        except Exception:  # each file system raises its own; reading the file then reports what is wrong
             return None
-        # Of files here "created" is the time of any change, of the mode too.
+        # For local files "created" changes with any change, even of the file's mode, so "mtime" replaces it.
         said = [name for name in _OF_VERSION if name in info and (name != "created" or "mtime" not in info)]
         return {name: info[name] for name in said}
 
@@ -67,7 +67,7 @@ class FsspecFile(RemoteFile):
         offset, count = piece
         try:
             data = self._system.cat_file(self._path, start=offset, end=offset + count)
-        except Exception as error:  # each file system has its own
+        except Exception as error:  # each file system raises its own
             raise _failure(error, self._shown) from self._cause(error)
         if len(data) != count:
             raise InputError(
@@ -82,19 +82,19 @@ class FsspecFile(RemoteFile):
             data = self._system.cat_file(sidecar_url(self._path), start=0, end=LONGEST_SIDECAR + 1)
         except (FileNotFoundError, PermissionError):
             return None
-        except Exception as error:  # of http: aiohttp's, with the status
+        except Exception as error:  # for http an exception of aiohttp, with the status
             if getattr(error, "status", None) in MISSING_FILE_STATUSES:
                 return None
             raise _failure(error, shown_url(url)) from self._cause(error)
         return sidecar_text(shown_url(url), self._count(data))
 
     def _cause(self, error: Exception) -> Optional[Exception]:
-        """`error`, for who looks for it; not where it may tell what the URL hides."""
+        """Returns `error` as the cause of weir's error. None if the URL hides parts that `error` might show."""
         return error if self._shown == self._url else None
 
 
 def _failure(error: Exception, shown: str) -> Error:
-    """What weir raises where a file system raises `error` for the file `shown`."""
+    """Returns weir's error for the `error` that a file system raised for the file `shown`."""
     if isinstance(error, FileNotFoundError):
         return InputNotFoundError(2, f"{shown}: there is no such file", shown)
     said = shown_urls(str(error)) or error.__class__.__name__

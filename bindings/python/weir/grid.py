@@ -1,4 +1,4 @@
-"""weir.open and what it returns."""
+"""weir.open and the Grid that it returns."""
 
 from __future__ import annotations
 
@@ -19,21 +19,21 @@ from .options import LONGEST_BOX, described, given_options, input_bytes, is_url,
 if TYPE_CHECKING:
     import xarray
 
-#: Positions beyond are outside any grid.
+#: Sample positions are clipped to +-_FARTHEST voxels, which lies outside any grid.
 _FARTHEST = 2.0**31
 
 
 class Macrocells(NamedTuple):
-    """Bounds of the values that a filtered look-up in a cell of the grid can have."""
+    """Bounds of the values that a filtered look-up in each cell of a grid can return."""
 
     cell: int  #: voxels along an edge
-    origin: tuple[int, int, int]  #: (x, y, z) of the first cell's corner in voxels from the grid's; 0 or below
-    min: NDArray[numpy.float32]  #: float32 [z, y, x], one for each cell
-    max: NDArray[numpy.float32]  #: the same of the largest values
+    origin: tuple[int, int, int]  #: the first cell's corner (x, y, z) in voxels from the grid's corner; 0 or below
+    min: NDArray[numpy.float32]  #: the smallest value of each cell, float32 [z, y, x]
+    max: NDArray[numpy.float32]  #: the largest value of each cell, float32 [z, y, x]
 
 
 class Check(NamedTuple):
-    """One thing that must hold of a file."""
+    """One check of Grid.verify: its name, the value found, the value expected, and whether they agree."""
 
     name: str
     found: str
@@ -42,16 +42,16 @@ class Check(NamedTuple):
 
 
 class Grid:
-    """A NanoVDB file, mapped and checked; values are decoded where they are asked for. Made by weir.open.
+    """A mapped and checked NanoVDB file. Values are decoded on request. weir.open makes a Grid.
 
-    A grid is indexed like the array of its values: grid[60:70, :, -1], grid[::16, ::16, ::16], grid[5] and so on are
-    float32 arrays, for which only the blocks of 8^3 voxels that hold them are decoded; numpy.asarray(grid) has all.
-    Coordinates (x, y, z) are voxels from the grid's lowest corner; arrays are indexed [z, y, x]. All methods may be
-    called from several threads. Arrays are the caller's own and outlive the grid. A grid is a context manager; once
-    closed, it raises UsageError.
+    A grid is indexed like the array of its values: grid[60:70, :, -1], grid[::16, ::16, ::16] and grid[5] are float32
+    arrays. Only the blocks of 8^3 voxels that hold the requested values are decoded. numpy.asarray(grid) returns all
+    values. Coordinates (x, y, z) are voxels from the grid's lowest corner; arrays are indexed [z, y, x]. All methods
+    may be called from several threads. Returned arrays belong to the caller and outlive the grid. A grid is a context
+    manager. A closed grid raises UsageError.
     """
 
-    #: Else the first one of a packed file decodes all of it.
+    #: Whether sample() decodes only the blocks that it needs. If not, the first call decodes all of a packed file.
     _samples_decode_their_blocks = False
 
     def __init__(self, path: Path) -> None:
@@ -78,7 +78,7 @@ class Grid:
         return f"<weir.Grid {self._path!r}, {' x '.join(map(str, self.extent))}, {stored}>"
 
     def close(self) -> None:
-        """Lets go of the file. Twice does no harm."""
+        """Releases the file. Closing twice is allowed."""
         self._core.close()
 
     @property
@@ -88,69 +88,69 @@ class Grid:
 
     @property
     def path(self) -> str:
-        """As it was given, bytes as text; of a URL without the user, password and query."""
+        """The path that was opened, as text. A URL is shown without user, password and query."""
         return self._path
 
     @property
     def name(self) -> str:
-        """Of the quantity, "density" for instance; may be empty."""
+        """The name of the quantity, for example "density"; may be empty."""
         return self._core.name
 
     @property
     def type(self) -> str:
-        """How leaves are stored: "float32", "fpn", "fp4", "fp8" or "fp16"; where `packed`, the "float32" of the tree that
-        other programs read."""
+        """How leaves are stored: "float32", "fpn", "fp4", "fp8" or "fp16". A `packed` file says "float32", the type
+        of the tree that other programs read."""
         return self._core.type
 
     @property
     def packed(self) -> bool:
-        """Whether each 8^3 block is coded as a whole, by encoding="packed"."""
+        """Whether the file was made with encoding="packed", which codes each block of 8^3 voxels as a whole."""
         return self._core.packed
 
     @property
     def extent(self) -> tuple[int, int, int]:
-        """Voxels (x, y, z)."""
+        """The number of voxels along (x, y, z)."""
         return self._core.extent
 
     @property
     def shape(self) -> tuple[int, int, int]:
-        """Of to_numpy(): voxels (z, y, x)."""
+        """The shape of to_numpy(): voxels (z, y, x)."""
         x, y, z = self.extent
         return z, y, x
 
     @property
     def dtype(self) -> numpy.dtype[numpy.float32]:
-        """Of to_numpy(): float32, whatever `type` is."""
+        """The dtype of to_numpy(): float32, whatever `type` is."""
         return numpy.dtype(numpy.float32)
 
     @property
     def ndim(self) -> int:
-        """3."""
+        """The number of axes: 3."""
         return 3
 
     @property
     def size(self) -> int:
-        """How many voxels there are."""
+        """The number of voxels."""
         x, y, z = self.extent
         return x * y * z
 
     def __len__(self) -> int:
-        """Planes of constant z."""
+        """The number of planes of constant z."""
         return self.shape[0]
 
     def __getitem__(self, key: Any) -> Any:
-        """What to_numpy()[key] is, decoding only the blocks that hold it: a float32 array of the caller's own, or one
-        numpy.float32 where `key` is (z, y, x).
+        """Returns to_numpy()[key] as a new float32 array, or as one numpy.float32 if `key` is (z, y, x). Decodes only
+        the blocks that hold these values.
 
         key
-            Whole numbers, below 0 from the end, slices with any step, `...` and None, for the axes [z, y, x].
+            Integers (negative ones count from the end), slices with any step, `...` and None, for the axes [z, y, x].
 
-        Raises IndexError for a place outside of the grid, and for arrays as indices.
+        Raises IndexError for positions outside the grid and for arrays as indices.
         """
         return self._read(key, 0)
 
     def _read(self, key: Any, level: int) -> Any:
-        """What to_numpy(level=level)[key] is, as grid[key] of level 0."""
+        """Returns to_numpy(level=level)[key]; for level 0 this is grid[key]."""
         chosen = select(key, self.level_shape(level))
         if 0 in chosen.count:
             return numpy.empty(chosen.shape, self.dtype)
@@ -167,19 +167,19 @@ class Grid:
         return values.reshape(chosen.shape) if chosen.shape else values[0, 0, 0]
 
     def __array__(self, dtype: Any = None, copy: Optional[bool] = None) -> NDArray[Any]:
-        """to_numpy(), for numpy.asarray(grid) and functions of numpy. Raises ValueError for copy=False."""
+        """Returns to_numpy(), for numpy.asarray(grid) and numpy's functions. Raises ValueError for copy=False."""
         if copy is False:
             raise ValueError("copy is False, but the values of a grid are decoded into an array of their own")
         values = self.to_numpy()
         return values if dtype is None else values.astype(dtype, copy=False)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """A copy in another process opens the file there."""
+        """Pickles the grid as its path. Unpickling in another process opens the file there."""
         return Grid, (self._absolute,)
 
     @property
     def index_origin(self) -> tuple[int, int, int]:
-        """Index (x, y, z) of the lowest voxel in the file; not 0 where a region was converted."""
+        """Index (x, y, z) of the lowest voxel in the file. Not 0 if only a region was converted."""
         return self._core.index_origin
 
     @property
@@ -194,41 +194,41 @@ class Grid:
 
     @property
     def background(self) -> float:
-        """What lies outside; in files that weir made, the most frequent value of the histogram's fullest bin."""
+        """The value outside the grid; weir's default is the most frequent value in the histogram's fullest bin."""
         return self._core.background
 
     @property
     def range(self) -> tuple[float, float]:
-        """Smallest and largest value there is, as the file says; NaN where it says none."""
+        """The smallest and the largest value, as the file states them. NaN if the file does not state them."""
         return self._core.range
 
     @property
     def bytes(self) -> int:
-        """Length of the file."""
+        """The length of the file in bytes."""
         return self._core.bytes
 
     @property
     def sidecar(self) -> Optional[dict[str, Any]]:
-        """What weir.convert returned, from the file beside this one; None where there is none.
+        """What weir.convert returned, read from the sidecar beside this file. None if there is no sidecar.
 
-        Raises InputError where it is damaged, or of another file.
+        Raises InputError if the sidecar is damaged or belongs to another file.
         """
         text = self._core.sidecar()
         return None if text is None else json.loads(text)
 
     @property
     def certificate(self) -> Optional[dict[str, Any]]:
-        """The sidecar's "error": mse, rmse, nmse, psnr_db (None: lossless), max_abs, lossless; None without a sidecar."""
+        """The sidecar's "error": mse, rmse, nmse, psnr_db (None: lossless), max_abs, lossless. None if no sidecar."""
         sidecar = self.sidecar
         return None if sidecar is None else sidecar["error"]
 
     @property
     def levels(self) -> int:
-        """How many levels of detail to_numpy offers: 0 ... levels - 1."""
+        """The number of levels of detail that to_numpy offers: 0 ... levels - 1."""
         return self._core.levels
 
     def level_shape(self, level: int) -> tuple[int, int, int]:
-        """Shape of to_numpy(level=level): voxels (z, y, x) halved `level` times, rounded up."""
+        """Returns the shape of to_numpy(level=level): voxels (z, y, x) halved `level` times, rounded up."""
         is_number = isinstance(level, (int, numpy.integer)) and not isinstance(level, bool)
         if not is_number or not 0 <= level < self.levels:
             raise UsageError(f"level is {described(level)}, it must be a whole number from 0 to {self.levels - 1}")
@@ -236,39 +236,41 @@ class Grid:
         return z, y, x
 
     def to_numpy(self, roi: Any = None, level: int = 0) -> NDArray[numpy.float32]:
-        """The values as float32 [z, y, x]: what a reader of the file decodes.
+        """Returns the decoded values as float32 [z, y, x].
 
         roi
-            Slices as of an array, numpy.s_[z0:z1, y0:y1, x0:x1], without steps, or corners ((x0, y0, z0),
-            (x1, y1, z1)), x1 exclusive; to_numpy(s, k) is to_numpy(level=k)[s], and decodes only that.
+            Slices without steps, numpy.s_[z0:z1, y0:y1, x0:x1], or corners ((x0, y0, z0), (x1, y1, z1)), x1
+            exclusive. to_numpy(s, k) equals to_numpy(level=k)[s], but decodes only that part.
         level
-            Each value is the mean of the voxels in a cube of 2^level voxels along an edge (of those that are there, at
-            the upper ends), NaN where one of them is. No more than some rows of the volume are held meanwhile.
+            Each value is the mean of a cube with 2^level voxels along an edge. At the upper ends of the axes the mean
+            is over the voxels that exist. It is NaN if one of them is NaN. Only some rows of the volume are held in
+            memory.
 
-        Raises UsageError for a roi outside of the grid and a level that it does not have, InputError where the file was
-        written to since it was opened, as all that reads values.
+        Raises UsageError for a roi outside the grid and for a level that the grid does not have. Like everything that
+        reads values, raises InputError if the file was written to since it was opened.
         """
         low, high = _box_of(roi, self.level_shape(level))
         return self._core.read(low, high, level)
 
     def to_xarray(self, level: int = 0) -> xarray.DataArray:
-        """The values as an xarray.DataArray [z, y, x], which decodes what is asked of it, when it is asked.
+        """Returns the values as an xarray.DataArray [z, y, x] that decodes values when they are used.
 
-        Coordinates are world positions of the voxels' centres, or the source's own where these are not equally spaced;
-        with name, units, long_name, time and names of the axes as the sidecar keeps them. level, as of to_numpy. Wants
-        python3-xarray; the grid must stay open. xarray.open_dataset("a.nvdb", engine="weir") opens a file like this.
+        Coordinates are the world positions of the voxels' centres, or the source's own coordinates if these are not
+        equally spaced. Name, units, long_name, time and the names of the axes come from the sidecar. `level` is as
+        for to_numpy. Needs python3-xarray. The grid must stay open. xarray.open_dataset("a.nvdb", engine="weir")
+        opens a file in the same way.
         """
         from .xarray_backend import data_array
 
         return data_array(self, level)
 
     def sample(self, points: Any, filter: str = "trilinear") -> NDArray[numpy.float32]:
-        """Values at positions in voxels: float32, one for each (x, y, z) along the last axis of `points`.
+        """Returns the values at positions in voxels: float32, one for each (x, y, z) along the last axis of `points`.
 
-        Voxel i covers [i, i + 1), its centre is at i + 0.5; positions outside are clamped to the grid. "trilinear"
-        blends the 8 voxels around a position, which it rounds to float32; "nearest" takes the one that covers it.
-        Beyond 2^23 voxels along an axis float32 has no position of each voxel: to_numpy(roi) reads it. Raises UsageError
-        for positions that are no numbers, or NaN.
+        Voxel i covers [i, i + 1) and has its centre at i + 0.5. Positions outside are clamped to the grid.
+        "trilinear" rounds a position to float32 and blends the 8 voxels around it; "nearest" takes the voxel that
+        covers the position. Beyond 2^23 voxels along an axis, float32 cannot express the position of every voxel;
+        to_numpy(roi) reads such voxels. Raises UsageError for positions that are not numbers or are NaN.
         """
         if filter not in ("trilinear", "nearest"):
             raise UsageError(f"filter is {filter!r}, it must be 'trilinear' or 'nearest'")
@@ -280,7 +282,8 @@ class Grid:
                 raise TypeError
             if given.dtype != numpy.float32:
                 given = given.astype(numpy.float64).clip(-_FARTHEST, _FARTHEST)
-                # The centre of the voxel that covers a position: rounded first, it could be the next voxel's.
+                # "nearest" samples at the centre of the covering voxel, found in float64. Rounding the position to
+                # float32 first could move it into the next voxel.
                 given = given if filter == "trilinear" else numpy.floor(given) + 0.5
             positions = numpy.asarray(given, dtype=numpy.float32, order="C")
         except (TypeError, ValueError):
@@ -292,16 +295,16 @@ class Grid:
         return self._core.sample(positions.reshape(-1, 3), filter == "trilinear").reshape(positions.shape[:-1])
 
     def macrocells(self) -> Macrocells:
-        """Bounds of the values in cells of 16^3 voxels and one voxel around each: the file's, else gathered from it, which
-        decodes all of it. Raises UsageError for a file elsewhere that has none.
+        """Returns bounds of the values in cells of 16^3 voxels and one voxel around each cell. If the file has no
+        such bounds, they are gathered by decoding the whole file. Raises UsageError for a remote file without them.
         """
         return Macrocells(*self._core.macrocells())
 
     def verify(self, progress: Optional[Progress] = None) -> list[Check]:
-        """All checks of `weir verify`: structure, checksums, and what file and sidecar say of each other.
+        """Runs all checks of `weir verify`: structure, checksums, and whether file and sidecar agree.
 
-        Reads all of the file. It is whole where all(check.ok for check in grid.verify()). progress is called with the pass,
-        and its bytes done and in all. Raises InputError where another file is at `path` by now.
+        Reads the whole file. The file is intact if all(check.ok for check in grid.verify()). progress is called with
+        the pass, its bytes done and their total. Raises InputError if another file is now at `path`.
         """
         return [Check(*check) for check in self._core.verify(progress)]
 
@@ -329,19 +332,29 @@ class Grid:
         linear: bool = False,
         progress: Optional[Progress] = None,
     ) -> NDArray[Any]:
-        """The picture that `weir render` makes, [y, x, RGB] with rows from the top.
+        """Returns the picture that `weir render` makes, [y, x, RGB] with rows from the top: uint8 sRGB, or float32
+        radiance before tone mapping if `linear` is true.
 
-        mode "path", "dvr", "iso" or "mip"; size (width, height), or "960x720"; spp, samples a pixel; seed of their
-        random numbers; camera (azimuth, elevation) or (azimuth, elevation, zoom), in degrees; colormap, a name
-        ("viridis" for instance); colorbar, whether the colours with their values, name and units stand at the right
-        of the picture, which is wider by them; range (low, high) of colours and opacity; iso, the surface's value;
-        scene, the path of a scene file, which the others overrule; filter "trilinear", "stochastic" or "nearest";
-        lod, level of detail, "auto", "off" or that many levels coarser, and lod_scattered, further levels of light that
-        mode "path" scatters; backend "auto", "cpu" or "cuda"; devices, numbers of CUDA devices that share the samples;
-        threads, 0: all; memory, bytes or "512MiB", of the CPU, and device_memory of each device: a packed file that
-        decodes to more is rendered from a cache. Returns uint8 sRGB or, where `linear`, float32 radiance before tone
-        mapping. progress is called with "render" and samples. Raises UsageError for a keyword that is out of its range, and
-        for a memory that is too small.
+        mode: "path", "dvr", "iso" or "mip".
+        size: (width, height) in pixels, or "960x720".
+        spp, seed: the samples per pixel, and the seed of their random numbers.
+        scene: the path of a scene file. The other keywords overrule it.
+        filter: "trilinear", "stochastic" or "nearest".
+        colormap: the name of a colour map, for example "viridis".
+        colorbar: whether a bar with the colours, their values, name and units is added at the right of the picture.
+        range: (low, high), the values that colours and opacity span.
+        iso: the value of the surface.
+        camera: (azimuth, elevation) in degrees, or (azimuth, elevation, zoom).
+        lod: the level of detail: "auto", "off" or how many levels coarser.
+        lod_scattered: how many levels coarser still for the light that mode "path" scatters.
+        backend: "auto", "cpu" or "cuda".
+        devices: the numbers of the CUDA devices that share the samples.
+        threads: the number of threads; 0 means all.
+        memory, device_memory: bytes, or "512MiB", of the CPU and of each device. A packed file that decodes to more
+        is rendered from a cache.
+        progress: called with "render", the samples done and their total.
+
+        Raises UsageError for a keyword that is out of its range and for a memory that is too small.
         """
         if linear and colorbar:
             raise UsageError("linear asks for radiance, colorbar for colours as a screen shows them; give one of them")
@@ -369,19 +382,21 @@ class Grid:
 
 
 def open(path: Path, *, cache: Union[int, str] = "256MiB", storage_options: Optional[dict[str, Any]] = None) -> Grid:
-    """Opens a NanoVDB file; of several grids in it the first.
+    """Opens a NanoVDB file. If the file holds several grids, opens the first.
 
     path
-        Of a file, or a URL: "https://host/run/step_0042.nvdb", and what fsspec opens ("s3://...", "memory://..."). Of a
-        packed file elsewhere, only the head and the blocks that are asked for are read: a RemoteGrid.
+        The path of a file, or a URL: "https://host/run/step_0042.nvdb", or any URL that fsspec opens ("s3://...",
+        "memory://..."). A URL must name a packed file and returns a RemoteGrid, which reads only the head and the
+        requested blocks.
     cache
-        Of a URL: bytes of the file, or "256MiB", above which what was read is forgotten when other blocks are asked for.
+        For a URL: how many bytes of the file are kept, or a text such as "256MiB". Beyond this size, blocks that were
+        read are forgotten when other blocks are requested.
     storage_options
-        Of a URL: what fsspec's file system takes; http and https go through fsspec, too, where there are others than
-        "headers".
+        For a URL: the options of fsspec's file system. http and https also go through fsspec if there are options
+        other than "headers".
 
-    Raises InputError where it is no valid one; where it is missing or may not be read, that is a FileNotFoundError or
-    PermissionError too. An empty path is a UsageError.
+    Raises InputError if the file is not valid. The error for a missing or unreadable file is also a FileNotFoundError
+    or PermissionError. Raises UsageError for an empty path.
     """
     from .remote import RemoteGrid
 
@@ -393,7 +408,7 @@ def open(path: Path, *, cache: Union[int, str] = "256MiB", storage_options: Opti
 
 
 def _box_of(roi: Any, shape: Sequence[int]) -> tuple[tuple[int, ...], tuple[int, ...]]:
-    """Corners (x, y, z) of what `roi` asks of an array of `shape` [z, y, x]."""
+    """Returns the corners (x, y, z) of the box that `roi` selects in an array of `shape` [z, y, x]."""
     if roi is None:
         return (0, 0, 0), tuple(shape[::-1])
     shown = described(roi, LONGEST_BOX)

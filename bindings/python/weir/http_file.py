@@ -1,4 +1,4 @@
-"""A file by http or https, through urllib3."""
+"""Reads ranges of a file by http or https, through urllib3."""
 
 from __future__ import annotations
 
@@ -25,37 +25,37 @@ from .remote_file import (
 if TYPE_CHECKING:
     import urllib3
 
-#: Seconds before a request that failed is made once more.
+#: Seconds before each repetition of a failed request.
 _WAITS = (0.2, 0.4, 0.8)
-#: Seconds that a server may ask to wait.
+#: The longest wait in seconds that is granted when a server asks for one.
 _LONGEST_WAIT = 30
 _MOST_REDIRECTS = 10
-#: Content-Encodings that make other bytes of those of a file.
+#: Content-Encodings whose bytes are not the file's own bytes.
 _COMPRESSED = ("gzip", "x-gzip", "deflate", "compress", "x-compress", "br", "zstd")
-#: What servers answer that may answer otherwise soon.
+#: Statuses of servers that are busy. A later request may succeed.
 _BUSY = (429, 500, 502, 503, 504)
-#: What is for one server alone, and no other that it redirects to.
+#: Headers that are not sent on to another server after a redirect.
 _FOR_ONE_SERVER = ("authorization", "cookie", "proxy-authorization")
-#: What a caller's headers cannot say.
+#: Headers that HttpFile sets itself. The caller's are ignored.
 _OWN_HEADERS = ("accept-encoding", "if-range", "range")
-#: Bytes of a body nobody wants that are read, so that the next request goes through the same connection.
+#: An unwanted body of at most this many bytes is read to its end, so that the connection can be used again.
 _SHORT_BODY = 16 << 10
 
 
 class _BrokenConnection(IoError):
-    """The body of an answer ended before its end."""
+    """The body of an answer ended too early."""
 
 
 class _Connections(NamedTuple):
-    """What requests go through, until `given_up`."""
+    """The connection pool of requests. After `given_up` is set, no new requests go through the pool."""
 
     given_up: threading.Event
     pool: urllib3.PoolManager
 
 
 class HttpFile(RemoteFile):
-    """A file by http or https, from a server that answers requests for ranges. `headers` go with each request; user and
-    password of the URL become the header Authorization, where there is none."""
+    """A file that is read by http or https from a server that answers range requests. Each request carries `headers`.
+    User and password of the URL become the header Authorization, unless `headers` has one."""
 
     def __init__(self, url: str, headers: Optional[Mapping[str, str]] = None) -> None:
         super().__init__()
@@ -72,9 +72,9 @@ class HttpFile(RemoteFile):
         if user is not None and not any(name.lower() == "authorization" for name in self._headers):
             self._headers["Authorization"] = _basic_authorization(user)
         self._connect()
-        self._version: Optional[str] = None  # by which the server tells that the file has changed
-        self._tag: Optional[str] = None  # by which we tell that, where the server does not
-        self._total: Optional[str] = None  # bytes of the file, as the server says
+        self._version: Optional[str] = None  # sent as If-Range, so that the server notices that the file has changed
+        self._tag: Optional[str] = None  # compared here, in case the server does not notice
+        self._total: Optional[str] = None  # the file's length in bytes, as the server states it
 
     def _connect(self) -> None:
         import urllib3
@@ -96,7 +96,7 @@ class HttpFile(RemoteFile):
         return self._again_where_it_breaks(functools.partial(self._ask_for, piece, through), through)
 
     def _again_where_it_breaks(self, ask: Callable[[], Any], through: _Connections) -> Any:
-        """What `ask` returns, which is called as often as there are _WAITS, and once, while connections break."""
+        """Returns what `ask` returns. While connections break, calls `ask` again, once for each of _WAITS."""
         for wait in _WAITS:
             try:
                 return ask()
@@ -169,7 +169,7 @@ class HttpFile(RemoteFile):
 
     @contextlib.contextmanager
     def _answer(self, url: str, headers: dict[str, str], through: _Connections) -> Iterator[urllib3.HTTPResponse]:
-        """The answer to a request, of which what is not read is not waited for."""
+        """Yields the answer to a request. Afterwards, does not wait for the part of the body that was not read."""
         response = self._first_answer(url, {**self._headers, **headers}, through)
         try:
             yield response
@@ -177,9 +177,9 @@ class HttpFile(RemoteFile):
             self._leave(response)
 
     def _first_answer(self, url: str, headers: dict[str, str], through: _Connections) -> urllib3.HTTPResponse:
-        """The first one that is no redirect and not of a busy server, which is asked as often as there are _WAITS, and once.
+        """Returns the first answer that is no redirect and not from a busy server. Repeats once for each of _WAITS.
 
-        By a loop of its own, since urllib3 reads all of the bodies that it leaves out.
+        urllib3's own redirects and retries are not used, because urllib3 reads the whole body of each skipped answer.
         """
         shown = shown_url(url)
         waits = iter(_WAITS)
@@ -222,14 +222,14 @@ class HttpFile(RemoteFile):
 
         try:
             asked = urllib3.Retry().get_retry_after(response)
-        except (self._failures, OverflowError, TypeError, ValueError):  # no number and no date
+        except (self._failures, OverflowError, TypeError, ValueError):  # Retry-After is neither a number nor a date
             return otherwise
         return otherwise if asked is None else min(asked, _LONGEST_WAIT)
 
     def _leave(self, response: urllib3.HTTPResponse) -> None:
-        """Lets go of an answer, and of its connection, too, where more than a few bytes of it have not been read."""
+        """Releases an answer. Closes its connection if more than _SHORT_BODY bytes have not been read."""
         left = response.length_remaining
-        if left is not None and left <= _SHORT_BODY:  # of 0, too, which the connection learns by reading alone
+        if left is not None and left <= _SHORT_BODY:  # also for 0: only a read tells the connection that the body ended
             with contextlib.suppress(self._failures):
                 response.read(left + 1, decode_content=False)
         if response.length_remaining != 0:  # the connection still has the rest of the body
@@ -238,7 +238,8 @@ class HttpFile(RemoteFile):
 
     def _body(self, response: urllib3.HTTPResponse, most: int, shown: str) -> bytes:
         coding = response.headers.get("Content-Encoding", "").strip()
-        # A few bytes could become any number. Others, "aws-chunked" for instance, are what a store noted of an upload.
+        # A few compressed bytes could expand to any number. Other codings, such as "aws-chunked", are harmless: a
+        # store noted them at the upload.
         if any(part.strip().lower() in _COMPRESSED for part in coding.split(",")):
             raise InputError(f"{shown}: its server sends compressed bytes ({coding[:40]}); copy the file to this machine")
         try:
@@ -251,7 +252,7 @@ class HttpFile(RemoteFile):
 
 
 def _parsed(url: str, shown: str) -> urllib3.util.Url:
-    """The parts of a URL as urllib3 sees them, so that it asks the same server. Raises UsageError."""
+    """Returns the parts of a URL as urllib3 parses them, so that both agree on the server. Raises UsageError."""
     import urllib3
 
     try:
@@ -259,21 +260,21 @@ def _parsed(url: str, shown: str) -> urllib3.util.Url:
     except ValueError:
         parts = None
     if parts is None or parts.scheme not in ("http", "https") or not parts.host:
-        # A password with a slash or a number sign makes it none, and is not where it is looked for.
+        # A password with a slash or a number sign makes the URL invalid, and shown_url() does not hide it.
         hidden = re.sub(r"://.*@", "://***@", shown, flags=re.DOTALL)
         raise UsageError(f"{hidden}: is no URL of http or https; correct it")
     return parts
 
 
 def _basic_authorization(user: str) -> str:
-    """The header of "user:password", %-encoded as a URL has it."""
+    """Returns the header Authorization for `user`, "user:password" with %-encoding as in a URL."""
     name, _, password = user.partition(":")
     both = unquote_to_bytes(name) + b":" + unquote_to_bytes(password)
     return "Basic " + base64.b64encode(both).decode()
 
 
 def _redirected(url: str, headers: dict[str, str], place: str, shown: str) -> tuple[str, dict[str, str]]:
-    """Where `place` leads from `url`, and the headers of the request there."""
+    """Returns the URL to which `place` redirects from `url`, and the headers of the request there."""
     try:
         target = urljoin(url, place)
         same_server = _server(url, shown) == _server(target, shown)
@@ -291,19 +292,20 @@ def _server(url: str, shown: str) -> tuple[str, str, int]:
 
 
 def _reason(error: Exception) -> str:
-    """What went wrong, without urllib3's own words for its objects."""
+    """Returns the message of `error` without urllib3's descriptions of its own objects."""
     text = str(getattr(error, "reason", None) or error)
     return re.sub(r"^<[^>]*>: ", "", text)
 
 
 def _range_in(said: str) -> tuple[int, int, Optional[str]]:
-    """The first and last byte of "bytes 8-15/100", -1 where it says none, and of how many, where it says that."""
+    """Returns (8, 15, "100") for the Content-Range "bytes 8-15/100". The total is None if it is unknown. Returns
+    (-1, -1, None) for other texts."""
     found = re.match(r"bytes (\d+)-(\d+)/(\d+)?", said)
     return (int(found[1]), int(found[2]), found[3]) if found else (-1, -1, None)
 
 
 def _version(response: urllib3.HTTPResponse) -> Optional[str]:
-    """What a server answers ranges of this version alone for; a weak tag promises too little."""
+    """Returns the value for If-Range: a strong ETag, or Last-Modified. A weak tag does not promise equal bytes."""
     tag = response.headers.get("ETag")
     if tag is not None and not tag.startswith("W/"):
         return tag
@@ -311,7 +313,7 @@ def _version(response: urllib3.HTTPResponse) -> Optional[str]:
 
 
 def _tag(response: urllib3.HTTPResponse) -> Optional[str]:
-    """The ETag of an answer, weak or not: other bytes have another one."""
+    """Returns the ETag of an answer, weak or strong: if it differs, the bytes differ."""
     tag = response.headers.get("ETag")
     return None if tag is None else tag.removeprefix("W/")
 

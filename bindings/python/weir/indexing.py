@@ -1,4 +1,4 @@
-"""Indices and slices of arrays, as grid[...] takes them: which voxels they ask for."""
+"""Translates the indices and slices of grid[...] into the voxels that they select."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from .options import described
 
 
 class Selection(NamedTuple):
-    """Voxels along the axes [z, y, x]: first, first + step, ..., `count` of them, and the array that they become."""
+    """The selected voxels along the axes [z, y, x]: first, first + step, ..., `count` of them; the result's shape."""
 
     first: tuple[int, ...]
     step: tuple[int, ...]
     count: tuple[int, ...]
-    shape: tuple[int, ...]  #: without the axes that an index takes away, with those that None adds
+    shape: tuple[int, ...]  #: of the resulting array: an index removes its axis, None adds an axis of length 1
 
     @property
     def low(self) -> tuple[int, ...]:
-        """The lowest voxel (z, y, x); where there is any."""
+        """The lowest voxel (z, y, x). Needs a `count` of at least 1 along each axis."""
         return tuple(min(a, a + (n - 1) * s) for a, s, n in zip(self.first, self.step, self.count))
 
     @property
@@ -30,9 +30,10 @@ class Selection(NamedTuple):
 
 
 def select(key: Any, shape: tuple[int, int, int]) -> Selection:
-    """What `key` asks of an array of `shape` [z, y, x]: whole numbers, also from the end, slices, `...` and None.
+    """Returns what `key` selects in an array of `shape` [z, y, x]. `key` may have integers (negative ones count from
+    the end), slices, `...` and None.
 
-    Raises IndexError for a place outside, and for anything else that numpy takes as an index.
+    Raises IndexError for a position outside, and for the other kinds of index that numpy allows.
     """
     parts = _with_all_axes(key if isinstance(key, tuple) else (key,))
     ends: list[tuple[int, int, int]] = []
@@ -55,7 +56,7 @@ def select(key: Any, shape: tuple[int, int, int]) -> Selection:
 
 
 def _with_all_axes(parts: tuple[Any, ...]) -> list[Any]:
-    """`parts` with slices for the axes that `...`, or nothing, stands for."""
+    """Returns `parts` with full slices for the axes that `...` stands for or that are not given."""
     dots = [place for place, part in enumerate(parts) if part is Ellipsis]
     if len(dots) > 1:
         raise IndexError("an index can only have a single ellipsis ('...')")
@@ -67,7 +68,7 @@ def _with_all_axes(parts: tuple[Any, ...]) -> list[Any]:
 
 
 def _position(part: Any, axis: int, shape: tuple[int, int, int]) -> int:
-    """A whole number as a place along `axis`, counted from 0."""
+    """Returns the integer `part` as a position along `axis`, counted from 0. Raises IndexError."""
     try:
         if isinstance(part, (bool, numpy.bool_)) or (isinstance(part, numpy.ndarray) and part.ndim > 0):
             raise TypeError

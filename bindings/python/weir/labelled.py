@@ -1,4 +1,4 @@
-"""An xarray.DataArray as weir.convert takes it: values [z, y, x], their place, and what they mean."""
+"""Takes an xarray.DataArray apart for weir.convert: values [z, y, x], spacing and origin, name, units and time."""
 
 from __future__ import annotations
 
@@ -16,43 +16,43 @@ from .undecoded import refuse_undecoded
 if TYPE_CHECKING:
     import xarray
 
-#: Regular coordinates may be off their places by this part of the spacing, and by a rounding of float32.
+#: Regular coordinates may deviate from equal spacing by this fraction of it, plus a rounding error of their type.
 _TOLERANCE = 1e-3
 _EPOCH = "seconds since 1970-01-01 00:00:00"
 _KNOWN = {"x": "x", "lon": "x", "longitude": "x", "y": "y", "lat": "y", "latitude": "y", "z": "z"}
-#: Names of what may be z, though a name alone does not make it that.
+#: Names of axes that are probably vertical. Such a name alone does not make an axis z.
 _HEIGHTS = {"altitude", "depth", "height", "lev", "level", "plev", "pressure"}
 
 
 class Labelled(NamedTuple):
-    """An array, and what convert_array takes besides."""
+    """An array and its description, as convert_array takes them."""
 
     values: NDArray[Any]  #: [z, y, x]
     spacing: tuple[float, float, float]  #: x, y, z
     origin: tuple[float, float, float]
     name: Optional[str]
-    meaning: dict[str, Any]  #: "units", "long_name", "time", "calendar", and of "axes" x, y, z: "name", "units",
-    #: "coordinates", "note", "reversed"
+    meaning: dict[str, Any]  #: "units", "long_name", "time", "calendar", and "axes": for each of x, y, z a dictionary
+    #: with "name", "units", "coordinates", "note", "reversed"
 
 
 def is_data_array(source: Any) -> bool:
-    """Whether it is an xarray.DataArray; xarray is not imported for that."""
+    """Returns whether `source` is an xarray.DataArray. Does not import xarray."""
     xarray = sys.modules.get("xarray")
     return xarray is not None and isinstance(source, getattr(xarray, "DataArray", ()))
 
 
 class _Axis(NamedTuple):
-    """What the coordinates of an axis say."""
+    """An axis as its coordinates describe it."""
 
-    details: dict[str, Any]  #: of Labelled.meaning
+    details: dict[str, Any]  #: the axis's entry in Labelled.meaning["axes"]
     spacing: float = 1.0
     origin: float = 0.0
-    falls: str = ""  #: how coordinates that fall are read; empty where they do not fall
+    falls: str = ""  #: the note on falling coordinates; empty if they do not fall
 
 
 def take_apart(array: xarray.DataArray, spaced: bool = False) -> Labelled:
-    """Values are read. Axes whose coordinates fall are turned round. `spaced`: the caller gives another spacing, so
-    that positions of the array's own are left out.
+    """Reads the values of `array` and reverses axes with falling coordinates. `spaced` says that the caller gives
+    another spacing; the array's own positions are then left out.
 
     Raises UsageError for other than three axes, and for values and coordinates that are not decoded.
     """
@@ -80,12 +80,12 @@ def take_apart(array: xarray.DataArray, spaced: bool = False) -> Labelled:
 
 
 def _text(value: Any) -> str:
-    """As UTF-8 has it."""
+    """Returns str(value), with "?" for characters that UTF-8 cannot express."""
     return str(value).encode("utf-8", "replace").decode()
 
 
 def _attribute(array: xarray.DataArray, shown: str, key: str) -> str:
-    """The attribute `key` of `array`, which messages call `shown`; empty where it has none. Raises UsageError."""
+    """Returns the attribute `key` of `array`, which messages call `shown`. Empty if absent. Raises UsageError."""
     value = array.attrs.get(key)
     if isinstance(value, numpy.ndarray):
         if value.size != 1:
@@ -95,7 +95,7 @@ def _attribute(array: xarray.DataArray, shown: str, key: str) -> str:
 
 
 def _known_axes(array: xarray.DataArray) -> dict[str, Any]:
-    """The axes that say that they are x, y or z; of several that say the same, the first longer than 1."""
+    """Returns the names of the axes known to be x, y or z. If several claim the same, the first longer than 1."""
     axis_of: dict[str, Any] = {}
     for name in array.dims:
         said = str(array.coords[name].attrs.get("axis", "")) if name in array.coords else ""
@@ -106,7 +106,7 @@ def _known_axes(array: xarray.DataArray) -> dict[str, Any]:
 
 
 def _without_further_axes(array: xarray.DataArray) -> xarray.DataArray:
-    """Of more than three axes, those of one position left out: time first, x, y and z only where there are no others."""
+    """Drops axes of length 1 until three axes are left: time first, and x, y and z only if there are no others."""
     known = _known_axes(array).values()
 
     def rank(name: Any) -> int:
@@ -122,7 +122,7 @@ def _without_further_axes(array: xarray.DataArray) -> xarray.DataArray:
 
 
 def _z_y_x(array: xarray.DataArray) -> tuple[Any, ...]:
-    """The axes in the order z, y, x where two of them say which they are; else as they are."""
+    """Returns the axes in the order z, y, x if at least two of them are known; otherwise in the array's own order."""
     axis_of = _known_axes(array)
     if len(axis_of) == 2:
         (missing,) = set("xyz") - set(axis_of)
@@ -131,14 +131,15 @@ def _z_y_x(array: xarray.DataArray) -> tuple[Any, ...]:
 
 
 def _details(axis: _Axis, spaced: bool) -> dict[str, Any]:
-    """Of Labelled.meaning. Where the axis is `spaced` otherwise, without its own positions; times stay."""
+    """Returns the axis's entry in Labelled.meaning["axes"]. If the caller gives a spacing (`spaced`), the axis's own
+    positions are left out, except times."""
     details = dict(axis.details)
     if spaced:
         details.pop("note", None)
         counts_time = " since " in details.get("units", "")
         if not counts_time:
             details.pop("coordinates", None)
-        elif "coordinates" not in details:  # a distance is no time
+        elif "coordinates" not in details:  # the caller's spacing is a distance, not a time
             del details["units"]
     if axis.falls:
         details["reversed"] = True
@@ -157,7 +158,7 @@ def _axis(array: xarray.DataArray, place: int) -> _Axis:
     units = _attribute(coordinate, shown, "units")
     if units:
         axis["units"] = units
-    if coordinate.dtype.kind == "M":  # a distance is no time
+    if coordinate.dtype.kind == "M":  # dates; the spacing is a distance, not a time
         axis["units"] = _EPOCH
         axis["coordinates"] = _seconds(coordinate).tolist()
         axis["note"] = f"dates from {coordinate.values[0]} to {coordinate.values[-1]}, taken as indices"
@@ -198,21 +199,21 @@ def _axis(array: xarray.DataArray, place: int) -> _Axis:
 
 
 def _fall(coordinates: NDArray[Any], place: int) -> str:
-    """What is said of coordinates that fall along the axis at `place` of [z, y, x], in the words for files."""
+    """Returns the note on coordinates that fall along the axis at `place` of [z, y, x], worded as for files."""
     first, last = (str(value).removesuffix(".0") for value in (coordinates[0], coordinates[-1]))
     elements = ("planes", "rows", "columns")[place]
     return f"falls from {first} to {last}: {elements} are read in reverse order, so that positions rise"
 
 
 def _seconds(coordinate: xarray.DataArray) -> Any:
-    """Of dates, since _EPOCH."""
+    """Returns dates as seconds since _EPOCH."""
     return (coordinate.values - numpy.datetime64("1970-01-01")) / numpy.timedelta64(1, "s")
 
 
 def _time(array: xarray.DataArray) -> dict[str, Any]:
-    """The scalar coordinate `time` as "time", its number and what it counts, and "calendar", of a date of cftime.
+    """Returns the scalar coordinate `time` as {"time": (number, units)}, with "calendar" if it is a date of cftime.
 
-    Nothing, and a warning, where it has no such number.
+    Returns {} if there is no such coordinate. Also returns {}, with a warning, if it has no finite number.
     """
     if "time" not in array.coords or array.coords["time"].ndim != 0:
         return {}
@@ -238,11 +239,11 @@ def _time(array: xarray.DataArray) -> dict[str, Any]:
 
 
 def _date_of_calendar(date: Any) -> dict[str, Any]:
-    """What _time returns, of one of cftime's dates; of anything else nothing."""
+    """Returns what _time returns for a date of cftime, and {} for anything else."""
     cftime = sys.modules.get("cftime")
     if cftime is None or not isinstance(date, cftime.datetime):
         return {}
     try:
         return {"time": (float(cftime.date2num(date, _EPOCH, date.calendar)), _EPOCH), "calendar": date.calendar}
-    except (KeyError, ValueError):  # a date of no calendar
+    except (KeyError, ValueError):  # the date has no calendar
         return {}

@@ -1,4 +1,4 @@
-"""Keywords as the options of the `weir` command, so that both mean the same."""
+"""Converts keywords to the texts of the `weir` command's options, so that both mean the same."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ import numpy
 from .errors import UsageError
 
 
-#: Characters of a region that a message shows.
+#: The longest text of a region that a message shows, in characters.
 LONGEST_BOX = 150
 
 
 def _alone(value: Any) -> Any:
-    """The one value of an array without axes, of numpy, xarray or another library; anything else as it is.
+    """Returns the one value of an array without axes, of numpy, xarray or another library; anything else as it is.
 
-    Raises UsageError where that is masked.
+    Raises UsageError for a masked array with masked values.
     """
     if isinstance(value, numpy.ma.MaskedArray) and numpy.ma.getmaskarray(value).any():
         raise UsageError("a number that is masked has no value; give one")
@@ -28,12 +28,12 @@ def _alone(value: Any) -> Any:
 
 
 def text_of(value: Any) -> str:
-    """A number so that it reads back the same; sequences with commas between; a path or a text as it is."""
+    """Returns a number as text that reads back exactly, a sequence joined by commas, and a path or text as it is."""
     value = _alone(value)
     if isinstance(value, (str, bytes, os.PathLike)):
         return os.fsdecode(value)
     if isinstance(value, (bool, numpy.bool_)):
-        return str(bool(value))  # nobody means a number by it: let the check say so
+        return str(bool(value))  # not as 0 or 1: True is hardly meant as a number, so the option's check refuses it
     if isinstance(value, (int, numpy.integer)):
         return str(int(value))
     if isinstance(value, (float, numpy.floating)):
@@ -44,7 +44,7 @@ def text_of(value: Any) -> str:
 
 
 def path_bytes(path: Any) -> bytes:
-    """`path` as the system takes it. Raises UsageError where it has a NUL, at which a name would end without a word."""
+    """Returns `path` as the system takes it. Raises UsageError for a null byte, which would silently end the name."""
     found = os.fsencode(path)
     if b"\0" in found:
         raise UsageError(f"path is {found!r}, and no path has a null byte; correct it")
@@ -52,7 +52,7 @@ def path_bytes(path: Any) -> bytes:
 
 
 def input_bytes(path: Any) -> bytes:
-    """path_bytes of a file to read. Raises UsageError where it is empty, too."""
+    """Returns path_bytes(path) for a file to read. Raises UsageError if `path` is empty, too."""
     found = path_bytes(path)
     if not found:
         raise UsageError("the path is empty; name a file")
@@ -60,22 +60,22 @@ def input_bytes(path: Any) -> bytes:
 
 
 def is_url(path: Any) -> bool:
-    """Whether weir.open takes it for a URL."""
+    """Returns whether weir.open treats `path` as a URL."""
     return isinstance(path, str) and "://" in path
 
 
 def shown_url(url: str) -> str:
-    """`url` as messages show it: without the user, password and query, which may be what opens it."""
+    """Returns `url` as messages show it: without user, password and query, which may be secrets."""
     return re.sub(r"(://[^?]*)\?.+", r"\1?...", re.sub(r"(?<=://)[^/?#]*@", "***@", url), flags=re.DOTALL)
 
 
 def shown_urls(text: str) -> str:
-    """A text, with each URL in it as messages show it."""
+    """Returns `text` with shown_url() applied to each URL in it."""
     return re.sub(r"\S+://\S+", lambda found: shown_url(found[0]), text)
 
 
 def described(value: Any, longest: int = 40) -> str:
-    """In a few words: of an array its type and shape, of anything long its type."""
+    """Describes `value` for a message: an array by type and shape, a text longer than `longest` by its type alone."""
     if isinstance(value, numpy.ndarray):
         return f"an array of {value.dtype} with the shape {value.shape}"
     text = repr(value)
@@ -83,7 +83,8 @@ def described(value: Any, longest: int = 40) -> str:
 
 
 def box_text(box: Any) -> str:
-    """((x0, y0, z0), (x1, y1, z1)), x1 exclusive, as "x0:x1,y0:y1,z0:z1"; a text stays."""
+    """Returns ((x0, y0, z0), (x1, y1, z1)), x1 exclusive, as "x0:x1,y0:y1,z0:z1". Returns a text as it is. Raises
+    UsageError for anything else."""
     if isinstance(box, str):
         return box
     try:
@@ -96,7 +97,7 @@ def box_text(box: Any) -> str:
 
 
 def size_text(size: Any) -> str:
-    """(width, height) as "960x720"; a text stays."""
+    """Returns (width, height) as "960x720", and a text as it is. Raises UsageError for anything else."""
     if isinstance(size, (str, bytes)):
         return text_of(size)
     try:
@@ -106,7 +107,7 @@ def size_text(size: Any) -> str:
         if any(isinstance(side, (bool, numpy.bool_)) for side in (width, height)):
             raise TypeError
         return f"{operator.index(width)}x{operator.index(height)}"
-    except UsageError:  # of a masked number; a ValueError too
+    except UsageError:  # for a masked number; a UsageError is a ValueError, too
         raise
     except (TypeError, ValueError):
         raise UsageError(
@@ -118,9 +119,10 @@ _FLAGS = {"at_most", "colorbar", "lossless", "stack", "overwrite"}
 
 
 def given_options(**keywords: Any) -> dict[str, bytes]:
-    """{"max-error": b"0.5", "lossless": b"true"}: what is None, and a flag that is False, is not given.
+    """Returns the keywords as options: {"max-error": b"0.5", "lossless": b"true"}. Leaves out None and False flags.
 
-    Bytes, since a path may hold any. Raises UsageError for a text that is none of UTF-8.
+    Values are bytes, because a path may hold any bytes. Raises UsageError for a null character and for a text that
+    UTF-8 cannot express.
     """
     given = {}
     for name, value in keywords.items():

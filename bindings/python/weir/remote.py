@@ -1,4 +1,4 @@
-"""Packed files elsewhere: the head and the blocks that are asked for are read, in few requests."""
+"""Opens packed files at URLs. Only the head and the requested blocks are read, in few requests."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .remote_file import RemoteFile, sidecar_url
 
 
 def open_remote_file(url: str, storage_options: Optional[dict[str, Any]]) -> RemoteFile:
-    """What reads ranges of the file at `url`."""
+    """Returns the RemoteFile that reads ranges of the file at `url`. Raises UsageError."""
     options = _dictionary("storage_options", storage_options)
     if url.partition("://")[0].lower() in ("http", "https"):
         headers = _headers_alone(options)
@@ -26,7 +26,8 @@ def open_remote_file(url: str, storage_options: Optional[dict[str, Any]]) -> Rem
 
 
 def _dictionary(shown: str, value: Any) -> dict[str, Any]:
-    """`value`, of which None is an empty one. Raises UsageError, without what may be a password, for anything else."""
+    """Returns `value` as a dictionary; None becomes an empty one. Raises UsageError for anything else, without
+    showing `value`, which may hold a password."""
     if value is None:
         return {}
     if not isinstance(value, Mapping) or not all(isinstance(key, str) for key in value):
@@ -37,7 +38,7 @@ def _dictionary(shown: str, value: Any) -> dict[str, Any]:
 
 
 def _headers(shown: str, value: Any) -> dict[str, str]:
-    """Headers that a request can carry."""
+    """Returns `value` as the headers of a request. Raises UsageError for headers that a request cannot carry."""
     headers = _dictionary(shown, value)
     for name, text in headers.items():
         if not isinstance(text, str):
@@ -48,9 +49,10 @@ def _headers(shown: str, value: Any) -> dict[str, str]:
 
 
 def _headers_alone(options: Mapping[str, Any]) -> Optional[dict[str, str]]:
-    """The headers in fsspec's options of http; None where there is something else in them.
+    """Returns the headers in fsspec's `options` of http. None if there are other options, too.
 
-    fsspec reads all of a file into memory where its server knows no ranges; HttpFile refuses it.
+    With headers alone HttpFile is used: if a server does not support ranges, fsspec reads the whole file into memory,
+    but HttpFile refuses the file.
     """
     client = _dictionary("storage_options['client_kwargs']", options.get("client_kwargs"))
     if options.keys() - {"headers", "client_kwargs"} or client.keys() - {"headers"}:
@@ -60,10 +62,11 @@ def _headers_alone(options: Mapping[str, Any]) -> Optional[dict[str, str]]:
 
 
 class RemoteGrid(Grid):
-    """A packed NanoVDB file elsewhere, of which only what is asked for is read. Made by weir.open.
+    """A packed NanoVDB file at a URL. Only the requested parts are read. weir.open makes a RemoteGrid.
 
-    Values, samples, levels and macrocells are as of a Grid of the same file. What was read is kept, see `cache` of
-    weir.open; `requests` and `bytes_read` count. render and verify want all of the file: UsageError.
+    Values, samples, levels and macrocells equal those of a Grid of the same file. Bytes that were read are kept, see
+    `cache` of weir.open. `requests` and `bytes_read` count what was read. render and verify need the whole file and
+    raise UsageError.
     """
 
     _samples_decode_their_blocks = True
@@ -82,19 +85,19 @@ class RemoteGrid(Grid):
 
     @property
     def requests(self) -> int:
-        """How many were made so far."""
+        """How many requests were made so far."""
         return self._file.requests
 
     @property
     def bytes_read(self) -> int:
-        """Of the file and its sidecar, so far."""
+        """How many bytes of the file and its sidecar were read so far."""
         return self._file.bytes_read
 
     @property
     def sidecar(self) -> Optional[dict[str, Any]]:
-        """What weir.convert returned, from the URL with ".json" behind it, read once; None where there is none.
+        """What weir.convert returned, read once from the URL with ".json" appended. None if there is no sidecar.
 
-        Raises InputError where it is damaged, or of another file.
+        Raises InputError if the sidecar is damaged or belongs to another file.
         """
         if self.closed:
             raise UsageError(f"{self._path}: is closed; open it again with weir.open")
@@ -107,5 +110,5 @@ class RemoteGrid(Grid):
         return self._sidecar
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """A copy in another process opens the URL there."""
+        """Pickles the grid as its URL. Unpickling in another process opens the URL there."""
         return RemoteGrid, (self._url, self._cache, self._storage_options)

@@ -1,4 +1,4 @@
-"""A file elsewhere, of which ranges are read by several threads: http_file.py and fsspec_file.py ask for them."""
+"""Reads ranges of a remote file with several threads. http_file.py and fsspec_file.py make the requests."""
 
 from __future__ import annotations
 
@@ -10,37 +10,37 @@ from urllib.parse import urlsplit, urlunsplit
 
 from .errors import InputError, IoError
 
-#: Bytes from an offset on.
+#: (offset, count) of bytes.
 Range = tuple[int, int]
 
-#: Longer ranges are read in pieces of so many bytes, at once.
+#: Longer ranges are read in pieces of this many bytes, READS_AT_ONCE of them at a time.
 _PIECE = 8 << 20
 READS_AT_ONCE = 8
-#: What servers answer where a file is missing: some stores say 401 or 403.
+#: Statuses of servers for a missing file. Some stores answer 401 or 403.
 MISSING_FILE_STATUSES = (401, 403, 404, 410)
-#: No sidecar is longer.
+#: The longest sidecar that is read, in bytes.
 LONGEST_SIDECAR = 4 << 20
 
 
 class RemoteFile:
-    """A file of which parts are read, and counted. May be used by several threads."""
+    """A file that is read in parts. Counts requests and bytes. May be used by several threads."""
 
     def __init__(self) -> None:
         self.requests = 0
         self.bytes_read = 0
         self._lock = threading.Lock()
-        self._reads: list[_Read] = []  # those under way
+        self._reads: list[_Read] = []  # the reads under way
         self._forked = False
         _files.add(self)
 
     def begin_again(self) -> None:
-        """In a process that was forked: connections, locks and threads are those of the other one."""
+        """Resets the file in a forked process: connections, locks and threads belong to the parent process."""
         self._lock = threading.Lock()
         self._reads = []
         self._forked = True
 
     def _connect(self) -> None:
-        """Makes what requests go through, anew."""
+        """Makes new connections for requests."""
 
     def _leave_the_forks_connections(self) -> None:
         with self._lock:
@@ -49,13 +49,13 @@ class RemoteFile:
             self._forked = False
 
     def read(self, ranges: Sequence[Range]) -> list[bytes]:
-        """The bytes of each range, all there or an exception. In pieces, several at once."""
+        """Returns all bytes of each range, or raises an exception. Reads several pieces at once."""
         pieces = [_pieces(*asked) for asked in ranges]
         found = iter(self._run(self._read_piece, [piece for parts in pieces for piece in parts]))
         return [b"".join(next(found) for _ in parts) for parts in pieces]
 
     def _run(self, work: Callable[[Range], Any], pieces: Sequence[Range]) -> list[Any]:
-        """What `work` makes of each piece, by threads that interrupt() makes nobody wait for."""
+        """Returns what `work` returns for each piece. Does the work in threads, which interrupt() abandons."""
         self._leave_the_forks_connections()
         with self._lock:
             read = _Read(self._through_these_connections(work), pieces)
@@ -76,14 +76,14 @@ class RemoteFile:
             read.fail(IoError("reading was interrupted"))
 
     def _through_these_connections(self, work: Callable[[Range], Any]) -> Callable[[Range], Any]:
-        """`work` through the connections that there are now, whatever _give_up() makes of those to come."""
+        """Returns `work` bound to the current connections. _give_up() replaces them only for later requests."""
         return work
 
     def _give_up(self) -> None:
-        """Lets requests that are under way end by themselves, and keeps them from those to come."""
+        """Abandons the requests that are under way, and keeps their connections from later requests."""
 
     def read_beside(self, url: str) -> Optional[str]:
-        """The text of another, short file of the same place; None where it is missing."""
+        """Returns the text of a sidecar at `url`, beside this file. None if it is missing."""
         raise NotImplementedError
 
     def _read_piece(self, piece: Range) -> bytes:
@@ -96,7 +96,7 @@ class RemoteFile:
         return data
 
 
-#: All there are, which a fork copies.
+#: All RemoteFiles of this process. A forked process resets its copies.
 _files: weakref.WeakSet[RemoteFile] = weakref.WeakSet()
 
 
@@ -109,7 +109,7 @@ os.register_at_fork(after_in_child=_begin_again)
 
 
 def _start(work: Callable[[], None], threads: int) -> int:
-    """As many of `threads` threads that do `work` as the system starts."""
+    """Starts up to `threads` threads that do `work`. Returns how many the system started."""
     for started in range(threads):
         try:
             threading.Thread(target=work, daemon=True).start()
@@ -119,8 +119,9 @@ def _start(work: Callable[[], None], threads: int) -> int:
 
 
 class _Read:
-    """Pieces of a file, read several at once by threads of their own, which a caller need not wait for, and which keep no
-    program from ending: one that waits for a server cannot be told to stop."""
+    """Reads pieces of a file, several at once, in threads of its own. A thread that waits for a server cannot be
+    stopped. So the threads are daemons: a caller need not wait for them, and they do not keep a program from
+    ending."""
 
     def __init__(self, read_piece: Callable[[Range], Any], pieces: Sequence[Range]) -> None:
         self._read_piece = read_piece
@@ -131,10 +132,10 @@ class _Read:
         self._changed = threading.Condition()
 
     def run(self) -> list[Any]:
-        """The pieces, all there or an exception: the first one."""
+        """Returns all pieces, or raises the first exception that occurred."""
         wanted = min(READS_AT_ONCE, len(self._found))
         if _start(self._read_pieces, wanted) == 0 and wanted > 0:
-            self._read_pieces()  # here, where the system starts no thread
+            self._read_pieces()  # in this thread, because the system started none
         with self._changed:
             self._changed.wait_for(lambda: self._failure is not None or self._missing == 0)
             if self._failure is not None:
@@ -142,7 +143,7 @@ class _Read:
         return self._found
 
     def fail(self, failure: BaseException) -> None:
-        """Ends it with `failure`, but for one that is there already; pieces that nobody has begun are left."""
+        """Ends the read with `failure`, unless it has failed already. Pieces that were not begun are not read."""
         with self._changed:
             if self._failure is None:
                 self._failure = failure
@@ -156,7 +157,7 @@ class _Read:
                 place, piece = self._left.pop()
             try:
                 data = self._read_piece(piece)
-            except BaseException as error:  # goes on to whoever waits
+            except BaseException as error:  # run() raises it in the thread that waits
                 self.fail(error)
                 return
             with self._changed:
@@ -171,7 +172,7 @@ def _pieces(offset: int, count: int) -> list[Range]:
 
 
 def sidecar_url(url: str) -> str:
-    """Of the sidecar beside the file at `url`, for http and https with the same query, and without a fragment."""
+    """Returns the URL of the sidecar of the file at `url`. For http and https, keeps the query, not the fragment."""
     parts = urlsplit(url)
     if parts.scheme not in ("http", "https") or not (parts.query or parts.fragment):
         return url + ".json"
@@ -179,12 +180,12 @@ def sidecar_url(url: str) -> str:
 
 
 def changed_while_read(url: str) -> InputError:
-    """Raised where a file is another one than before."""
+    """Returns the error for a file that changed since it was first read."""
     return InputError(f"{url}: changed while it was read; open it again")
 
 
 def sidecar_text(url: str, data: bytes) -> str:
-    """The text of a sidecar at `url`. Raises InputError."""
+    """Returns the bytes of a sidecar from `url` as text. Raises InputError if they are too many or not UTF-8."""
     if len(data) > LONGEST_SIDECAR:
         raise InputError(f"{url}: more than {LONGEST_SIDECAR} bytes are no sidecar")
     try:

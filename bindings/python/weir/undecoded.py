@@ -1,6 +1,6 @@
-"""What the attributes of an xarray.DataArray say of values that xarray did not decode.
+"""Reads the attributes of an xarray.DataArray that concern values which xarray did not decode.
 
-xarray moves these attributes into the encoding of what it decodes: where they are in attrs, nobody has applied them.
+When xarray decodes values, it moves these attributes into `encoding`. Attributes still in `attrs` were not applied.
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ from .options import described, text_of
 if TYPE_CHECKING:
     import xarray
 
-#: Each with the number that changes no value.
+#: Attributes of packed values, each with the number that leaves values unchanged.
 _PACKING = {"scale_factor": 1, "add_offset": 0}
-#: What _Unsigned says of values whose type of numpy is another one than the file means.
+#: For each kind of numpy type, the value of _Unsigned that says that the file means the other signedness.
 _OTHER_SIGN = {"i": "true", "u": "false"}
 
 
 def refuse_undecoded(array: xarray.DataArray, shown: str) -> None:
-    """Raises UsageError where the values of `array`, which messages call `shown`, are still as the file packs them."""
+    """Raises UsageError if the values of `array`, which messages call `shown`, are still packed as in the file."""
     for key, value in array.attrs.items():
         packs = key in _PACKING and _numbers(value) != [_PACKING[key]]
         if packs or key == "_Unsigned" and str(value) == _OTHER_SIGN.get(array.dtype.kind):
@@ -35,9 +35,10 @@ def refuse_undecoded(array: xarray.DataArray, shown: str) -> None:
 
 
 def missing_number(array: xarray.DataArray) -> Union[int, float, None]:
-    """The stored number that stands for no data, by _FillValue and missing_value; None where no finite one does.
+    """Returns the stored finite number that means "no data", from _FillValue and missing_value; None if absent.
 
-    A warning says which one no value of the array can be. Raises UsageError where there are several, or no numbers.
+    Logs a warning for a number that no value of the array can have. Raises UsageError if there are several numbers or
+    if an attribute is not a number.
     """
     if array.dtype.kind not in "iuf":
         return None
@@ -69,7 +70,7 @@ def missing_number(array: xarray.DataArray) -> Union[int, float, None]:
 
 
 def _numbers(value: Any) -> Optional[list[Union[int, float]]]:
-    """Of an attribute, one or several; None where it has something else."""
+    """Returns the numbers of an attribute's value. None if the value is not made of numbers."""
     array = numpy.asarray(value)
     return array.ravel().tolist() if array.dtype.kind in "iuf" else None
 
@@ -80,12 +81,12 @@ def _text(value: Any) -> str:
 
 
 def _stored(number: Union[int, float], kind: numpy.dtype[Any]) -> Union[int, float, None]:
-    """`number` as an array of `kind` holds it; None where it cannot."""
+    """Returns `number` as an array of type `kind` stores it. None if the type cannot."""
     if kind.kind == "f":
         with numpy.errstate(over="ignore"):
             stored = float(kind.type(number))
         return None if math.isinf(stored) and math.isfinite(number) else stored
     if not math.isfinite(number):
-        return number  # which no voxel has
+        return number  # no voxel of an integer type has this value
     limits = numpy.iinfo(kind)
     return int(number) if number == int(number) and limits.min <= number <= limits.max else None

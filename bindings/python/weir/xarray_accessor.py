@@ -1,4 +1,4 @@
-"""array.weir.convert of every xarray.DataArray. Imported by weir where xarray is imported already."""
+"""Adds array.weir.convert to every xarray.DataArray. weir imports this module if xarray is already imported."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from .conversion import Path, convert
 
 @xarray.register_dataarray_accessor("weir")  # type: ignore[misc]
 class WeirAccessor:
-    """What weir does with an array: array.weir."""
+    """The accessor array.weir: weir's functions for an xarray.DataArray."""
 
     def __init__(self, array: xarray.DataArray) -> None:
         self._array = array
 
     def convert(self, output: Path, **options: Any) -> Any:
-        """weir.convert(array, output, **options)."""
+        """Calls weir.convert(array, output, **options) and returns the sidecar."""
         return convert(self._array, output, **options)

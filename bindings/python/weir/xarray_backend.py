@@ -1,4 +1,4 @@
-"""Grids for xarray: Grid.to_xarray, and the engine "weir" of xarray.open_dataset. Values are decoded when they are used."""
+"""Grids for xarray: Grid.to_xarray and the engine "weir" of xarray.open_dataset. Values are decoded on use."""
 
 from __future__ import annotations
 
@@ -21,25 +21,26 @@ from .options import is_url
 if TYPE_CHECKING:
     from .grid import Grid
 
-#: Edge of the chunks that dask gets with chunks={}: 8 MiB, and whole blocks of 8^3 voxels.
+#: Edge in voxels of the chunks that dask gets with chunks={}. A chunk has 8 MiB and only whole blocks of 8^3 voxels.
 CHUNK = 128
 _UNNAMED = "values"
 
 
-#: Places of a list that are closer are read with what lies between them: they are in one block of 8^3 voxels or two.
+#: Listed positions at most this far apart are read together with the voxels between them, because they lie in one
+#: block of 8^3 voxels or in two neighbouring ones.
 _GAP = 8
-#: A call for each costs more than to decode the box around them where there are more.
+#: The largest number of boxes that are read by separate calls. With more, one larger box is faster.
 _MOST_BOXES = 64
-#: A look-up of one voxel takes as long as to decode so many of a box.
+#: The cost of looking up one voxel, in voxels of a decoded box.
 _LOOK_UP = 8
-#: And a call for one block.
+#: The cost of a call for one block, in voxels of a decoded box.
 _CALL = 2**11
-#: Voxels along an axis, of which float32 has the positions of all centres.
+#: The longest axis in voxels, exclusive, for which float32 can express the positions of all voxel centres.
 _MOST_SAMPLED = 2**23
 
 
 class GridArray(BackendArray):  # type: ignore[misc]
-    """A level of a grid as xarray reads arrays: of lists of places along axes, the boxes that hold them are read."""
+    """A level of a grid as an array that xarray reads. For lists of positions, reads the boxes that hold them."""
 
     def __init__(self, grid: Grid, level: int) -> None:
         self.grid = grid
@@ -48,14 +49,14 @@ class GridArray(BackendArray):  # type: ignore[misc]
         self.dtype = grid.dtype
 
     def __getitem__(self, key: Any) -> Any:
-        # Not by xarray's explicit_indexing_adapter, which misplaces slices with negative steps.
+        # xarray's explicit_indexing_adapter is not used, because it misplaces slices with negative steps.
         parts = tuple(_from_zero(part, axis, self.shape[axis]) for axis, part in enumerate(key.tuple))
         if isinstance(key, indexing.VectorizedIndexer):
             return self._points(parts)
         return self._lists(parts)
 
     def _lists(self, parts: tuple[Any, ...]) -> Any:
-        """Of each combination of runs of the lists one box."""
+        """Reads the outer product of `parts`: one box for each combination of the lists' runs."""
         lists = {axis: numpy.unique(part, return_inverse=True) for axis, part in enumerate(parts) if _is_list(part)}
         if not lists or any(places.size == 0 for places, _ in lists.values()):
             return self._box(parts, False)
@@ -77,7 +78,7 @@ class GridArray(BackendArray):  # type: ignore[misc]
         return values
 
     def _points(self, parts: tuple[Any, ...]) -> Any:
-        """Of points that are few in the box around them each by itself, or each of their blocks."""
+        """Reads points. If they are few in the box around them, looks up each point or reads each of their blocks."""
         if not all(_is_list(part) for part in parts):
             return self._box(parts, True)
         shape = numpy.broadcast_shapes(*(part.shape for part in parts))
@@ -94,15 +95,16 @@ class GridArray(BackendArray):  # type: ignore[misc]
         if (len(begins) + 1) * _CALL >= voxels:
             return self._box(parts, True)
         values = numpy.empty(count, self.dtype)
-        for chosen in numpy.split(order, begins):  # those of one block
+        for chosen in numpy.split(order, begins):  # the points of one block
             values[chosen] = self._box(tuple(places[chosen].T), True)
         return values.reshape(shape)
 
     def _box(self, parts: tuple[Any, ...], together: bool) -> Any:
-        """What `parts` ask of the box that holds all of it; whether lists are read together, as points."""
+        """Reads the box that holds everything that `parts` select, and returns the selection. `together` says that
+        the lists are coordinates of points."""
         box, rest = zip(*(_box_and_rest(part) for part in parts))
         values = self.grid._read(box, self.level)
-        rest = tuple(part for part in rest if part is not None)  # the axes that are left
+        rest = tuple(part for part in rest if part is not None)  # for the axes that remain
         if together:
             return _point_by_point(values, rest)
         for axis, part in enumerate(rest):
@@ -116,7 +118,8 @@ def _is_list(part: Any) -> bool:
 
 
 def _from_zero(part: Any, axis: int, count: int) -> Any:
-    """A list of places, those from the end counted from 0; anything else as it is. Raises IndexError outside."""
+    """Returns a list of positions with negative ones counted from 0, and anything else as it is. Raises IndexError
+    for positions outside."""
     if not _is_list(part):
         return part
     places = numpy.where(part < 0, part + count, part)
@@ -127,13 +130,14 @@ def _from_zero(part: Any, axis: int, count: int) -> Any:
 
 
 def _runs(places: Any, gap: int) -> list[slice]:
-    """Slices of rising `places`, between which there are steps of more than `gap`."""
+    """Splits rising `places` at steps of more than `gap`. Returns the slices of `places`."""
     ends = [0, *(numpy.flatnonzero(numpy.diff(places) > gap) + 1).tolist(), len(places)]
     return [slice(begin, end) for begin, end in zip(ends, ends[1:])]
 
 
 def _box_and_rest(part: Any) -> tuple[Any, Any]:
-    """The place or slice that holds what `part` asks of an axis, and what it asks of that; None: the axis is gone."""
+    """Returns the position or slice of an axis that holds what `part` selects, and the selection within that slice,
+    which is None if `part` removes the axis."""
     if isinstance(part, slice):
         return part, slice(None)
     if _is_list(part):
@@ -144,7 +148,7 @@ def _box_and_rest(part: Any) -> tuple[Any, Any]:
 
 
 def _point_by_point(values: Any, rest: tuple[Any, ...]) -> Any:
-    """values[rest], the axes of the arrays in it before those of its slices, as xarray has them."""
+    """Returns values[rest] with the axes of arrays before the axes of slices, as xarray orders them."""
     arrays = [axis for axis, part in enumerate(rest) if isinstance(part, numpy.ndarray)]
     found = values[rest]
     together = arrays == list(range(arrays[0], arrays[-1] + 1)) if arrays else True
@@ -155,7 +159,7 @@ def _point_by_point(values: Any, rest: tuple[Any, ...]) -> Any:
 
 
 def _variable_name(grid_name: str, taken: Iterable[str]) -> str:
-    """The last part of "/velocity/x", or, where a coordinate is called so, "velocity_x"."""
+    """Returns "x" for the grid "/velocity/x", or "velocity_x" if a coordinate is named "x"; otherwise _UNNAMED."""
     parts = [part for part in grid_name.split("/") if part]
     for name in (parts[-1:], parts[-2:] if len(parts) > 1 else []):
         if name and "_".join(name) not in taken:
@@ -164,7 +168,7 @@ def _variable_name(grid_name: str, taken: Iterable[str]) -> str:
 
 
 def _sidecar(grid: Grid) -> dict[str, Any]:
-    """What the sidecar says; nothing where there is none, or one of another file or a damaged one, which is logged."""
+    """Returns the sidecar. Empty if absent; empty, with a warning, if damaged or if it belongs to another file."""
     try:
         return grid.sidecar or {}
     except InputError as error:
@@ -173,7 +177,7 @@ def _sidecar(grid: Grid) -> dict[str, Any]:
 
 
 def data_array(grid: Grid, level: int = 0, decode_times: bool = True) -> xarray.DataArray:
-    """What Grid.to_xarray returns; decode_times as of xarray.open_dataset: whether a time is a date, not a number."""
+    """Returns what Grid.to_xarray returns. `decode_times`, as for xarray.open_dataset: whether times become dates."""
     sidecar = _sidecar(grid)
     source = sidecar.get("source", {})
     names = _axis_names(source)
@@ -191,7 +195,7 @@ def data_array(grid: Grid, level: int = 0, decode_times: bool = True) -> xarray.
 
 
 class WeirBackendEntrypoint(BackendEntrypoint):  # type: ignore[misc]
-    """The engine "weir" of xarray.open_dataset: a dataset with the one variable that the file has."""
+    """The engine "weir" of xarray.open_dataset. A dataset has one variable, the file's first grid."""
 
     description = "NanoVDB files, with the sidecars of weir"
     open_dataset_parameters = (
@@ -208,8 +212,9 @@ class WeirBackendEntrypoint(BackendEntrypoint):  # type: ignore[misc]
         storage_options: Optional[dict[str, Any]] = None,
         remote_cache: Union[int, str] = "256MiB",
     ) -> xarray.Dataset:
-        """xarray calls it. level, as of Grid.to_numpy: means over cubes of 2^level voxels along an edge;
-        storage_options, as of weir.open, and remote_cache, its cache, for which xarray has another meaning.
+        """Opens a file for xarray. `level` is as for Grid.to_numpy: means over cubes of 2^level voxels along an edge.
+        `storage_options` is as for weir.open. `remote_cache` is the `cache` of weir.open; xarray uses that name
+        otherwise.
         """
         from .grid import open as open_grid
 
@@ -227,7 +232,7 @@ class WeirBackendEntrypoint(BackendEntrypoint):  # type: ignore[misc]
         return dataset
 
     def guess_can_open(self, filename_or_obj: Any) -> bool:
-        """Whether it is the path or URL of an .nvdb file."""
+        """Returns whether `filename_or_obj` is the path or URL of an .nvdb file."""
         if not isinstance(filename_or_obj, (str, os.PathLike)):
             return False
         name = re.split("[?#]", filename_or_obj)[0] if is_url(filename_or_obj) else os.fspath(filename_or_obj)
@@ -239,13 +244,13 @@ def _listed(names: Optional[Iterable[str]]) -> list[str]:
 
 
 def _axis_names(source: dict[str, Any]) -> tuple[str, ...]:
-    """The source's names of [z, y, x] where it has three that differ."""
+    """Returns the source's names of [z, y, x] if there are three different ones, otherwise ("z", "y", "x")."""
     given = tuple((source.get("axes") or [])[::-1])
     return given if len(set(given)) == 3 and all(given) else ("z", "y", "x")
 
 
 def _attributes(sidecar: dict[str, Any]) -> dict[str, Any]:
-    """units, long_name and what the values differ from the source's by at most, of those that are known."""
+    """Returns those of units, long_name, max_abs_error (the largest error of a value) and psnr_db that are known."""
     source, error = sidecar.get("source", {}), sidecar.get("error", {})
     found = {key: source.get(key) for key in ("units", "long_name")}
     found["max_abs_error"], found["psnr_db"] = error.get("max_abs"), error.get("psnr_db")
@@ -253,7 +258,8 @@ def _attributes(sidecar: dict[str, Any]) -> dict[str, Any]:
 
 
 def _coordinate(grid: Grid, source: dict[str, Any], level: int, axis: int, name: str) -> xarray.Variable:
-    """World positions of the centres along `axis` of [z, y, x]; of means, the mean of their voxels' positions."""
+    """Returns the world positions of the voxels' centres along `axis` of [z, y, x]. For levels above 0, returns the
+    mean position of the voxels in each mean."""
     place = 2 - axis
     first, count = grid.index_origin[place], grid.extent[place]
     listed = (source.get("irregular_axes") or {}).get("xyz"[place])
@@ -273,10 +279,10 @@ def _time(time: dict[str, Any]) -> xarray.Variable:
 
 
 def _as_dates(name: str, variable: xarray.Variable) -> xarray.Variable:
-    """Dates where the units say since when, and the calendar is one that xarray knows here; else the numbers."""
+    """Returns `variable` as dates if its units have "since" and xarray knows the calendar; otherwise as it is."""
     if " since " not in variable.attrs.get("units", ""):
         return variable
     try:
         return xarray.decode_cf(xarray.Dataset(coords={name: variable}))[name].variable
-    except (ImportError, ValueError):  # cftime is missing, or the units are of no calendar
+    except (ImportError, ValueError):  # cftime is missing, or the units fit no calendar
         return variable

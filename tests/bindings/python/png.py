@@ -1,4 +1,4 @@
-"""A PNG of 8-bit RGB as an array, with nothing but the standard library."""
+"""Reads a PNG of 8-bit RGB as an array, without an image library."""
 
 import struct
 import zlib
@@ -9,7 +9,7 @@ _SIGNATURE = b"\x89PNG\r\n\x1a\n"
 
 
 def read_png(path):
-    """uint8 [y, x, 3] of a PNG of 8-bit RGB without interlace."""
+    """Returns the pixels of a PNG of 8-bit RGB without interlacing as uint8 [y, x, 3]."""
     data = path.read_bytes()
     assert data[:8] == _SIGNATURE
     at, packed = 8, b""
@@ -28,7 +28,7 @@ def read_png(path):
 def _unfilter(rows):
     """Undoes the filters of PNG's rows (specification, section 9)."""
     height, length = rows.shape[0], rows.shape[1] - 1
-    pixels = numpy.zeros((height + 1, length + 3), numpy.int64)  # with a row above and a pixel before
+    pixels = numpy.zeros((height + 1, length + 3), numpy.int64)  # with a zero row above and a zero pixel at the left
     for y in range(height):
         kind, row = rows[y, 0], rows[y, 1:].astype(numpy.int64)
         if kind in (0, 2):

@@ -1,4 +1,4 @@
-"""A web server on loopback that answers requests for ranges, and notes them."""
+"""A web server on loopback that answers range requests and records them."""
 
 import contextlib
 import http.server
@@ -9,7 +9,7 @@ import time
 
 class QuietServer(http.server.ThreadingHTTPServer):
     def handle_error(self, request, client_address):
-        pass  # a client that does not want the rest
+        pass  # the client closed the connection before the end of the answer
 
 
 class RangeServer:
@@ -78,7 +78,7 @@ class RangeServer:
                 self.wfile.write(body)
 
             def break_off(self, head, body):
-                """Half of an answer."""
+                """Sends half of an answer."""
                 owner.cut -= 1
                 self.close_connection = True
                 self.wfile.write(f"HTTP/1.1 {head}\r\nContent-Length: {len(body)}\r\n\r\n".encode() + body[: len(body) // 2])
@@ -88,7 +88,7 @@ class RangeServer:
                 self.send_response(302)
                 self.send_header("Location", place)
                 self.end_headers()
-                with contextlib.suppress(OSError):  # the client does not want the rest
+                with contextlib.suppress(OSError):  # the client may close the connection before the end
                     for _ in range(1024):
                         self.wfile.write(bytes(1 << 16))
                         owner.wasted += 1 << 16
@@ -113,7 +113,7 @@ class RangeServer:
                         return self.answer(404)
                     tag = f'"{owner.versions[path]}"'
                     found = re.fullmatch(r"bytes=(\d+)-(\d+)", self.headers.get("Range", ""))
-                    same = self.headers.get("If-Range", tag) == tag  # never of a weak one
+                    same = self.headers.get("If-Range", tag) == tag  # If-Range never has a weak tag
                     headers = {"ETag": f"W/{tag}" if owner.weak else tag} if owner.tags else {}
                     if owner.dated is not None:
                         headers["Last_Modified"] = owner.dated

@@ -1,4 +1,4 @@
-"""Runs the tests of one file: run.py test_NAME.py. Exits with 77 where all of them were skipped, after saying why."""
+"""Runs the tests of one file: run.py test_NAME.py. If all tests were skipped, prints why and exits with 77."""
 
 import importlib.util
 import pathlib

@@ -1,4 +1,4 @@
-"""What the tests share: a folder each, the command to compare with, fields whose every value is known."""
+"""Helpers of the tests: a folder for each test, the command to compare with, fields with known values."""
 
 import logging
 import os
@@ -17,7 +17,7 @@ SOURCE = pathlib.Path(os.environ["WEIR_SOURCE"])
 
 
 class FolderTest(unittest.TestCase):
-    """A test with an empty folder of its own."""
+    """A test that has its own empty folder."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -25,18 +25,18 @@ class FolderTest(unittest.TestCase):
         self.folder = pathlib.Path(folder.name)
 
     def names(self):
-        """Everything in the folder, hidden names too."""
+        """Returns all names in the folder, hidden ones too."""
         return sorted(path.name for path in self.folder.iterdir())
 
     def lossless(self, values, name="a.nvdb", **keywords):
-        """An open grid of exactly `values` [z, y, x]."""
+        """Returns an open grid of exactly `values` [z, y, x]."""
         weir.convert(values, self.folder / name, lossless=True, **keywords)
         grid = weir.open(self.folder / name)
         self.addCleanup(grid.close)
         return grid
 
     def refused(self, kind, call, *arguments, **keywords):
-        """The whole message of the `kind` that the call raises, with the test's folder left out."""
+        """Returns the whole message of the exception `kind` that the call raises, without the test folder's path."""
         with self.assertRaises(kind) as raised:
             call(*arguments, **keywords)
         self.assertIs(raised.exception.__class__, kind)
@@ -44,13 +44,13 @@ class FolderTest(unittest.TestCase):
 
 
 def run_weir(*arguments):
-    """stdout of the command this module was built with."""
+    """Runs the weir command that was built with this module. Returns its stdout."""
     command = [os.environ["WEIR_COMMAND"], *map(str, arguments)]
     return subprocess.run(command, check=True, capture_output=True, text=True).stdout
 
 
 def noise(shape, dtype=numpy.int16, seed=1):
-    """Values of the type's whole range, no two runs alike; floats are in [-1, 1)."""
+    """Returns values over the type's whole range, without repeating runs. Floats are in [-1, 1)."""
     random = numpy.random.default_rng(seed)
     dtype = numpy.dtype(dtype)
     if dtype.kind == "b":
@@ -62,11 +62,11 @@ def noise(shape, dtype=numpy.int16, seed=1):
 
 
 def ramp(nx, ny, nz):
-    """x + 100 y + 10000 z, as float32 [z, y, x]: each value says where it is."""
+    """Returns x + 100 y + 10000 z as float32 [z, y, x], so that each value tells its position."""
     z, y, x = numpy.mgrid[0:nz, 0:ny, 0:nx]
     return (x + 100 * y + 10000 * z).astype(numpy.float32)
 
 
 def same(a, b):
-    """Equal bit for bit, in shape too."""
+    """Returns whether the arrays have the same shape and the same bits."""
     return a.shape == b.shape and a.dtype == b.dtype and a.tobytes() == b.tobytes()

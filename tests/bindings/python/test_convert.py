@@ -244,7 +244,7 @@ class Convert(FolderTest):
 
 
 class SeveralPositions(FolderTest):
-    """An NRRD file of three volumes."""
+    """Tests an NRRD file that holds three volumes."""
 
     def setUp(self):
         super().setUp()

@@ -1,4 +1,4 @@
-"""weir.convert of a DataArray: what is not decoded, coordinates that are irregular, that fall, or beside a spacing."""
+"""Tests weir.convert of a DataArray: undecoded values, and irregular, falling or overruled coordinates."""
 
 import logging
 import unittest
@@ -16,7 +16,7 @@ from support import FolderTest, ramp, same
 
 class DataArrayTest(FolderTest):
     def array(self, values=None, attrs=None, **coords):
-        """[z, y, x] with coordinates along some of these; a coordinate is its values, or (values, attributes)."""
+        """Returns an array [z, y, x] with coordinates on some axes, each its values or (values, attributes)."""
         given = {
             axis: (axis, *(found if isinstance(found, tuple) else (found,))) for axis, found in coords.items()
         }
@@ -25,7 +25,7 @@ class DataArrayTest(FolderTest):
         )
 
     def converted(self, array, **keywords):
-        """The sidecar, and the lines that are logged of the array."""
+        """Converts the array. Returns the sidecar and the logged lines."""
         with self.assertLogs("weir") as logs:
             record = weir.convert(array, self.folder / "a.nvdb", overwrite=True, **{"lossless": True, **keywords})
             logging.getLogger("weir").warning("there is one line at least")
@@ -219,7 +219,7 @@ class Falling(DataArrayTest):
 
 
 class Spaced(DataArrayTest):
-    """With a spacing that is given, positions are those of the grid."""
+    """Tests that positions are those of the grid if a spacing is given."""
 
     def test_irregular_coordinates_are_left_out(self):
         heights = [0.0, 10, 30, 60, 100, 150]

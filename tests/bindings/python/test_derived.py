@@ -1,4 +1,4 @@
-"""What `weir compare --derived` and `--certify gradient` say is what numpy computes of the same values."""
+"""Tests that `weir compare --derived` and `--certify gradient` agree with numpy's results for the same values."""
 
 import json
 import unittest
@@ -9,7 +9,8 @@ from support import FolderTest, run_weir
 
 
 def similarity(a, b, value_range):
-    """Mean SSIM over windows of 8^3 at every fourth voxel and at the upper faces, as docs/budget.md defines it."""
+    """Returns the mean SSIM over windows of 8^3 at every fourth voxel and at the upper faces, as in
+    docs/budget.md."""
     c1, c2 = (0.01 * value_range) ** 2, (0.03 * value_range) ** 2
     starts = [sorted({*range(0, n - 7, 4), max(n - 8, 0)}) for n in a.shape]
     found = []

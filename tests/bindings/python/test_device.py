@@ -1,4 +1,4 @@
-"""weir.convert of arrays of other libraries: where they say their values lie, and files of those on a CUDA device."""
+"""Tests weir.convert of other libraries' arrays: where the values lie, and files of arrays on a CUDA device."""
 
 import ctypes
 import unittest
@@ -14,7 +14,7 @@ _DL_NAMES = {"i": 0, "u": 1, "f": 2, "b": 6}
 
 
 class HostTensor:
-    """Values of numpy's in the host's memory, which another library has."""
+    """A stand-in for another library's array in host memory; holds a numpy array."""
 
     def __init__(self, values):
         self._values = values
@@ -27,7 +27,7 @@ class HostTensor:
 
 
 class Tensor:
-    """Values at an address, as DLPack gives them."""
+    """A stand-in for another library's array with DLPack: values at an address."""
 
     def __init__(self, address, shape, strides, code, bits, lanes=1, device=(2, 0), offset=0):
         self._device = device
@@ -60,7 +60,7 @@ class Tensor:
 
 
 class Interface:
-    """Values at an address, as __cuda_array_interface__ gives them."""
+    """A stand-in for another library's array with __cuda_array_interface__: values at an address."""
 
     def __init__(self, address, shape, typestr, **others):
         self.__cuda_array_interface__ = {
@@ -151,7 +151,7 @@ class WhereValuesLie(FolderTest):
 
 
 class Cuda:
-    """As much of CUDA's runtime as puts values on a device; raises OSError where there is none."""
+    """The part of CUDA's runtime that copies values to a device. Raises OSError if there is no runtime."""
 
     def __init__(self):
         self._library = None
@@ -181,7 +181,7 @@ def cuda():
 
 
 def without_a_device():
-    """What a conversion says of an array on a device that there is not, by a build with CUDA and by one without."""
+    """Tests the messages about an array on a device that does not exist, in builds with and without CUDA."""
     return (
         "source lies on a CUDA device, and none answers here; copy it to a numpy array first",
         "source lies on a CUDA device, and this weir was built without CUDA; copy it to a numpy array first",

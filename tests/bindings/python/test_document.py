@@ -1,4 +1,4 @@
-"""The Python that docs/python.md shows, run as a reader would: its blocks one after the other, in one folder."""
+"""Runs the Python blocks of docs/python.md as a reader would: one after the other, in one folder."""
 
 import contextlib
 import importlib.util
@@ -27,7 +27,7 @@ class Document(FolderTest):
         self.remote = self.serve_step()
 
     def serve_step(self):
-        """The address of the packed file that the part on files elsewhere opens."""
+        """Returns the URL of the packed file that the section on remote files opens."""
         z, y, x = numpy.mgrid[0:128, 0:128, 0:128].astype(numpy.float32)
         weir.convert(numpy.sin(x / 9) + numpy.cos(y / 7) * z, "step_0042.nvdb", rate=20, encoding="packed")
         files = {f"/{path.name}": path.read_bytes() for path in self.folder.glob("step_0042.nvdb*")}
@@ -36,7 +36,7 @@ class Document(FolderTest):
         return server.url("/step_0042.nvdb")
 
     def write_cloud_model(self):
-        """Two steps of the cloud model that the part on xarray opens."""
+        """Writes two steps of the cloud model that the section on xarray opens."""
         netcdf = importlib.import_module("netCDF4")
         with netcdf.Dataset("model.nc", "w") as model:
             for name, size, spacing in (("time", 2, 600), ("height", 24, 100), ("lat", 32, 0.01), ("lon", 40, 0.01)):
@@ -59,7 +59,7 @@ class Document(FolderTest):
             if "weir_reader" in block["code"] and importlib.util.find_spec("vtkmodules") is None:
                 left_out = f"line {line} and what follows needs python3-vtk9"
                 break
-            # Padded so that a traceback has the document's lines.
+            # The block is padded with empty lines, so that a traceback shows the document's line numbers.
             text_here = block["code"].replace("https://host.example/run/step_0042.nvdb", self.remote)
             code = compile("\n" * (line - 1) + text_here, "docs/python.md", "exec")
             with contextlib.redirect_stdout(out):

@@ -1,4 +1,4 @@
-"""What a caller did wrong, by the class and the whole message; nothing is left behind."""
+"""Tests the errors of wrong calls: the class and the whole message. A failed call must leave no files behind."""
 
 import errno
 import os
@@ -148,7 +148,7 @@ class Errors(FolderTest):
         self.folder.chmod(0o755)
         user = os.geteuid()
         if user == 0:
-            os.seteuid(65534)  # nobody: no file is closed to root
+            os.seteuid(65534)  # the user nobody, because root may read every file
         try:
             for path, call in zip(paths, (weir.convert, weir.open)):
                 with self.assertRaises(PermissionError) as raised:

@@ -1,4 +1,4 @@
-"""examples/python/explore.py, with fewer voxels: what it prints and writes."""
+"""Tests what examples/python/explore.py prints and writes, with fewer voxels."""
 
 import csv
 import os

@@ -1,4 +1,4 @@
-"""weir.open: what a grid says of itself, values and parts of them, levels, bounds, lifetime."""
+"""Tests weir.open: a grid's properties, all values and parts of them, levels, bounds, lifetime."""
 
 import gc
 import json
@@ -157,14 +157,14 @@ class ToNumpy(FolderTest):
 class Levels(FolderTest):
     @staticmethod
     def means(values, level):
-        """numpy's answer, in double."""
+        """Returns the level as numpy computes it in double precision."""
         edge = 1 << level
         padded = numpy.pad(values.astype(float), [(0, -n % edge) for n in values.shape], constant_values=numpy.nan)
         z, y, x = (n // edge for n in padded.shape)
         return numpy.nanmean(padded.reshape(z, edge, y, edge, x, edge), axis=(1, 3, 5)).astype(numpy.float32)
 
     def test_each_level_is_the_means_of_its_cubes(self):
-        values = noise((37, 70, 50))  # whole numbers: sums are exact in any order
+        values = noise((37, 70, 50))  # integers, so that sums are exact in any order
         grid = self.lossless(values)
         self.assertEqual(grid.levels, 8)
         for level in range(grid.levels):
@@ -221,7 +221,7 @@ class Bounds(FolderTest):
 
 
 class ChangedFiles(FolderTest):
-    """Files that are written to in place while they are open."""
+    """Tests files that are written to in place while they are open."""
 
     def opened(self, encoding):
         weir.convert(ramp(40, 50, 60), self.folder / "a.nvdb", encoding=encoding, rate=1.2, overwrite=True)

@@ -1,4 +1,4 @@
-"""grid[...] is to_numpy()[...], and decodes no more than it must; what numpy sees of a grid."""
+"""Tests that grid[...] equals to_numpy()[...] and decodes no more than needed, and how numpy treats a grid."""
 
 import itertools
 import pathlib

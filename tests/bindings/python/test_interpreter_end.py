@@ -1,4 +1,4 @@
-"""Programs that end while a daemon thread is in a call of weir: with their own exit status, and nothing half-written."""
+"""Tests programs that end while a daemon thread calls weir: exit status kept, no half-written files."""
 
 import subprocess
 import sys
@@ -10,7 +10,7 @@ import weir
 from range_server import RangeServer
 from support import FolderTest, noise
 
-# What a thread does is `work`, which sets `begun`; the program ends soon after.
+# The thread runs `work`, which sets `begun`. The program ends soon after.
 PROGRAM = """
 import atexit, sys, threading, time
 import numpy, weir
@@ -47,7 +47,7 @@ def work():
     weir.open({url!r}).to_numpy()
 """
 
-# Registered before weir's own handler, and so called after it.
+# Registered before weir's own handler, and therefore called after weir's.
 LATE = """
 import atexit, sys
 def late():

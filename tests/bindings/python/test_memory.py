@@ -1,4 +1,4 @@
-"""What is held, and what is let go of."""
+"""Tests which memory is held and which is released."""
 
 import resource
 import subprocess
@@ -56,7 +56,7 @@ class Memory(FolderTest):
         for _ in range(40):
             use()
         grown = 1024 * (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before)
-        self.assertLess(grown, 16 << 20)  # the arrays of one round, kept, would be 40 times 3.6 MiB
+        self.assertLess(grown, 16 << 20)  # if the arrays were kept, they would take 40 times 3.6 MiB
 
     def test_an_array_is_not_copied(self):
         values = numpy.zeros((256, 256, 128), numpy.float64).transpose()  # 64 MiB
@@ -71,7 +71,7 @@ class Memory(FolderTest):
         weir.convert(numpy.broadcast_to(numpy.uint8(7), (512, 512, 512)), self.folder / "a.nvdb")
         command = [sys.executable, "-B", "-c", LEVEL, self.folder / "a.nvdb"]
         grown = int(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
-        self.assertLess(grown, 64 << 20)  # 8 MiB are the level's, 512 MiB the volume's
+        self.assertLess(grown, 64 << 20)  # the level takes 8 MiB, the volume 512 MiB
 
 
 if __name__ == "__main__":

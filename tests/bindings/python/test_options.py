@@ -1,4 +1,4 @@
-"""Every front end knows the same options, and refuses the wrong ones for the same reason."""
+"""Tests that all front ends know the same options and refuse wrong ones for the same reason."""
 
 import inspect
 import json

@@ -13,7 +13,7 @@ PACKAGE = pathlib.Path(weir.__file__).parent
 
 
 def stub_names():
-    """{"convert_files": ["source", ...], "Grid.read": [...]} of _core.pyi; properties have None."""
+    """Returns {"convert_files": ["source", ...], "Grid.read": [...]} from _core.pyi. Properties have None."""
     names = {}
 
     def add(prefix, body):
@@ -31,7 +31,7 @@ def stub_names():
 
 
 def module_names():
-    """The same of the module; pybind11 writes the signature into the first line of what it documents."""
+    """Returns the same from the module. pybind11 writes the signature into the first line of a docstring."""
     names = {}
 
     def add(prefix, holder):
@@ -53,7 +53,7 @@ def module_names():
 
 
 def split_arguments(text):
-    """At commas that are in no bracket."""
+    """Splits a text at the commas outside brackets."""
     depth, part = 0, ""
     for letter in text:
         depth += (letter in "[(") - (letter in "])")

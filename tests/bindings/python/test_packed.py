@@ -1,4 +1,4 @@
-"""Packed files: weir reads what the decoder of tests/packed reads, which was written from FORMAT.md alone."""
+"""Tests that weir reads packed files like the decoder of tests/packed, which was written from FORMAT.md alone."""
 
 import struct
 import sys
@@ -67,7 +67,7 @@ class Packed(FolderTest):
 
     @staticmethod
     def packed_at(content):
-        """Where the packed data of a file begin."""
+        """Returns the offset at which the packed data of a file begin."""
         record = content.index(packed_decoder.NAME.encode()) - 32
         return record + struct.unpack_from("<q", content, record)[0]
 

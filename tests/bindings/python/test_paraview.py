@@ -1,4 +1,4 @@
-"""bindings/paraview/weir_reader.py as a plugin of ParaView, in batch mode."""
+"""Tests bindings/paraview/weir_reader.py as a plugin of ParaView, in batch mode."""
 
 import importlib.util
 import os

@@ -1,4 +1,4 @@
-"""Real volumes as arrays: the bytes that their files give, and the errors that numpy finds."""
+"""Tests real volumes as arrays: the same bytes as from their files, and the errors that numpy finds."""
 
 import lzma
 import unittest

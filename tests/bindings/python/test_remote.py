@@ -1,4 +1,4 @@
-"""Files elsewhere: the same values as of the file here, in few requests, and a line where that cannot be."""
+"""Tests remote files: the same values as from a local file, in few requests, and one-line errors otherwise."""
 
 import base64
 import os
@@ -23,7 +23,7 @@ from weir.remote_file import sidecar_url
 
 
 def bumps(edge):
-    """Smooth, everywhere different."""
+    """Returns a smooth volume that differs everywhere."""
     z, y, x = (numpy.arange(edge, dtype=numpy.float32) for _ in range(3))
     wave = numpy.sin(z[:, None, None] * 0.05) * numpy.cos(y[None, :, None] * 0.04) + numpy.sin(x[None, None, :] * 0.06)
     return (wave + 0.002 * numpy.random.default_rng(2).standard_normal((edge, edge, edge))).astype(numpy.float32)
@@ -95,7 +95,7 @@ class Remote(FolderTest):
         self.assertTrue(same(grid.macrocells().max, self.here.macrocells().max))
         del server.files["/run/a.nvdb.json"]
         self.assertIsNone(weir.open(url).certificate)
-        server.forbidden.add("/run/a.nvdb.json")  # as stores answer that do not tell what is missing
+        server.forbidden.add("/run/a.nvdb.json")  # like stores that do not tell which files are missing
         self.assertIsNone(weir.open(url).sidecar)
         server.forbidden.clear()
         server.files["/run/a.nvdb.json"] = self.files["/run/a.nvdb.json"].replace(b'"bytes"', b'"bites"')
@@ -432,7 +432,7 @@ class Remote(FolderTest):
 
     def test_damage_on_the_way_is_forgotten(self):
         data = bytearray(self.files["/run/a.nvdb"])
-        head = 65536  # the grid's, which is read when it is opened
+        head = 65536  # bytes of the grid's head, which weir.open reads
         data[head:] = bytes(byte ^ 0xFF for byte in data[head:])
         for cache in ("256MiB", 0):
             with self.subTest(cache):

@@ -1,4 +1,4 @@
-"""Files elsewhere over time: those that change, grids that are closed, and the ways that xarray opens them by."""
+"""Tests remote files over time: files that change, closed grids, and the ways in which xarray opens remote files."""
 
 import unittest
 

@@ -1,4 +1,4 @@
-"""Grid.render makes the picture that `weir render` makes."""
+"""Tests that Grid.render makes the same picture as `weir render`."""
 
 import unittest
 
@@ -11,7 +11,7 @@ from weir.errors import InputNotFoundError
 
 
 def ball(n=32):
-    """1 in the middle, falling to 0."""
+    """Returns a volume that is 1 in the middle and falls to 0."""
     z, y, x = (numpy.mgrid[0:n, 0:n, 0:n] + 0.5) / n - 0.5
     return numpy.maximum(0, 1 - 2 * numpy.sqrt(x * x + y * y + z * z)).astype(numpy.float32)
 

@@ -1,4 +1,4 @@
-"""Grid.sample against blends worked out here."""
+"""Compares Grid.sample with interpolation that is computed here."""
 
 import ctypes
 import itertools
@@ -13,7 +13,7 @@ from support import FolderTest, noise, ramp, same
 
 
 def blend(values, x, y, z):
-    """Trilinear: the sum of the eight voxels around, each times its share, clamped at the ends."""
+    """Returns trilinear interpolation: the weighted sum of the eight voxels around, clamped at the ends."""
     total = 0.0
     corner = [min(max(p - 0.5, 0), n - 1) for p, n in zip((x, y, z), values.shape[::-1])]
     for upper in itertools.product((0, 1), repeat=3):

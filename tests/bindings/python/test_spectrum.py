@@ -1,4 +1,4 @@
-"""What `weir compare --spectrum` says is what numpy computes of the same values."""
+"""Tests that `weir compare --spectrum` agrees with what numpy computes from the same values."""
 
 import csv
 import json
@@ -10,7 +10,8 @@ from support import FolderTest, run_weir
 
 
 def spectra(source, decoded, spacing):
-    """Of arrays [z, y, x]: wave numbers, and power of source, decoded and error in each shell (docs/budget.md)."""
+    """Returns for arrays [z, y, x]: wave numbers, and power of source, decoded and error per shell
+    (docs/budget.md)."""
     shape = [min(n, 64) for n in source.shape]
     steps = spacing[::-1]
     hann = [numpy.sin(numpy.pi * (numpy.arange(n) + 0.5) / n) ** 2 for n in shape]

@@ -1,4 +1,4 @@
-"""Several threads at once, Ctrl-C, and what callbacks raise."""
+"""Tests several threads at once, Ctrl-C, and exceptions from callbacks."""
 
 import concurrent.futures
 import os
@@ -14,7 +14,7 @@ import numpy
 import weir
 from support import FolderTest, noise, ramp, same
 
-LARGE = (128, 256, 256)  # takes one thread a second or so: time enough to be interrupted
+LARGE = (128, 256, 256)  # takes one thread about a second, which is long enough to interrupt the conversion
 
 INTERRUPTED = """
 import numpy, sys, weir

@@ -1,4 +1,4 @@
-"""bindings/paraview/weir_reader.py as a source of plain VTK: values, placement, pieces, series, errors."""
+"""Tests bindings/paraview/weir_reader.py as a source of plain VTK: values, placement, pieces, series, errors."""
 
 import gc
 import shutil
@@ -23,7 +23,7 @@ except ImportError as error:
 
 
 def values_of(image):
-    """The point data as [z, y, x]."""
+    """Returns the point data as [z, y, x]."""
     return vtk_to_numpy(image.GetPointData().GetScalars()).reshape(image.GetDimensions()[::-1])
 
 
@@ -36,7 +36,7 @@ class Reader(FolderTest):
         return reader.GetOutputDataObject(0)
 
     def told(self, update):
-        """The first line that VTK is told."""
+        """Returns the first line that VTK's output window gets."""
         before, window = vtkOutputWindow.GetInstance(), vtkStringOutputWindow()
         vtkOutputWindow.SetInstance(window)
         self.addCleanup(vtkOutputWindow.SetInstance, before)

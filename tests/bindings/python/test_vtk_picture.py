@@ -1,4 +1,4 @@
-"""What VTK draws of bindings/paraview/weir_reader.py, on a display of its own."""
+"""Tests the picture that VTK draws from bindings/paraview/weir_reader.py, on a separate display."""
 
 import importlib.util
 import shutil

@@ -157,7 +157,7 @@ class ToXarray(FolderTest):
 
 
 class Sidecars(FolderTest):
-    """What a cloud model's NetCDF file says."""
+    """Tests a dataset like a cloud model's NetCDF file."""
 
     def setUp(self):
         super().setUp()
@@ -203,14 +203,14 @@ class Sidecars(FolderTest):
             self.assertEqual(dataset.time.units, "seconds since 2000-01-01 00:00:00")
 
     def test_steps_become_a_series(self):
-        with xarray.open_dataset(self.folder / "a.nvdb") as first:  # by the name's end
+        with xarray.open_dataset(self.folder / "a.nvdb") as first:  # the engine is found by the file's extension
             second = first.assign_coords(time=first.time + numpy.timedelta64(1, "h"))
             series = xarray.concat([first, second], "time")
             self.assertEqual(series.sizes["time"], 2)
 
 
 class FallingLatitudes(FolderTest):
-    """A reanalysis whose rows lie from north to south."""
+    """Tests a reanalysis with rows from north to south."""
 
     def setUp(self):
         super().setUp()

@@ -62,7 +62,7 @@ TEST_F(DeletedOutputsTest, FileWhoseValuesAreAllConverted_IsDeleted) {
   EXPECT_FALSE(stays());
 }
 
-// A conversion that ran before the watch deleted sources.
+// The conversion ran before the watch was set to delete its sources.
 TEST_F(DeletedOutputsTest, FileWhoseValuesWereNotCounted_Stays) {
   write_output(R"(, "format": "nifti")");
   delete_done();

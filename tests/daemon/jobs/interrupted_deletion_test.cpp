@@ -132,7 +132,7 @@ TEST_F(InterruptedDeletion, WriterOfTheHiddenSource_IsWaitedFor) {
   EXPECT_EQ(list_directory(directory_ / "in"), Names{});
 }
 
-// Another user's source: the service can neither take a lease nor look into the other processes.
+// The source belongs to another user. The service can neither take a lease nor look into the other processes.
 class InterruptedDeletionOfAnotherUser : public DeletingWatch {
  protected:
   void SetUp() override {
@@ -197,7 +197,7 @@ TEST_F(InterruptedDeletion, WatchThatKeepsSourcesNow_ReplacesNoNewerOne) {
   EXPECT_EQ(read_file(hidden(id)), "values");
 }
 
-// For example after the loss of the state file: another job may have the number.
+// After the loss of the state file, for example, the number in the hidden name may belong to another job or to none.
 TEST_F(InterruptedDeletion, SourceThatNoJobKnows_IsSaidAndStays) {
   const std::int64_t id = convert();
   config_.watches[0].recursive = true;

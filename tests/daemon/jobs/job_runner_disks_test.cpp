@@ -234,7 +234,7 @@ TEST_F(JobRunnerDisksTest, FileSystemOfAnOutput_CannotBeUnmountedWhileItsJobRuns
   EXPECT_EQ(errno, EBUSY);
 }
 
-// As after `umount -l`: what the running job could not write is no fault of the job.
+// The running job can no longer write its output, as after `umount -l`. This is no fault of the job.
 TEST_F(JobRunnerDisksTest, OutputMountThatGoesWhileAJobRuns_CostsNoAttempt) {
   const std::string mount = directory_ / "mount";
   fs::create_directory_symlink("/proc", mount);

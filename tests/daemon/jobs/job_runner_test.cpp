@@ -260,7 +260,7 @@ TEST_F(JobRunnerTest, ShutDown_JobOutlastsTheGrace_WaitsAgainWithoutAnAttempt) {
   }
 }
 
-// For example, a process that waits for a hanging disk.
+// A killed process may not end, for example while it waits for a hanging disk.
 TEST_F(JobRunnerTest, Kill_ProcessThatDoesNotEnd_IsLeftBehind) {
   if (!Unkillable::possible()) GTEST_SKIP() << "only root may have processes that it cannot kill";
   JobRunner runner(io_, store_, log_, write_program("exec sleep 600\n"), [](const Job&) {});

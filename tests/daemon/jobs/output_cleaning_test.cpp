@@ -135,7 +135,7 @@ TEST(OutputCleaning, KillBetweenTheRenames_OfVolumesWithEqualHeads_ThePairsAreRe
   EXPECT_EQ(read_file(killed.sidecar), killed.old_sidecar);
   const Names pair{"noise_64x64x64_uint8.raw", "out.nvdb", "out.nvdb.json"};
   EXPECT_EQ(list_directory(directory.path()), pair);
-  // The same, killed a moment later.
+  // The same overwrite, killed a moment later: only the removal of the old sidecar is missing.
   write_file(killed.output, killed.new_volume);
   write_file(killed.sidecar, killed.new_sidecar);
   write_file(killed.previous, killed.old_sidecar);

@@ -161,7 +161,7 @@ TEST_F(SourceDeletionTest, RemovalThatFailsBehindTheMarker_MakesTheMarkerAgain) 
   EXPECT_EQ(list_directory(directory_ / "in"), std::vector<std::string>{});
 }
 
-// For example while the directory is remounted.
+// The directory may be away for a moment, for example while it is remounted.
 TEST_F(SourceDeletionTest, DirectoryThatIsAway_IsWaitedForAndSaidOnce) {
   deletion_.configure(config_);
   deletion_.done(convert());

@@ -225,7 +225,7 @@ TEST(WatchFaults, AFileThatMayNotBeReadIsTriedAgain) {
   EXPECT_LT(service.job(name + ".raw")["changed_at"], due) << "it was not noticed at once";
 }
 
-// For example behind a file server that does not answer: a file that cannot be looked at is not deleted.
+// A file that cannot be looked at does not count as deleted. For example, its file server may not answer.
 TEST(WatchFaults, FileInAnUnreadableDirectory_KeepsItsJob) {
   ServiceHarness service("", "recursive = true\n");
   service.run_unprivileged();
@@ -302,7 +302,7 @@ TEST(WatchFaults, ForeignOutput_IsNotReplaced) {
   ASSERT_TRUE(service.eventually_done(1)) << service.log();
 }
 
-// Without a job, nobody would be told.
+// Without a failed job, nobody would learn what is missing.
 TEST(WatchFaults, RawFileWithoutATypeInAWatchWithDims_FailsWithWhatIsMissing) {
   ServiceHarness service("", "dims = [24, 20, 16]\n");
   service.start();

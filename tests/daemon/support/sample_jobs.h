@@ -11,8 +11,8 @@ namespace weir {
 /// Fills `control`; thumbnails are written into `directory`.
 void show_sample_jobs(FakeControl& control, const std::filesystem::path& directory);
 
-/// Does the same, and adds fifteen problems with the same reason, files that are not taken yet for several reasons,
-/// names of 180 letters, results of a second watch, and a full disk.
+/// Fills `control` like show_sample_jobs(). Adds fifteen problems with the same reason, files that are not taken yet
+/// for several reasons, names of 180 letters, results of a second watch, and a full disk.
 void show_busy_sample(FakeControl& control, const std::filesystem::path& directory);
 
 }  // namespace weir

@@ -47,7 +47,7 @@ class Served {
   void close() {
     run([this] { server_.reset(); });
   }
-  /// Does the same from the server's own thread, after its present work.
+  /// Stops listening and closes all connections from the server's own thread, after its present work.
   void close_soon() {
     boost::asio::post(io_, [this] { server_.reset(); });
   }

@@ -1,4 +1,4 @@
-// What a plotfile says of itself, how one is named, and what is refused of it.
+// Tests the source of a plotfile: its description, the paths that name it, and the plotfiles that are refused.
 #include "ingest/amrex/amrex_source.h"
 
 #include <sys/stat.h>
@@ -17,7 +17,7 @@ namespace {
 
 using test::PlotfilePlan;
 
-/// Two components on two levels, boxes in several files.
+/// Returns the plan of two components on two levels, with boxes in several files.
 PlotfilePlan two_levels() {
   PlotfilePlan plan;
   plan.components = {"density", "Temp"};
@@ -51,7 +51,8 @@ class AmrexSource : public testing::Test {
     write_file(file(name), text);
   }
 
-  /// Of reading all of it, without the path of the plotfile and the slash or colon behind it.
+  /// Returns the message of the error that opening and reading the whole volume throws, without the path of the
+  /// plotfile and the slash or colon after it.
   std::string refusal(ErrorKind kind = ErrorKind::input, SourceOptions options = named("density")) const {
     const std::string message = message_of_error(kind, [&] {
       const auto source = open_source(path_, options);

@@ -1,4 +1,4 @@
-// The tree over a level's boxes: what it finds, and how much of it is looked at, whatever the boxes' shapes.
+// Tests the tree over a level's boxes: which boxes it finds, and how many nodes it visits for boxes of any shape.
 #include "ingest/amrex/box_index.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ Boxes shuffled(Boxes boxes) {
   return boxes;
 }
 
-/// `count.x * count.y * count.z` boxes of `size` cells beside each other.
+/// Returns `count.x * count.y * count.z` boxes of `size` cells, side by side, in random order.
 Boxes grid_of(const Index3& count, const Index3& size) {
   const auto small = [](std::int64_t i) { return static_cast<std::int32_t>(i); };
   Boxes boxes;
@@ -32,7 +32,7 @@ Boxes grid_of(const Index3& count, const Index3& size) {
   return shuffled(boxes);
 }
 
-/// Pencils along x that begin anywhere.
+/// Returns `count` x `count` pencils of 401 cells along x with random beginnings.
 Boxes staggered_pencils(std::int32_t count) {
   std::mt19937_64 random(3);
   Boxes boxes;
@@ -45,7 +45,7 @@ Boxes staggered_pencils(std::int32_t count) {
   return shuffled(boxes);
 }
 
-/// Nodes that finding each of the boxes looks at, of all of them.
+/// Finds each of the boxes in their index. Returns the sum of the tree nodes that this visits.
 std::size_t nodes_looked_at(const Boxes& boxes) {
   const BoxIndex index(boxes);
   std::size_t nodes = 0;
@@ -59,7 +59,7 @@ std::size_t nodes_looked_at(const Boxes& boxes) {
 }
 
 TEST(BoxIndex, BoxesOfAnyShape_AreFoundInFewNodes) {
-  // A path of the tree over 20,000 boxes has 13 nodes, each with a sibling.
+  // A path from the root of a tree over 20,000 boxes to a leaf has 13 nodes. The siblings of its nodes are visited too.
   constexpr std::size_t kMostNodes = 60;
   for (const Boxes& boxes :
        {grid_of({1, 141, 141}, {256, 1, 1}), grid_of({141, 1, 141}, {1, 256, 1}), grid_of({141, 141, 1}, {1, 1, 256}),

@@ -1,4 +1,4 @@
-// The composited grid of generated plotfiles against a look at every box for every cell.
+// Compares the composited grid of generated plotfiles with a reference that looks at every box for every cell.
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -66,7 +66,7 @@ bool covers_leaves(const RepeatedPart& part, const Box& box) {
          on_leaf(part.box.hi.y, box.hi.y) && on_leaf(part.box.lo.z, box.lo.z) && on_leaf(part.box.hi.z, box.hi.z);
 }
 
-/// Reads `box` by its repeated parts; counts the voxels in those that repeat.
+/// Reads `box` part by part with read_repeated(). Adds the voxels of the parts that repeat values to `repeated`.
 std::vector<float> read_parts(VolumeSource& source, const Box& box, ConversionLoss& loss, std::int64_t& repeated) {
   std::vector<float> values(static_cast<std::size_t>(box.voxels()), -1.0F);
   std::int64_t voxels = 0;
@@ -82,7 +82,7 @@ std::vector<float> read_parts(VolumeSource& source, const Box& box, ConversionLo
       const Index3 at = i - part.box.lo;
       const Index3 group{at.x / part.by.x, at.y / part.by.y, at.z / part.by.z};
       float& value = values[static_cast<std::size_t>(linear_index(i - box.lo, box.extent()))];
-      EXPECT_EQ(value, -1.0F);  // parts have no voxel in common
+      EXPECT_EQ(value, -1.0F);  // parts share no voxel
       value = of_part[static_cast<std::size_t>(linear_index(group, part.groups()))];
     });
   }
@@ -132,8 +132,8 @@ TEST(AmrexComposite, LinearValues_RepeatNothing) {
   EXPECT_FALSE(parts[0].repeats());
 }
 
-/// The composite of linear values as its definition says it, a level at a time. With whole values and ratios of 2 and 4
-/// all sums are exact.
+/// Computes the composite of linear values from its definition, level by level. All sums are exact if the values are
+/// whole numbers and the ratios are 1, 2 or 4.
 class LinearOracle {
  public:
   LinearOracle(const PlotfilePlan& plan, std::size_t component) : plan_(plan), component_(component) {
@@ -194,7 +194,7 @@ TEST(AmrexComposite, LinearValues_AreTrilinearBetweenTheCentresOfCoarseCells) {
     PlotfilePlan plan = test::generated_plotfile(seed);
     for (std::size_t i = 0; i < plan.ratios.size(); ++i) {
       if (plan.ratios[i].x != 3) continue;
-      plan.ratios.resize(i);  // thirds are not exact
+      plan.ratios.resize(i);  // sums of thirds are not exact
       plan.boxes.resize(i + 1);
       break;
     }
@@ -237,14 +237,15 @@ TEST(AmrexComposite, LinearBesideAValueThatIsNotFinite_TakesTheCellsOwn) {
   options.upsampling = Upsampling::linear;
   const auto source = open_source(scratch.path("plt"), options);
   const std::vector<float> values = read_box(*source, source->info().domain());
-  EXPECT_EQ(values[0], 1.0F);  // of level 1
+  EXPECT_EQ(values[0], 1.0F);  // a cell of level 1
   EXPECT_EQ(values[1], 1.0F);
   EXPECT_TRUE(std::isnan(values[2]) && std::isnan(values[3]));
   EXPECT_EQ(values[4], 21.0F);
   EXPECT_EQ((std::vector<float>{values[5], values[6], values[7]}), (std::vector<float>{23.5F, 28.5F, 31.0F}));
 }
 
-/// Three levels along x with the value 7 in some cells of each, and values to be linear between elsewhere.
+/// Returns the plan of three levels along x. Some cells of each level have the value 7, and the other values differ, so
+/// that linear upsampling interpolates between them.
 PlotfilePlan plan_with_sevens() {
   PlotfilePlan plan;
   plan.domain = {{0, 0, 0}, {6, 2, 2}};
@@ -304,7 +305,7 @@ TEST(AmrexComposite, LossIsCountedOfTheVoxelsThatAreWritten) {
   PlotfilePlan plan;
   plan.domain = {{0, 0, 0}, {4, 4, 4}};
   plan.ratios = {{2, 2, 2}};
-  plan.boxes = {{plan.domain}, {{{1, 0, 0}, {3, 2, 2}}}};  // begins in the middle of a coarse cell
+  plan.boxes = {{plan.domain}, {{{1, 0, 0}, {3, 2, 2}}}};  // the box begins in the middle of a coarse cell
   plan.value = [](std::size_t, std::size_t, const Index3& cell) { return static_cast<double>(cell.x) + 0.1; };
   test::write_plotfile(scratch.path("plt"), plan);
   const auto source = open_source(scratch.path("plt"), {});

@@ -1,5 +1,5 @@
-// What finding a level's own cells takes of the memory, from the kernel: for each box of finer levels its position, and
-// nothing that lasts.
+// Measures the memory that own_parts() takes to find a level's own cells, by the kernel's figures. It holds only the
+// positions of the boxes of finer levels, and frees them when it returns.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -13,7 +13,8 @@
 namespace weir::level_cover_test {
 namespace {
 
-/// A box of the coarse level, and over its cells from `first` on in z as many of the next one, of 4^3 cells each.
+/// Returns two levels with the ratio 2. The coarse level is one box of `extent` cells. Boxes of 4^3 cells of the fine
+/// level cover the coarse cells from z = `first` on.
 std::vector<PlotfileLevel> two_levels(const Index3& extent, std::int64_t first) {
   std::vector<PlotfileLevel> levels(2);
   const auto cell = [](const Box& box) {
@@ -35,7 +36,7 @@ std::vector<PlotfileLevel> two_levels(const Index3& extent, std::int64_t first) 
   return levels;
 }
 
-// Runs in a child process, whose peak is its own.
+// Runs in a child process, so that the peak is that of this function alone.
 std::string measure() {
   constexpr Index3 kExtent{128, 128, 128};
   const std::vector<PlotfileLevel> levels = two_levels(kExtent, 16);

@@ -1,4 +1,4 @@
-// The headers of plotfiles as text: what is read of them, and the message for each damage.
+// Tests the parsers of the text headers of plotfiles: what they read, and their message for each kind of damage.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ constexpr std::string_view kHeader =
     "((-8,0,0) (7,15,15) (0,0,0)) \n7 14 \n0.25 0.25 0.25 \n0.125 0.125 0.25 \n0\n0\n0 1 0.125\n7\n-1 1\n0 2\n0 "
     "4\nLevel_0/Cell\n1 1 0.125\n14\n-1 1\n0 2\n0 4\nLevel_1/Cell\n1.0e-6\n";
 
-/// Gives `content` in pieces of `piece` bytes.
+/// Returns what `parse` reads from `content`, which arrives in pieces of `piece` bytes.
 template <typename Parse>
 auto parsed(std::string_view content, const Parse& parse, std::size_t piece = 7) {
   PlotfileText text("H", [&] {
@@ -73,7 +73,7 @@ TEST(AmrexHeader, NumbersOfSixDigits_FitEachOther) {
 }
 
 TEST(AmrexHeader, LargeCorners_SayLittleOfTheSizeOfCells) {
-  // As float32 the corners are whole multiples of 64.
+  // As float32, numbers as large as these corners are multiples of 64.
   std::string text = with(kHeader, "-1 0 0\n1 2 4\n", "1000000000 0 0\n1000000064 2 4\n");
   text = with(text, "0.25 0.25 0.25 \n0.125 0.125 0.25 \n", "5 0.25 0.25 \n2.5 0.125 0.25 \n");
   EXPECT_EQ(header_of(text).levels[0].spacing[0], 5);

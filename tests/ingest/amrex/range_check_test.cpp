@@ -1,4 +1,4 @@
-// What is said of values outside the ranges that Cell_H states.
+// Tests the notice about values outside the ranges that Cell_H states.
 #include "ingest/amrex/range_check.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ using test::PlotfilePlan;
 
 class RangeCheck : public testing::Test {
  protected:
-  /// What reading all of a component says, twice.
+  /// Reads all of `component` twice. Returns the notices of both reads.
   std::vector<std::string> lines(const std::string& component) const {
     std::vector<std::string> said;
     SourceOptions options;
@@ -32,7 +32,7 @@ class RangeCheck : public testing::Test {
     return said;
   }
 
-  /// The first value of the first component of the only FAB in a file.
+  /// Sets the first value of the first component in `file`, which holds a single FAB.
   template <typename T>
   void set_first(const std::string& file, T value) const {
     std::string bytes = read_file(path_ + '/' + file);
@@ -44,7 +44,7 @@ class RangeCheck : public testing::Test {
   std::string path_ = scratch_.path("plt00042");
 };
 
-/// Values that neither float32 nor a decimal number of a few digits holds.
+/// Returns values that are exact neither in float32 nor as decimal numbers of a few digits.
 double wave(std::size_t level, std::size_t component, const Index3& cell) {
   return std::sin(static_cast<double>(cell.x + 3 * cell.y + 7 * cell.z)) *
              std::pow(10.0, 3 * static_cast<double>(component)) -

@@ -1,4 +1,5 @@
-// Levels of generated plotfiles as volumes of their own, against a look at every box for every cell.
+// Compares the levels of generated plotfiles, each a volume of its own, with a reference that looks at every box for
+// every cell.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +25,8 @@ bool has_all(const std::vector<Box>& boxes, const Box& cells) {
   return std::any_of(boxes.begin(), boxes.end(), [&](const Box& box) { return box.contains(cells); });
 }
 
-/// Whether `cell` of `level`, counted as the file does, is the level's own, with levels up to `finest`.
+/// Returns whether `cell` is an own cell of `level`: a box of `level` has it, and no single box of a finer level up to
+/// `finest` covers it whole. Indices count as in the file.
 bool is_own(const PlotfilePlan& plan, std::size_t level, std::size_t finest, const Index3& cell) {
   if (!has_all(plan.boxes[level], {cell, cell + Index3{1, 1, 1}})) return false;
   for (std::size_t finer = level + 1; finer <= finest; ++finer) {
@@ -107,7 +109,7 @@ TEST(SeparateLevels, GeneratedPlotfiles_HaveTheCellsThatNoFinerLevelHas) {
   }
 }
 
-/// Two levels of the ratio `ratio`, boxes on the grid of coarse cells as AMReX makes them.
+/// Returns the plan of two levels with the ratio `ratio`. Boxes are aligned to coarse cells, as AMReX makes them.
 PlotfilePlan two_levels(const Index3& ratio) {
   PlotfilePlan plan;
   plan.components = {"density"};

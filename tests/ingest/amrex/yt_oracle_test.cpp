@@ -1,4 +1,4 @@
-// The composited grid of generated plotfiles against that of yt (its covering grid), value by value.
+// Compares the composited grid of generated plotfiles with the covering grid of yt, value by value.
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -18,8 +18,8 @@ namespace {
 
 using test::PlotfilePlan;
 
-/// What yt understands: one ratio along all axes and for all levels, domains that begin at 0, boxes on the grid of
-/// coarse cells. Values are float64 that float32 holds.
+/// Returns the plan of a plotfile that yt can read: the same ratio along all axes and for all levels, a domain that
+/// begins at 0, and boxes aligned to coarse cells. All values are exact in float32.
 PlotfilePlan plan_for_yt(std::uint64_t seed) {
   std::mt19937_64 random(seed);
   const auto between = [&](std::int64_t lo, std::int64_t hi) {
@@ -31,7 +31,7 @@ PlotfilePlan plan_for_yt(std::uint64_t seed) {
   plan.boxes = {test::random_boxes(plan.domain, between(4, 9), 100, seed)};
   const std::int64_t r = seed % 3 == 0 ? 4 : 2;
   const std::size_t levels = r == 4 ? 2 : 1 + seed % 4;
-  Box within = plan.domain;  // each level inside the one before
+  Box within = plan.domain;  // each level lies inside the previous one
   for (std::size_t l = 1; l < levels; ++l) {
     const Box coarse{within.lo + Index3{1, 1, 1}, within.hi - Index3{1, 1, 1}};
     if (coarse.empty()) break;
@@ -49,7 +49,7 @@ PlotfilePlan plan_for_yt(std::uint64_t seed) {
   return plan;
 }
 
-// Writes plt.f32 beside each plotfile: its Temp on the finest level as float32, x fastest.
+// Writes PATH.f32 for each plotfile PATH: its Temp on the finest level as float32, x fastest.
 constexpr const char* kScript = R"(
 import glob, sys
 import numpy, yt

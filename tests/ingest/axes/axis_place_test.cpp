@@ -1,3 +1,4 @@
+// Tests the note about elements of a dimension that were not written.
 #include "ingest/axes/axis_place.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Tests which units are of time, which are of an axis of space, and which are neither.
 #include "ingest/axes/axis_unit.h"
 
 #include <gtest/gtest.h>

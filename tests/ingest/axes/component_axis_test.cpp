@@ -1,3 +1,4 @@
+// Tests how the axis of components is found by names and extents, with and without --component.
 #include "ingest/axes/component_axis.h"
 
 #include <gtest/gtest.h>

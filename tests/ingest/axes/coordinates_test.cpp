@@ -1,3 +1,4 @@
+// Tests the spacing, origin and note that the coordinates of an axis give.
 #include "ingest/axes/coordinates.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +28,7 @@ TEST(Coordinates, RegularCoordinatesGiveSpacingAndOrigin) {
 
 TEST(Coordinates, RoundedCoordinatesAreRegular) {
   EXPECT_EQ(placed({0, 0.3333, 0.6667, 1}).note, "");
-  std::vector<double> far;  // time in seconds since an epoch, as float32: neighbours are 64 apart
+  std::vector<double> far;  // seconds since an epoch; as float32, neighbouring numbers are 64 apart
   for (int i = 0; i < 10; ++i) far.push_back(static_cast<double>(static_cast<float>(1.0e9 + i * 3600.0)));
   EXPECT_EQ(placed(far, kFloat).note, "");
   EXPECT_NE(placed(far).note, "");

@@ -1,3 +1,4 @@
+// Tests which names, units and CF attributes make an axis a time axis.
 #include "ingest/axes/time_axis.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +23,7 @@ TEST(TimeAxis, NameTimeSaysItUnlessTheUnitsAreOfSomethingElse) {
   EXPECT_FALSE(is_time_axis({"time", "m", {}, {}, false}));
 }
 
-// A unit that nobody lists makes no length of a time.
+// An axis called time is a time axis even if weir does not know its unit.
 TEST(TimeAxis, NameTimeSaysItInAnyUnitButOneOfSpace) {
   for (const char* name : {"time", "Time", "times", "TIMES"}) {
     for (const char* units :
@@ -87,7 +88,7 @@ TEST(TimeAxis, DimensionThatGrowsIsATimeInUnitsThatSayNothing) {
   }
 }
 
-// Whatever is measured in a unit that is no time's is no time.
+// A dimension that grows is no time axis if its unit is not of time.
 TEST(TimeAxis, DimensionThatGrowsInAnotherUnitIsNone) {
   for (const char* units : {"GeV", "Hz", "cm-1", "km/s", "kelvin", "kg m-3", "percent", "R_sun", "c/omega_pe", "a"}) {
     EXPECT_FALSE(is_time_axis({"slice", units, {}, {}, true})) << units;

@@ -1,3 +1,4 @@
+// Tests the time of a volume, from its time axis and from times beside the array.
 #include "ingest/axes/volume_time.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Tests reads of boxes from chunks: the values, and that several threads decode each chunk once.
 #include "ingest/chunks/chunk_boxes.h"
 
 #include <gtest/gtest.h>
@@ -35,7 +36,8 @@ ChunkedVolume volume() {
   return volume;
 }
 
-/// Chunks of value_at(), the one at `missing` not stored. Counts how often each is decoded, and by which threads.
+/// Makes chunks of value_at(). The chunk at `missing` is not stored. Records how often each chunk is decoded, and by
+/// which threads.
 class MadeChunks : public StoredChunks {
  public:
   std::span<const std::byte> decode(const Index3& chunk, ChunkScratch& scratch) override {
@@ -44,7 +46,7 @@ class MadeChunks : public StoredChunks {
       ++decoded[{chunk.x, chunk.y, chunk.z}];
       threads.insert(std::this_thread::get_id());
       arrived_.notify_all();
-      // The first waits until another thread has one, too.
+      // The first thread waits until another thread has a chunk, too.
       if (meet) arrived_.wait_for(lock, std::chrono::seconds(30), [&] { return threads.size() > 1; });
     }
     if (chunk == missing) return {};

@@ -1,3 +1,4 @@
+// Tests how much memory the scratch for decoding chunks takes, and that its pool is bounded.
 #include "ingest/chunks/chunk_scratch.h"
 
 #include <atomic>

@@ -1,4 +1,5 @@
-// Signals of a crash within the HDF5 library and elsewhere, each in a process of its own.
+// Tests what a program reports if it crashes or never returns within the HDF5 library, and that crashes elsewhere are
+// left alone. Each case runs in a process of its own.
 #include "ingest/drivers/hdf5_crash.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +24,7 @@ class Hdf5Crash : public ::testing::TestWithParam<int> {
  protected:
   void SetUp() override {
     if (kSanitized) GTEST_SKIP() << "the sanitizer handles these signals";
-    GTEST_FLAG_SET(death_test_style, "threadsafe");  // other tests have started threads
+    GTEST_FLAG_SET(death_test_style, "threadsafe");  // because other tests have started threads
   }
 };
 
@@ -52,7 +53,7 @@ TEST(Hdf5StackUsedUp, WithinTheLibrary_EndsWithALineAndExitCode3) {
       ::testing::ExitedWithCode(3), "^weir: /data/a\\.h5: the HDF5 library crashed at it; .*\n$");
 }
 
-// Computes so long on this thread.
+// Computes until the process has taken `seconds` more of processor time.
 void compute_for(double seconds) {
   const std::clock_t begun = std::clock();
   while (static_cast<double>(std::clock() - begun) < seconds * CLOCKS_PER_SEC) continue;

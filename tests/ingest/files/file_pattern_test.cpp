@@ -1,3 +1,4 @@
+// Tests natural order and shell patterns.
 #include "ingest/files/file_pattern.h"
 
 #include "tests/ingest/support/scratch.h"

@@ -1,3 +1,4 @@
+// Tests that every kind of change to a file between two looks is found and described.
 #include "ingest/files/file_state.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +22,8 @@ class FileStateTest : public testing::Test {
 
   static void write(const std::string& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
 
-  // What is said of the file, without what begins and ends every such message.
+  // Returns the message of check_unchanged() without its beginning and end, which are always the same. Returns
+  // "unchanged" if it throws nothing.
   std::string found() const {
     try {
       check_unchanged(before_);
@@ -81,7 +83,7 @@ TEST_F(FileStateTest, WrittenWithTheSameSize_IsSaidWithBothTimes) {
 TEST_F(FileStateTest, WrittenAndItsTimeSetBack_IsSeenByTheChangeTime) {
   look();
   const auto time = fs::last_write_time(path_);
-  while (look_at_file(path_).ctime_ns == before_[0].ctime_ns) {  // clocks tick every few ms
+  while (look_at_file(path_).ctime_ns == before_[0].ctime_ns) {  // the file system's clock ticks every few ms
     write(path_, "FOUR");
     fs::last_write_time(path_, time);
   }

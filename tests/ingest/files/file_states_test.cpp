@@ -1,3 +1,4 @@
+// Tests the digest over the states of several files.
 #include "ingest/files/file_states.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Tests reads of an input file in every mode, and that they leave the page cache as it was.
 #include "ingest/files/input_file.h"
 
 #include <fcntl.h>
@@ -20,14 +21,14 @@ std::vector<std::byte> pattern(std::size_t bytes) {
   return result;
 }
 
-/// Writes the file's dirty pages and drops them all.
+/// Writes the file's dirty pages to the disk and drops all its pages from the page cache.
 void drop_from_cache(const std::string& path) {
   const Descriptor file(::open(path.c_str(), O_RDWR | O_CLOEXEC));
   ASSERT_EQ(::fsync(file.get()), 0);
   ASSERT_EQ(::posix_fadvise(file.get(), 0, 0, POSIX_FADV_DONTNEED), 0);
 }
 
-/// Which pages of the file are in the page cache.
+/// Returns for each page of the file whether it is in the page cache.
 std::vector<bool> cached_pages(const std::string& path, std::size_t bytes) {
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   void* map = ::mmap(nullptr, bytes, PROT_READ, MAP_SHARED, file.get(), 0);
@@ -68,7 +69,7 @@ TEST(InputFile, RefusesFilesWithoutReadPermission) {
   const std::string path = scratch.write("locked.raw", pattern(100));
   ASSERT_EQ(::chmod(path.c_str(), 0), 0);
   const uid_t self = ::geteuid();
-  ASSERT_EQ(::seteuid(self == 0 ? 65534 : self), 0);  // root may read everything
+  ASSERT_EQ(::seteuid(self == 0 ? 65534 : self), 0);  // because root may read every file
   EXPECT_EQ(open_refusal(path, ErrorKind::io), path +
                                                    ": cannot open for reading: Permission denied; give this user the "
                                                    "right to read it and to enter its directories");
@@ -113,7 +114,7 @@ TEST_P(InputFileModes, AFileCutWhileOpenIsNamedWithItsEnd) {
   EXPECT_EQ(message_of_error(ErrorKind::input, [&] { file.read_direct(100, 8000, staging.bytes()); }), message);
   std::vector<std::byte> into(8000);
   EXPECT_EQ(message_of_error(ErrorKind::input, [&] { file.read_buffered(100, into, ReadPath::through); }), message);
-  EXPECT_EQ(file.read_direct(100, 4006, staging.bytes()).size(), 4006U);  // what is left is read
+  EXPECT_EQ(file.read_direct(100, 4006, staging.bytes()).size(), 4006U);  // the bytes before the new end are read
 }
 
 INSTANTIATE_TEST_SUITE_P(All, InputFileModes, ::testing::Values(DirectIo::automatic, DirectIo::on, DirectIo::off));
@@ -122,7 +123,7 @@ class InputFileCache : public ::testing::Test {
  protected:
   static constexpr std::size_t kBytes = 700 * kPage + 5;
 
-  /// A file of kBytes on a disk whose page cache can be emptied, or a skipped test.
+  /// Writes a file of kBytes and drops its pages from the page cache. Skips the test if pages stay in the cache.
   void SetUp() override {
     path_ = scratch_.write("cache.bin", pattern(kBytes));
     drop_from_cache(path_);
@@ -149,7 +150,7 @@ TEST_F(InputFileCache, AutomaticReadsCachedPagesThroughTheCache) {
   EXPECT_EQ(file.path_for(100 * kPage - 1, 10), ReadPath::direct);
   EXPECT_EQ(file.path_for(149 * kPage, kPage + 1), ReadPath::direct);
   EXPECT_EQ(file.path_for(0, kBytes), ReadPath::direct);
-  EXPECT_EQ(count_cached(path_, kBytes), 50U);  // looking brought nothing in
+  EXPECT_EQ(count_cached(path_, kBytes), 50U);  // path_for() loads no page
   EXPECT_EQ(InputFile(path_, DirectIo::on).path_for(100 * kPage, kPage), ReadPath::direct);
   EXPECT_EQ(InputFile(path_, DirectIo::off).path_for(0, kBytes), ReadPath::through);
   EXPECT_EQ(InputFile(path_, DirectIo::off).path_for(100 * kPage, kPage), ReadPath::cache);
@@ -165,7 +166,7 @@ TEST_F(InputFileCache, BufferedReadsLeaveTheCacheAsItWas) {
   file.read_buffered(0, bytes, ReadPath::through);
   EXPECT_EQ(bytes, pattern(kBytes));
   EXPECT_EQ(cached_pages(path_, kBytes), before);
-  // In small unaligned pieces, too.
+  // Small unaligned reads leave the cache as it was, too.
   for (std::size_t at = 0; at + 5000 < kBytes; at += 5000) {
     file.read_buffered(at, std::span(bytes).first(5000), ReadPath::through);
   }
@@ -182,7 +183,7 @@ TEST_F(InputFileCache, DirectReadsLeaveTheCacheAsItWas) {
 }
 
 TEST_F(InputFileCache, RefusedDirectReadFallsBackToTheCache) {
-  // Memory off the device's alignment is refused as a device of wider alignment would.
+  // The kernel refuses a direct read into unaligned memory, as it would for a device that needs a wider alignment.
   const PageBuffer memory(kBytes + 3 * kDirectAlignment);
   const auto staging = memory.bytes().subspan(1, kBytes + 2 * kDirectAlignment);
   InputFile strict(path_, DirectIo::on);
@@ -193,12 +194,12 @@ TEST_F(InputFileCache, RefusedDirectReadFallsBackToTheCache) {
   ASSERT_EQ(file.path_for(0, kBytes), ReadPath::direct);
   const auto bytes = file.read_direct(5, 10'000, staging);
   EXPECT_EQ(std::memcmp(bytes.data(), pattern(kBytes).data() + 5, 10'000), 0);
-  EXPECT_EQ(file.path_for(0, kBytes), ReadPath::through);  // from now on
+  EXPECT_EQ(file.path_for(0, kBytes), ReadPath::through);  // for all later reads
   EXPECT_EQ(count_cached(path_, kBytes), 0U);
 }
 
 TEST(InputFileRefused, FileSystemsWithoutDirectIo) {
-  // sysfs is one; its binary attributes are regular files with a true size.
+  // sysfs has no direct I/O, and its binary attributes are regular files with a true size.
   const std::string path = "/sys/kernel/notes";
   const Descriptor probe(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   struct stat status {};

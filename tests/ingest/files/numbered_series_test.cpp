@@ -1,3 +1,4 @@
+// Tests which files belong to one numbered series.
 #include "ingest/files/numbered_series.h"
 
 #include <filesystem>

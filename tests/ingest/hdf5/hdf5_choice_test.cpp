@@ -1,4 +1,4 @@
-// Which volume of an HDF5 file is meant, and what is said where none is.
+// Tests how the volume of an HDF5 file is chosen, and the messages if none is chosen.
 #include "ingest/hdf5/hdf5_source.h"
 
 #include <filesystem>
@@ -94,7 +94,7 @@ with h5py.File("empty.h5", "w") as f: f.create_group("g")
   EXPECT_EQ(refused("empty.h5", {}), scratch_.path("empty.h5") + ": holds no dataset; name a file that has one");
 }
 
-// Coordinates and planes over time are no volumes, and not named.
+// Coordinates and planes over time are no volumes, so the notice does not name them.
 TEST_F(Hdf5Choice, VolumesThatCannotBeRead_AreNamedBesideTheOneThatIsTaken) {
   write_by_h5py(scratch_, R"(
 with h5py.File("a.h5", "w") as f:

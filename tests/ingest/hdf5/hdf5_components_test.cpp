@@ -1,4 +1,4 @@
-// Arrays of vectors and tensors: which component is read, whatever the storage.
+// Tests which component of an array of vectors or tensors is read, for every kind of storage.
 #include "format/base/text.h"
 #include "ingest/hdf5/hdf5_source.h"
 #include "ingest/series.h"
@@ -119,7 +119,7 @@ with h5py.File("a.h5", "w") as f:
   EXPECT_EQ(source->info().details.component, "magnitude");
 }
 
-// Which axes those are depends on --component, as it does for plain positions.
+// --component decides along which axes --index chooses, for plain positions and for choices such as -1 and time=2.
 TEST_F(Hdf5Components, IndexChoices_AreOfTheAxesThatPositionsAreOf) {
   write_by_h5py(scratch_, R"(
 with h5py.File("a.h5", "w") as f:

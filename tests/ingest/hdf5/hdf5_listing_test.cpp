@@ -17,7 +17,7 @@ class Hdf5Listing : public ::testing::Test {
   Scratch scratch_;
 };
 
-// A soft link to something of the same file has no entry: what it leads to has one.
+// A soft link to an object of the same file has no entry of its own, because the object has one.
 TEST_F(Hdf5Listing, LinksThatLeadNowhere_AreListedWithTheirTarget) {
   write_by_h5py(scratch_, R"(
 with h5py.File("a.h5", "w") as f:

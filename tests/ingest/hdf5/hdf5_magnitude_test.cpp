@@ -1,4 +1,4 @@
-// The length of vectors whose components are datasets of their own.
+// Tests the lengths of vectors that have each component in a dataset of its own.
 #include <algorithm>
 #include <cmath>
 

@@ -1,4 +1,4 @@
-// Files with bytes that are not theirs, each read in a process of its own: it ends with the values that the library
+// Reads files with changed bytes, each in a process of its own. The process ends with the values that the library
 // reads, with an error of one line, or with the line of a crash or a stall within the library.
 #include <gtest/gtest.h>
 #include <hdf5.h>
@@ -60,8 +60,8 @@ std::string file_bytes(const std::string& path, const ChunkedShape& shape) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// What the library reads without weir; empty where it cannot, or there are other values than 8 x 8 x 8.
-/// Closes nothing: the process ends.
+/// Returns the values that the library reads without weir; empty if it fails or there are not 8 x 8 x 8 values. Closes
+/// no handle, because the process ends afterwards.
 std::vector<float> read_by_library(const std::string& path) {
   const Hdf5Lock lock;
   std::vector<float> values(kValues);
@@ -78,7 +78,7 @@ Outcome read_file(const std::string& path) {
     const auto source = open_hdf5(path, {});
     if (source->info().domain().voxels() != static_cast<std::int64_t>(kValues)) return kSame;
     std::vector<float> values(kValues);
-    tbb::task_arena(1).execute([&] { source->read(source->info().domain(), values); });  // fork() left no other threads
+    tbb::task_arena(1).execute([&] { source->read(source->info().domain(), values); });  // fork() left only one thread
     const std::vector<float> by_library = read_by_library(path);
     const bool same = by_library.empty() || std::memcmp(values.data(), by_library.data(), sizeof(float) * kValues) == 0;
     return same ? kSame : kOther;
@@ -90,7 +90,7 @@ Outcome read_file(const std::string& path) {
   }
 }
 
-/// As waitpid() has it, of a process that reads the file.
+/// Reads the file in a child process. Returns the status of the child as waitpid() gives it.
 int status_of_reading(const std::string& path) {
   const pid_t child = ::fork();
   if (child == 0) {
@@ -148,13 +148,13 @@ TEST_F(Hdf5Mutation, OfAnyByte_EndsWithTheLibrarysValuesOrAnError) {
   }
 }
 
-// A node of the index of chunks that is its own child, and an object of no bytes in the heap of texts: the library
-// follows the first until the stack ends, and 1.10 the second for ever.
+// In `circle`, a node of the index of chunks is its own child: the library follows it until the stack ends. In
+// `endless`, an object in the heap of texts has no bytes: HDF5 1.10 follows it for ever.
 TEST_F(Hdf5Mutation, OfWhatLeadsInACircle_EndsWithAnError) {
   const std::string whole =
       file_bytes(path_, {{kEdge, kEdge, kEdge}, {4, 4, 4}, {}, false, H5T_NATIVE_FLOAT, H5F_LIBVER_EARLIEST});
   const auto patched = [&](std::string bytes, std::size_t at, std::uint64_t value, std::size_t count) {
-    std::memcpy(bytes.data() + at, &value, count);  // little-endian, as all is there
+    std::memcpy(bytes.data() + at, &value, count);  // little-endian, as all numbers in the file are
     return bytes;
   };
   const std::size_t node = whole.find(std::string("TREE\1", 5));

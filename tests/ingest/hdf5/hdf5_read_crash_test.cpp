@@ -1,5 +1,5 @@
-// Crashes of the HDF5 library while it reads values, by a filter that raises a signal in the place of a damaged chunk,
-// each in a process of its own.
+// Crashes of the HDF5 library while it reads values. A filter that raises a signal stands in for a damaged chunk. Each
+// case runs in a process of its own.
 #include <gtest/gtest.h>
 #include <hdf5.h>
 #include <unistd.h>
@@ -19,7 +19,7 @@
 namespace weir::hdf5_read_crash_test {
 namespace {
 
-constexpr H5Z_filter_t kFilter = 511;  // of those that are left for tests
+constexpr H5Z_filter_t kFilter = 511;  // one of the numbers that HDF5 reserves for tests
 constexpr hsize_t kEdge = 8;
 
 size_t crash(unsigned flags, size_t /*count*/, const unsigned* /*values*/, size_t bytes, size_t* /*room*/,
@@ -51,7 +51,7 @@ class Hdf5ReadCrash : public ::testing::Test {
  protected:
   void SetUp() override {
     if (kSanitized) GTEST_SKIP() << "the sanitizer handles these signals";
-    GTEST_FLAG_SET(death_test_style, "threadsafe");  // other tests have started threads
+    GTEST_FLAG_SET(death_test_style, "threadsafe");  // because other tests have started threads
   }
 };
 

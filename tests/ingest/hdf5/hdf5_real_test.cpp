@@ -1,5 +1,5 @@
-// Published files of three simulations, bit for bit what h5py reads of them.
-// Skipped where the data is not there.
+// Compares the values of published files of three simulations with what h5py reads, bit for bit. Files that are not on
+// this machine are skipped.
 #include <algorithm>
 
 #include "format/base/text.h"
@@ -10,7 +10,7 @@ namespace {
 
 class Hdf5Real : public ::testing::Test {
  protected:
-  // Links the file into the scratch_ directory.
+  // Links the published `file` into the directory of scratch_. Skips the test if the file or h5py is missing.
   void take(const std::string& file) {
     const auto published = std::filesystem::path(WEIR_SOURCE_DIR) / "../shared/data" / file;
     if (!std::filesystem::exists(published)) GTEST_SKIP() << "skipped: no " << published;
@@ -34,7 +34,7 @@ for t in range(4): expect("t%d" % t, f["QCLOUD"][t])
     const std::vector<float> values = expected(scratch_, cat("t", t));
     largest = std::max(largest, *std::max_element(values.begin(), values.end()));
   }
-  EXPECT_NEAR(largest, 1.81e-3, 0.005e-3);  // as the data's manifest has it
+  EXPECT_NEAR(largest, 1.81e-3, 0.005e-3);  // the figure of the data's manifest
   const auto source = open_source(scratch_.path("wrf_katrina_ci_test_file.nc"), dataset_options("QCLOUD", {2}));
   const SourceInfo& info = source->info();
   EXPECT_EQ(info.extent, (Index3{48, 48, 14}));

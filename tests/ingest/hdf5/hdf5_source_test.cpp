@@ -1,5 +1,4 @@
-// HDF5 datasets of every type and layout, as h5py writes them: every value bit
-// for bit what h5py reads.
+// Reads HDF5 datasets of every type and layout that h5py writes. Every value equals what h5py reads, bit for bit.
 #include "ingest/hdf5/hdf5_source.h"
 
 #include <atomic>
@@ -29,7 +28,7 @@ class Hdf5Source : public ::testing::Test {
   Scratch scratch_;
 };
 
-// The library gives the fill value for them, and says nothing.
+// The library reads unwritten chunks as the fill value and does not say so.
 TEST_F(Hdf5Source, ChunksThatWereNeverWrittenAreSaidOrRefused) {
   write_by_h5py(scratch_, R"(
 with h5py.File("a.h5", "w") as f:
@@ -112,7 +111,7 @@ with h5py.File("types.h5", "w") as f:
   }
 }
 
-// h5py stores truth values as an enumeration of int8, and NetCDF-4 flags as one of any integer.
+// h5py stores truth values as an enumeration of int8. NetCDF-4 stores flags as an enumeration of any integer type.
 TEST_F(Hdf5Source, Enumerations_ReadAsTheirIntegers) {
   write_by_h5py(scratch_, R"(
 truth = rng.integers(0, 2, SHAPE).astype(bool); expect("truth", truth)
@@ -162,7 +161,8 @@ with h5py.File("a.h5", "w") as f:
   EXPECT_GT(source->working_bytes(), 0U);
 }
 
-// gzip and shuffle must not take the library's way: only that counts stored bytes as the unpacked ones.
+// weir itself decodes gzip and shuffle. The test sees this in bytes_read(), which counts unpacked bytes only for chunks
+// that the library decodes.
 TEST_F(Hdf5Source, DecodesGzipItself) {
   write_by_h5py(scratch_, R"(
 with h5py.File("a.h5", "w") as f:
@@ -340,7 +340,7 @@ with h5py.File("a.h5", "w") as f:
         std::vector<float> part(4 * 32 * 32);
         sources[t % 3]->read({{0, 0, z}, {32, 32, z + 4}}, part);
         if (std::memcmp(part.data(), &whole[static_cast<std::size_t>(z * 1024)], part.size() * 4) != 0) ++wrong;
-        open_source(scratch_.path("a.h5"), dataset_options("gzip"));  // others open and close meanwhile
+        open_source(scratch_.path("a.h5"), dataset_options("gzip"));  // other threads open and close files
       }
     });
   }

@@ -1,4 +1,4 @@
-// Stacks of files whose coordinates fall.
+// Tests stacks of files with coordinates that fall or that point down.
 #include "tests/ingest/hdf5/support/h5py_file.h"
 
 namespace weir::hdf5_stack_test {
@@ -28,7 +28,7 @@ for number, first in enumerate([15, 7]):
   for (std::size_t i = 0; i < values.size(); ++i) ASSERT_EQ(values[i], static_cast<float>(i / 6)) << i;
 }
 
-// That an axis points down is no other place.
+// An axis that points down does not change the place of the volume, only the note on its orientation.
 TEST(Hdf5Stack, OfPlanesOfADepth_LiesWhereTheySay) {
   if (!python_has("h5py, numpy, netCDF4")) GTEST_SKIP() << "python3 with h5py and netCDF4 is missing";
   const Scratch scratch;

@@ -1,4 +1,4 @@
-// Time in a file: never a volume's axis, and kept where it is known.
+// Tests the time in a file: it is never an axis of a volume, and it is kept if it is known.
 #include <tuple>
 
 #include "ingest/hdf5/hdf5_source.h"
@@ -19,7 +19,7 @@ class Hdf5Time : public ::testing::Test {
   Scratch scratch_;
 };
 
-// As the cloud model CM1 writes it.
+// Writes a file like those of the cloud model CM1.
 constexpr const char* kCm1 = R"(
 import netCDF4
 n = netCDF4.Dataset("cm1out.nc", "w")
@@ -109,7 +109,8 @@ with h5py.File("pmd.h5", "w") as f:
   EXPECT_EQ(pmd->units, "s");
 }
 
-// Of three records of the dimension `flux` has two in the file, and `late`, at an auxiliary coordinate, one.
+// The dimensions `time` and `step` have three records each. `flux` has two records in the file, and `late` one; an
+// auxiliary coordinate has the times of `late`.
 constexpr const char* kShorter = R"(
 import netCDF4
 n = netCDF4.Dataset("a.nc", "w")
@@ -163,7 +164,7 @@ TEST_F(Hdf5Time, PositionOfARecordThatWasNotWritten_IsRefused) {
                 "to -1");
 }
 
-// openPMD 1.1, "Required for each Record": timeOffset is in the unit of the iteration's time.
+// openPMD 1.1, "Required for each Record": timeOffset has the same unit as the time of the iteration.
 TEST_F(Hdf5Time, OffsetOfAnOpenPmdRecord_IsAddedToTheTime) {
   write_by_h5py(scratch_, R"(
 with h5py.File("pmd.h5", "w") as f:
@@ -233,7 +234,7 @@ with h5py.File("a.h5", "w") as f:
           "lie in other files; write it with the time first, or into one file");
 }
 
-// An unlimited dimension of cycles in no unit, and times in units that are not UDUNITS' shortest.
+// The unlimited dimension `cycle` has no unit. `time` is in microseconds, which is not the shortest name in UDUNITS.
 TEST_F(Hdf5Time, TimeInAnyUnitButOneOfSpace_IsNoAxisOfAVolume) {
   write_by_h5py(scratch_, R"(
 import netCDF4

@@ -1,10 +1,9 @@
-// One dataset, written as NetCDF and as Zarr.
+// Checks that a dataset that xarray writes as NetCDF and as Zarr gives the same volume from both.
 #include "tests/ingest/hdf5/support/h5py_file.h"
 
 namespace weir::hdf5_zarr_test {
 namespace {
 
-// What xarray writes of one dataset as NetCDF and as Zarr is one volume.
 TEST(Hdf5AndZarr, OfOneDatasetOfXarray_AreOneVolume) {
   if (!python_has("xarray, zarr, netCDF4")) GTEST_SKIP() << "python3 with xarray, zarr and netCDF4 is missing";
   const Scratch scratch;

@@ -1,3 +1,4 @@
+// Tests the helpers for text headers: lines, words, numbers, quotes and paths.
 #include "ingest/headers/header_text.h"
 
 #include <cmath>

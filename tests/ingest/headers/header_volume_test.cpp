@@ -1,3 +1,4 @@
+// Tests volumes of a header and raw values: sizes, offsets, --index, packed values and attributes.
 #include "ingest/headers/header_volume.h"
 
 #include <filesystem>
@@ -15,7 +16,7 @@ std::vector<std::uint16_t> ramp(std::size_t count) {
   return values;
 }
 
-/// A header of six bytes, 2 x 1 x 2 x 3 x 2 values of big-endian uint16 after it.
+/// The volume is an array of 2 x 1 x 2 x 3 x 2 big-endian uint16 values after a header of six bytes.
 class HeaderVolumeTest : public ::testing::Test {
  protected:
   HeaderVolumeTest() {
@@ -138,7 +139,7 @@ TEST_F(HeaderVolumeTest, MoreBytesBehindTheValuesThanFillABlock_AreRefused) {
                                            "uint16, 8192 bytes; the header is wrong");
 }
 
-// Values of another kind before the volume's own would be taken for it.
+// If nothing may follow the values, a longer file has something else before them, which would be read as the volume.
 TEST_F(HeaderVolumeTest, BytesBehindTheValues_AreRefusedWhereNoneMayFollow) {
   volume_.extents = {4, 3, 2};
   volume_.ends_file = true;
@@ -150,7 +151,7 @@ TEST_F(HeaderVolumeTest, BytesBehindTheValues_AreRefusedWhereNoneMayFollow) {
                                            "bytes; something else comes before the values, and the header is wrong");
 }
 
-// Each of two volumes of 24 bytes: as much as one of them is one too many.
+// The file holds two volumes of 24 bytes each. 23 more bytes after them are accepted, 24 are refused.
 TEST_F(HeaderVolumeTest, BytesBehindSeveralValues_AreRefusedFromOneVolumeOn) {
   volume_.extents = {4, 3, 1, 2};
   SourceOptions second;

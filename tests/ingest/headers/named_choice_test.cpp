@@ -1,3 +1,4 @@
+// Tests how a volume is chosen by its name, and the messages that list the names.
 #include "ingest/headers/named_choice.h"
 
 #include "tests/ingest/support/scratch.h"

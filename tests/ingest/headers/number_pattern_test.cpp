@@ -1,3 +1,4 @@
+// Tests patterns with a running number, and the files that they name.
 #include "ingest/headers/number_pattern.h"
 
 #include <sys/stat.h>

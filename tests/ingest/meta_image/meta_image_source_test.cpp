@@ -90,7 +90,7 @@ TEST(MetaImageSource, DistanceUnits_AreOfAllAxes) {
 
 TEST(MetaImageSource, SpacingIgnoresTheAxisDirections) {
   const Scratch scratch;
-  // 36.87 degrees about z, rounded as writers do.
+  // A rotation by 36.87 degrees about z, rounded as writers of MetaImage round it.
   const std::string path = write_headed(
       scratch, "a.mha",
       header("ElementSpacing = 0.7 0.7 -2\nOffset = 1 2 3\nTransformMatrix = 0.8 0.6 0 -0.6 0.79999 0 0 0 1\n"),
@@ -132,7 +132,7 @@ TEST(MetaImageSource, IndexChoosesATimeStep) {
   EXPECT_EQ(source->info().origin, (std::array<double, 3>{4, 5, 6}));
 }
 
-// As PLUS and SlicerIGT describe the frames of a sequence, several lines for each.
+// PLUS and SlicerIGT describe each frame of a sequence with several header lines.
 TEST(MetaImageSource, SequenceOfManyFrames_HasALongHeader) {
   const Scratch scratch;
   const auto with_frames = [&](int frames, const std::string& key) {
@@ -142,7 +142,7 @@ TEST(MetaImageSource, SequenceOfManyFrames_HasALongHeader) {
     }
     return header(lines);
   };
-  for (const int frames : {1, 20'000, 200'000}) {  // 14 MiB of lines
+  for (const int frames : {1, 20'000, 200'000}) {  // the longest header has 14 MiB of lines
     const std::string path = write_headed(scratch, "a.mha", with_frames(frames, "Seq_Frame"), stored(ramp()));
     EXPECT_EQ(read_volume(*open_source(path, {})), as_floats(ramp())) << frames;
   }
@@ -159,7 +159,7 @@ TEST(MetaImageSource, AFileCutAtAnyByteIsRefused) {
     for (std::size_t size = 1; size < whole.size(); ++size) {
       EXPECT_FALSE(refusal(write_headed(scratch, "cut.mha", whole.substr(0, size))).empty()) << size;
     }
-    // A plain file may have bytes behind its values, but no second volume.
+    // A plain file may have extra bytes behind its values, but not as many as a second volume.
     const std::size_t more = compressed ? 1 : 24;
     EXPECT_FALSE(refusal(write_headed(scratch, "long.mha", whole + std::string(more, 'x'))).empty());
   }

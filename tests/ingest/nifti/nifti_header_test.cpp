@@ -84,7 +84,7 @@ TEST(NiftiHeader, TheSformRulesOverTheQform) {
 
 TEST(NiftiHeader, TheQformTurnsAndFlips) {
   NiftiBytes bytes(1);
-  // Half a turn about y, then qfac -1: x and z run back, and z once more.
+  // Half a turn about y reverses x and z; qfac -1 then reverses z once more.
   bytes.set<std::int16_t>(252, 1).set_all<float>(256, {0, 1, 0}).set_all<float>(268, {7, 8, 9});
   bytes.set_all<float>(76, {-1, 2, 3, 4});
   const NiftiHeader header = parse(bytes);
@@ -93,7 +93,7 @@ TEST(NiftiHeader, TheQformTurnsAndFlips) {
   EXPECT_EQ(header.steps[1], (Vector3{0, 3, 0}));
   EXPECT_EQ(header.steps[2], (Vector3{0, 0, 4}));
   EXPECT_EQ(header.first, (Vector3{7, 8, 9}));
-  // A quarter turn about z: x runs along the world's y, y against its x.
+  // A quarter turn about z: the image's x runs along the world's y, and its y against the world's x.
   const auto half = static_cast<float>(std::sqrt(0.5));
   bytes.set_all<float>(256, {0, 0, half}).set<float>(76, 1);
   EXPECT_NEAR(parse(bytes).steps[0][1], 2, 1e-6);
@@ -107,14 +107,14 @@ TEST(NiftiHeader, SformThatIsNoPlace_GivesWayToTheQform_AndThatToPixdim) {
   const std::vector<float> whole{-2, 0, 0, 90, 0, 3, 0.5F, -126, 0, 0, 4, -72};
   std::vector<std::vector<float>> wrong(4, whole);
   wrong[0] = std::vector<float>(12, 0);
-  wrong[1][5] = 0;         // no step along y
-  wrong[2][10] = nan;      // of z
-  wrong[3][3] = infinity;  // of the first voxel
+  wrong[1][5] = 0;         // the step along y is zero
+  wrong[2][10] = nan;      // the step along z is not finite
+  wrong[3][3] = infinity;  // the position of the first voxel is not finite
   for (const std::vector<float>& sform : wrong) {
     NiftiBytes bytes(1);
     bytes.set<std::int16_t>(252, 1).set<std::int16_t>(254, 2).set_all<float>(76, {1, 2, 3, 4});
     bytes.set_all<float>(256, {0, 1, 0}).set_all<float>(268, {7, 8, 9}).set_all<float>(280, sform);
-    const NiftiHeader turned = parse(bytes);  // half a turn about y
+    const NiftiHeader turned = parse(bytes);  // the qform is half a turn about y
     EXPECT_FALSE(turned.steps_rule);
     EXPECT_EQ(turned.steps, (std::array<Vector3, 3>{{{-2, 0, 0}, {0, 3, 0}, {0, 0, -4}}}));
     EXPECT_EQ(turned.first, (Vector3{7, 8, 9}));
@@ -136,7 +136,7 @@ TEST(NiftiHeader, SformThatIsNoPlace_GivesWayToTheQform_AndThatToPixdim) {
     EXPECT_TRUE(parse(bytes).steps_rule);
     EXPECT_EQ(parse(bytes).placement_note, "") << "the qform does not count";
   }
-  // Of an axis that the image does not have, nothing is asked.
+  // The sform's column for an axis that the image does not have may be zero.
   NiftiBytes flat(2);
   flat.set_all<std::int64_t>(16, {2, 4, 3}).set<std::int32_t>(348, 1);
   flat.set_all<double>(400, {1, 0, 0, 5, 0, 2, 0, 6, 0, 0, 0, 7});

@@ -109,7 +109,7 @@ TEST(NiftiSource, LengthUnit_IsOfAllAxes) {
   }
 }
 
-/// A header of two volumes of 4 x 3 x 1 voxels, half a unit of time apart, the first at time 3.
+/// Returns a header of two volumes of 4 x 3 x 1 voxels, half a unit of time apart. The first one is at time 3.
 NiftiBytes two_times(int version, bool big_endian, std::int32_t units) {
   NiftiBytes header(version, big_endian);
   if (version == 1) {
@@ -137,7 +137,7 @@ TEST(NiftiSource, TimeOfAVolume_IsThatOfItsPositionOnTheFourthAxis) {
       EXPECT_EQ(at(first)->value, 3);
       EXPECT_EQ(open_source(path, second)->info().details.axes[2].units, "mm");
     }
-    for (const int code : {0, 32, 40, 48}) {  // none, Hz, ppm, rad/s
+    for (const int code : {0, 32, 40, 48}) {  // unit codes: none, Hz, ppm, rad/s
       const std::string path = scratch.write("a.nii", whole_file(two_times(version, false, code), stored(ramp())));
       EXPECT_FALSE(open_source(path, second)->info().details.time) << version << ' ' << code;
     }
@@ -206,7 +206,7 @@ TEST(NiftiSource, IsRecognisedByItsName) {
   EXPECT_TRUE(recognises_nifti("a.nii", {}));
   EXPECT_TRUE(recognises_nifti("A.NII.GZ", {}));
   EXPECT_TRUE(recognises_nifti("a.hdr", head));
-  EXPECT_FALSE(recognises_nifti("a.hdr", {}));  // ENVI and others
+  EXPECT_FALSE(recognises_nifti("a.hdr", {}));  // ENVI and other formats use the ending .hdr, too
   EXPECT_FALSE(recognises_nifti("a.gz", head));
   EXPECT_FALSE(recognises_nifti("a.raw", head));
 }
@@ -219,7 +219,7 @@ TEST(NiftiSource, AFileCutAtAnyByteIsRefused) {
     for (std::size_t size = 1; size < bytes.size(); ++size) {
       EXPECT_FALSE(refusal(scratch.write(name, std::span(bytes).first(size))).empty()) << size;
     }
-    // A plain file may have bytes behind its values, but no second volume.
+    // A plain file may have extra bytes behind its values, but not as many as a second volume.
     bytes.resize(bytes.size() + (name == "a.nii" ? 24 : 1), std::byte{1});
     EXPECT_FALSE(refusal(scratch.write(name, bytes)).empty());
   }
@@ -240,7 +240,8 @@ TEST(NiftiSource, ExtensionsThatTheOffsetDoesNotPass_AreNotTakenForValues) {
   const Scratch scratch;
   auto bytes = whole_file(NiftiBytes(1), stored(ramp()));
   bytes[348] = std::byte{1};
-  EXPECT_EQ(read_volume(*open_source(scratch.write("a.nii", bytes), {})), as_floats(ramp()));  // there are none
+  EXPECT_EQ(read_volume(*open_source(scratch.write("a.nii", bytes), {})),
+            as_floats(ramp()));  // the flag is set, but the file has no extensions
   bytes.resize(384);
   const std::string path = scratch.write("b.nii", bytes);
   EXPECT_EQ(refusal(path), path +

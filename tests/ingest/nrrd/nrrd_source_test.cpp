@@ -80,7 +80,7 @@ TEST(NrrdSource, SpacingsAndAxisRangesGiveThePlacement) {
     return open_source(write_headed(scratch, "a.nrrd", header(fields), stored(ramp())), {})->info();
   };
   EXPECT_EQ(info("spacings: 0.5 nan -2\n").spacing, (std::array<double, 3>{0.5, 1, 2}));
-  // Cells by default: 4 values from 0 to 8 are 2 apart, the first in the middle of its cell.
+  // Values are cell-centred by default: 4 values from 0 to 8 are 2 apart, and the first lies in the middle of its cell.
   const SourceInfo ranges = info("axis mins: 0 nan 10\naxis maxs: 8 nan 13\ncenters: cell ??? node\n");
   EXPECT_EQ(ranges.spacing, (std::array<double, 3>{2, 1, 3}));
   EXPECT_EQ(ranges.origin, (std::array<double, 3>{1, 0, 10}));
@@ -120,7 +120,7 @@ TEST(NrrdSource, FallingAxesWithSpacings_AreSaid) {
   const auto info = [&](const std::string& fields) {
     return open_source(write_headed(scratch, "a.nrrd", header(fields), stored(ramp())), {})->info();
   };
-  // The range says the direction, the spacing the distance.
+  // The range gives the direction, and the spacing gives the distance.
   const SourceInfo both = info("spacings: 5 nan 4\naxis mins: 20 12 0\naxis maxs: 0 0 8\n");
   EXPECT_EQ(both.spacing, (std::array<double, 3>{5, 4, 4}));
   EXPECT_EQ(both.origin, (std::array<double, 3>{17.5, 10, 2}));
@@ -144,7 +144,7 @@ TEST(NrrdSource, UnitsOfAxes_AreKept_AndSaidWhereTheyDiffer) {
   const SourceInfo mixed = info("units: \"mm\" \"mm\" \"um\"\nlabels: \"\" \"\" \"depth\"\n");
   EXPECT_EQ(units(mixed), (std::array<std::string, 3>{"mm", "mm", "um"}));
   EXPECT_EQ(mixed.details.units_note, "axis x is in mm, y in mm, z (depth) in um");
-  // Those of the world's axes that the array's run along: here x along the world's z.
+  // Each array axis has the unit of the world axis that it runs along. Here the array's x runs along the world's z.
   const std::string space = "space dimension: 3\nspace units: \"mm\" \"mm\" \"um\"\n";
   const SourceInfo turned = info(space + "space directions: (0,0,2) (0,-1,0) (1,0,0)\n");
   EXPECT_EQ(units(turned), (std::array<std::string, 3>{"um", "mm", "mm"}));
@@ -233,7 +233,7 @@ TEST(NrrdSource, TimeAmongTheFirstThreeAxes_IsRefused) {
   EXPECT_EQ(refused("dimension: 4\nsizes: 4 3 2 1\nkinds: space space time space"),
             ": axis 2 of 2 values and kind 'time' is no axis of space; take one time step with `unu slice -a 2 -p 0`, "
             "or make it the last axis with `unu permute -p 0 1 3 2`");
-  // A direction in space does not make the axis one of space.
+  // A space direction does not make a time axis an axis of space.
   EXPECT_EQ(refused("dimension: 4\nsizes: 2 4 3 1\nkinds: time space space space\nspace dimension: 3\n"
                     "space directions: (1,0,0) (1,0,0) (0,1,0) (0,0,1)"),
             ": axis 0 of 2 values and kind 'time' is no axis of space; take one time step with `unu slice -a 0 -p 0`, "
@@ -241,7 +241,7 @@ TEST(NrrdSource, TimeAmongTheFirstThreeAxes_IsRefused) {
   EXPECT_EQ(refused("dimension: 5\nsizes: 1 4 2 3 1\nkinds: scalar space time space space"),
             ": axis 2 of 2 values and kind 'time' is no axis of space; take one time step with `unu slice -a 2 -p 0`, "
             "or make it the last axis with `unu permute -p 0 1 3 4 2`");
-  // Among three axes it would be z wherever it stands.
+  // Among three axes, the axis in the way would be taken for z wherever it stands.
   EXPECT_EQ(refused("dimension: 3\nsizes: 4 3 2\nkinds: space space time"),
             ": axis 2 of 2 values and kind 'time' is no axis of space; take one time step with `unu slice -a 2 -p 0`");
 }
@@ -284,7 +284,7 @@ TEST(NrrdSource, ReadsDetachedValues) {
   path = write_headed(scratch, "b.nhdr", header("byte skip: -1\ndata file: " + scratch.path("data/a.raw") + "\n"));
   EXPECT_EQ(read_volume(*open_source(path, {})), as_floats(ramp()));
 
-  // Bytes are skipped in the unpacked data, lines before them.
+  // Bytes are skipped in the unpacked data. Lines are skipped in the file, before the compressed data.
   values.insert(values.begin(), 5, std::byte{0xEE});
   write_headed(scratch, "data/a.raw.gz", "line\n", deflated(values, Wrapper::gzip));
   path = write_headed(scratch, "c.nhdr", header("line skip: 1\nbyte skip: 5\ndata file: data/a.raw.gz\n", "gzip"));
@@ -308,7 +308,7 @@ TEST(NrrdSource, AFileCutAtAnyByteIsRefused) {
     for (std::size_t size = kNrrdMagic.size(); size < whole.size(); ++size) {
       EXPECT_FALSE(refusal(write_headed(scratch, "cut.nrrd", whole.substr(0, size))).empty()) << size;
     }
-    // A plain file may have bytes behind its values, but no second volume.
+    // A plain file may have extra bytes behind its values, but not as many as a second volume.
     const std::size_t more = encoding == "raw" ? 24 : 1;
     EXPECT_FALSE(refusal(write_headed(scratch, "long.nrrd", whole + std::string(more, 'x'))).empty());
   }

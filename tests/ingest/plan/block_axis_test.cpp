@@ -24,7 +24,7 @@ TEST(BlockAxis, AmplificationCountsChunksThatBlocksShare) {
   EXPECT_EQ(axis.amplification(kAll), 1);
   axis.size = 1;
   EXPECT_EQ(axis.amplification(kAll), 8);
-  axis.size = 12;  // ends at 96, 192 ...: every other end cuts a chunk
+  axis.size = 12;  // blocks end at 96, 192, ...: every other end cuts a chunk
   EXPECT_EQ(axis.amplification(kAll), 11.0 / 8);
   EXPECT_EQ(axis.amplification(2), 4.0 / 3) << "96 voxels of two and 96 of two, of the first three";
   axis.size = axis.count;
@@ -52,7 +52,7 @@ TEST(BlockAxis, UsefulCutsGetLongerAndBetter) {
     }
   }
   const std::vector<AxisCut> cubes = useful_cuts(BlockAxis(0, 512, 64, 0));
-  EXPECT_EQ(cubes.size(), 5U);  // one, two, three and four eighths of a chunk, and a whole one
+  EXPECT_EQ(cubes.size(), 5U);  // blocks of 1, 2, 3 and 4 eighths of a chunk, and of a whole chunk
   EXPECT_EQ(cubes.back().size, 8);
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 const Box kDomain{{-5, 3, 16}, {37, 40, 41}};
 
-/// Leaves up to `kSplit` along x have one value for each 4 x 2 x 1 voxels, as far as they lie in the domain.
+/// A source with one value for each 4 x 2 x 1 voxels in the leaves of the domain that lie below `kSplit` along x.
 class CoarseSource final : public VolumeSource {
  public:
   CoarseSource() {

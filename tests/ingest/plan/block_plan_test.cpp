@@ -11,15 +11,15 @@ constexpr std::uint64_t kMiB = std::uint64_t{1} << 20U;
 
 Box at_origin(const Index3& extent) { return {{0, 0, 0}, extent}; }
 
-/// A plan, checked: blocks fit the budget, cover the domain once in order, and begin and end on multiples
-/// of a lower node (or of the block itself where it is a part of one) wherever they cut an axis.
+/// Returns the plan of plan_blocks() after checks: all blocks fit the budget and lie in the domain, the largest takes
+/// block_bytes, and together they cover the domain once, in order.
 BlockPlan checked_plan(const Box& domain, const AccessShape& access, std::uint64_t budget) {
   const BlockPlan plan = plan_blocks(domain, access, budget);
   EXPECT_LE(plan.block_bytes, budget);
   std::int64_t voxels = 0;
   std::uint64_t largest = 0;
   Box leaves_before{};
-  // Huge plans: the ends and some in between.
+  // Of a huge plan, only some blocks and both ends are checked.
   const std::int64_t step = std::max<std::int64_t>(1, plan.size() / 5000);
   for (std::int64_t i = 0; i < plan.size(); i += step) {
     const Box leaves = plan.leaf_box(i);
@@ -30,7 +30,7 @@ BlockPlan checked_plan(const Box& domain, const AccessShape& access, std::uint64
     largest = std::max(largest, static_cast<std::uint64_t>(box.voxels()) * 4);
     voxels += box.voxels();
     if (i > 0 && step == 1) {
-      // The next block in x begins where the last ended, or a new row begins.
+      // The block begins where the block before it ended along x, or it begins a new row.
       EXPECT_TRUE(leaves.lo.x == leaves_before.hi.x || leaves.lo.x == 0) << i;
       EXPECT_TRUE(leaves.lo.x == 0 || leaves.lo.y == leaves_before.lo.y) << i;
     }
@@ -45,7 +45,7 @@ BlockPlan checked_plan(const Box& domain, const AccessShape& access, std::uint64
   return plan;
 }
 
-/// Every leaf of the lattice is in exactly one block.
+/// Checks that every leaf of the lattice is in exactly one block.
 void expect_each_leaf_once(const BlockPlan& plan) {
   std::vector<int> seen(static_cast<std::size_t>(plan.lattice.size()));
   for (std::int64_t i = 0; i < plan.size(); ++i) {
@@ -77,7 +77,7 @@ TEST(BlockPlan, SmallVolumesAreOneBlock) {
 }
 
 TEST(BlockPlan, CloudWidthAt256MiB) {
-  // The paper's WDAS cloud. Half the memory for two buffers: 64 MiB a block, and a row of nodes takes 124.
+  // The paper's WDAS cloud. Half of 256 MiB holds two buffers, so a block has 64 MiB; a row of nodes takes 124 MiB.
   const Box domain = at_origin({1987, 1351, 2449});
   const BlockPlan tight = checked_plan(domain, {}, 64 * kMiB);
   EXPECT_EQ(tight.leaves, (Index3{249, 16, 8}));
@@ -150,7 +150,7 @@ TEST(BlockPlan, RefusesABudgetBelowOneLeaf) {
 }
 
 TEST(BlockPlan, BlocksLieOnGlobalNodeEdges) {
-  // Index ranges as OpenVDB input has them: neither zero nor a multiple of anything.
+  // OpenVDB input has such index ranges: they begin neither at zero nor at a multiple of a leaf or node.
   const Box domain{{-300, -21, -390}, {700, 565, 1154}};
   const BlockPlan plan = checked_plan(domain, {}, 64 * kMiB);
   expect_each_leaf_once(plan);
@@ -164,7 +164,7 @@ TEST(BlockPlan, BlocksLieOnGlobalNodeEdges) {
     EXPECT_TRUE(box.hi.z == domain.hi.z || box.hi.z % 128 == 0) << i;
   }
   EXPECT_EQ(plan.voxel_box(plan.leaf_box(0)), (Box{{-300, -21, -390}, {700, 0, -384}}));
-  // Parts of nodes never straddle two of them either.
+  // Blocks that are parts of nodes never straddle two nodes either.
   const BlockPlan parts = checked_plan(domain, {}, 20 * kMiB);
   expect_each_leaf_once(parts);
   for (std::int64_t i = 0; i < parts.size(); ++i) {
@@ -175,36 +175,37 @@ TEST(BlockPlan, BlocksLieOnGlobalNodeEdges) {
 }
 
 TEST(BlockPlan, WholeChunks) {
-  // The openPMD example's chunks; node rows hold whole ones.
+  // The chunks of the openPMD example: rows of nodes hold whole chunks.
   const BlockPlan fine = checked_plan(at_origin({512, 512, 512}), {4, {32, 16, 16}, {}}, 64 * kMiB);
   EXPECT_EQ(fine.leaves, (Index3{64, 16, 16}));
   EXPECT_EQ(fine.amplification, 1.0);
-  // 100^3: blocks of 200 voxels end with chunks, nodes would not.
+  // Chunks of 100^3 voxels: blocks of 200 voxels end at chunk edges, nodes of 128 voxels would not.
   const BlockPlan hundred = checked_plan(at_origin({1000, 1000, 1000}), {4, {100, 100, 100}, {}}, 256 * kMiB);
   EXPECT_EQ(hundred.leaves, (Index3{125, 25, 25}));
   EXPECT_EQ(hundred.amplification, 1.0);
-  // One plane a chunk, the usual NetCDF layout.
+  // One plane per chunk, the usual NetCDF layout.
   const BlockPlan planes = checked_plan(at_origin({1000, 1000, 1000}), {4, {1000, 1000, 1}, {}}, 64 * kMiB);
   EXPECT_EQ(planes.leaves, (Index3{125, 125, 2}));
   EXPECT_EQ(planes.amplification, 1.0);
 }
 
 TEST(BlockPlan, CutsRowsAtChunkEdgesToKeepChunksWhole) {
-  // A row of chunks does not fit, one column of them does: x is cut at chunk edges.
+  // A row of chunks does not fit the budget, but part of a row does: x is cut at chunk edges.
   const BlockPlan plan = checked_plan(at_origin({4096, 4096, 4096}), {4, {128, 256, 256}, {}}, 64 * kMiB);
   EXPECT_EQ(plan.leaves, (Index3{32, 32, 32}));
   EXPECT_EQ(plan.amplification, 1.0);
 }
 
 TEST(BlockPlan, AmplificationOfChunksThatDoNotFit) {
-  // 64^3 chunks take 1 MiB; a sixteenth of one fits. Rows of leaves would decode each chunk 8 x 8 times.
+  // A chunk of 64^3 voxels takes 1 MiB; the budget holds a sixteenth. Rows of leaves would decode each chunk 8 x 8
+  // times.
   const BlockPlan plan = checked_plan(at_origin({256, 256, 256}), {4, {64, 64, 64}, {}}, 65536);
   EXPECT_EQ(plan.leaves, (Index3{8, 4, 1}));
   EXPECT_EQ(plan.amplification, 16.0);
 }
 
 TEST(BlockPlan, PlaneChunksBeyondTheBudgetAreCutIntoStrips) {
-  // Eight planes of 4096^2 take 512 MiB: strips of them, as wide as fits, cut as few times as that allows.
+  // Eight planes of 4096^2 voxels take 512 MiB. They are cut into as few strips as the budget allows.
   const Box domain = at_origin({4096, 4096, 1000});
   const AccessShape planes{4, {4096, 4096, 1}, {}};
   const BlockPlan plan = checked_plan(domain, planes, 150 * kMiB);
@@ -215,7 +216,7 @@ TEST(BlockPlan, PlaneChunksBeyondTheBudgetAreCutIntoStrips) {
 }
 
 TEST(BlockPlan, ChunksOffLeafEdgesAreReadMoreThanOnce) {
-  // 75 and 8 meet at 600 voxels only, and such a block takes 824 MiB.
+  // Chunk edges (75) and leaf edges (8) coincide only every 600 voxels; a block of 600^3 voxels takes 824 MiB.
   const Box domain = at_origin({1200, 1200, 1200});
   const AccessShape chunks{4, {75, 75, 75}, {}};
   EXPECT_EQ(checked_plan(domain, chunks, 824 * kMiB).amplification, 1.0);
@@ -229,7 +230,7 @@ TEST(BlockPlan, GivesTheBytesThatDecodeEveryChunkOnce) {
   const AccessShape planes{4, {4096, 4096, 1}, {}};
   const std::uint64_t enough = bytes_for_whole_chunks(domain, planes);
   EXPECT_EQ(enough, 512 * kMiB);
-  // Off the leaf lattice only the whole axis will do.
+  // If chunk edges are off the leaf lattice, only blocks of the whole axis decode every chunk once.
   const Box odd = at_origin({64, 64, 512});
   const AccessShape off{4, {64, 64, 64}, {0, 0, 4}};
   EXPECT_EQ(bytes_for_whole_chunks(odd, off), 8 * kMiB);
@@ -237,7 +238,7 @@ TEST(BlockPlan, GivesTheBytesThatDecodeEveryChunkOnce) {
 }
 
 TEST(BlockPlan, ChunksFromAnOddOrigin) {
-  // A region of interest: chunks begin at 0, the domain at 40; blocks end with chunks all the same.
+  // A region of interest: chunks begin at 0 and the domain at 40. Blocks still end at chunk edges.
   const BlockPlan plan = checked_plan({{40, 40, 40}, {500, 500, 500}}, {4, {64, 80, 80}, {0, 0, 0}}, 32 * kMiB);
   expect_each_leaf_once(plan);
   EXPECT_EQ(plan.amplification, 1.0);
@@ -245,7 +246,7 @@ TEST(BlockPlan, ChunksFromAnOddOrigin) {
     const Box box = plan.voxel_box(plan.leaf_box(i));
     EXPECT_TRUE(box.lo.z == 40 || box.lo.z % 80 == 0) << i;
   }
-  // Chunk edges off the leaf lattice cannot be met; each one cut is decoded twice.
+  // Blocks cannot end at chunk edges that are off the leaf lattice. Each chunk that is cut is decoded twice.
   const BlockPlan off = checked_plan(at_origin({64, 64, 512}), {4, {64, 64, 64}, {0, 0, 4}}, 2 * kMiB);
   EXPECT_EQ(off.leaves, (Index3{8, 8, 16}));
   EXPECT_DOUBLE_EQ(off.amplification, 12.0 / 9.0);

@@ -22,8 +22,8 @@ class NoLeaves final : public HeldLeaves {
 };
 const NoLeaves kNoLeaves;
 
-/// A source whose values are their linear index. It can fail at one read or from one layer on, and records who read
-/// and into which memory.
+/// A source in which each value is its linear index. It can fail at one read, or from one layer on. It records the
+/// reading threads and the buffers that they read into.
 class CountingSource final : public VolumeSource {
  public:
   explicit CountingSource(const Index3& extent) { info_.extent = extent; }
@@ -63,7 +63,7 @@ class CountingSource final : public VolumeSource {
   std::int64_t fail_z = INT64_MAX;
   std::int64_t held_z = -1;
   Index3 chunk{};
-  std::uint64_t own_bytes = 0;  // that reading takes
+  std::uint64_t own_bytes = 0;  // memory that a read takes
   std::mutex mutex;
   std::set<std::thread::id> readers;
   std::set<const float*> buffers;
@@ -81,7 +81,7 @@ std::vector<Box> slabs(std::int64_t count) {
 TEST(BlockStream, HandsOutBlocksInOrderWithTheirValues) {
   CountingSource source({5, 3, 40});
   auto boxes = slabs(40);
-  std::swap(boxes[3], boxes[30]);  // the order of the list, not of space
+  std::swap(boxes[3], boxes[30]);  // blocks come in the order of the list, not of their place
   boxes[7] = {{1, 1, 7}, {2, 3, 9}};
   std::size_t next = 0;
   std::vector<std::int64_t> done;
@@ -117,14 +117,14 @@ TEST(BlockStream, HandsOutBlocksInOrderWithTheirValues) {
 TEST(BlockStream, ReadsTheNextBlockDuringTheWork) {
   CountingSource source({5, 3, 8});
   stream_blocks(source, slabs(8), {}, [&](const Block& block) {
-    // Never ends if the next block is only read after this one.
+    // This would wait forever if the next block were read only after the work on this one.
     while (source.reads < std::min<std::size_t>(block.index + 2, 8)) std::this_thread::yield();
     EXPECT_LE(source.reads, block.index + 2);
   });
   EXPECT_EQ(source.reads, 8U);
 }
 
-// Of the largest of slabs().
+// The bytes of each block of slabs().
 constexpr std::uint64_t kSlabBytes = 5 * 3 * sizeof(float);
 
 TEST(BlockStream, ReadsAsManyBlocksAheadAsItsBuffersHold) {
@@ -238,7 +238,7 @@ TEST(BlockStream, WorkErrorEndsBoth) {
                                  if (block.index == fail_at) throw std::domain_error("NaN");
                                }),
                  std::domain_error);
-    EXPECT_LE(source.reads, fail_at + 2);  // the next one may have been begun
+    EXPECT_LE(source.reads, fail_at + 2);  // the read of the next block may have begun
   }
 }
 
@@ -325,7 +325,7 @@ TEST(BlockStream, CancelDuringAtRest_CallsAtRestOnceMore) {
   options.cancel = &cancel;
   options.at_rest = [&](std::size_t done) {
     rests.push_back(done);
-    if (done == 3) cancel = true;  // as a signal that comes after the look at the flag
+    if (done == 3) cancel = true;  // like a signal that arrives after the flag was checked
   };
   std::size_t worked = 0;
   message_of_error(ErrorKind::interrupted,
@@ -334,7 +334,7 @@ TEST(BlockStream, CancelDuringAtRest_CallsAtRestOnceMore) {
   EXPECT_EQ(worked, 3U);
 }
 
-// Reads groups of 64 Mi voxels, here of two blocks; a group that has begun is finished.
+// work_in_place() reads groups of 64 Mi voxels, here two blocks. A group that has begun is finished.
 TEST(BlockStream, InPlace_CallsAtRestAndCancelsBetweenGroups) {
   class Empty final : public VolumeSource {
    public:

@@ -7,8 +7,8 @@
 namespace weir::box_pieces_test {
 namespace {
 
-/// Follows the pieces through a file whose voxel i has the value i, and checks that every value of the
-/// box comes from its place, once, and that no piece is larger than allowed. Returns the pieces.
+/// Follows the pieces through a file in which voxel i has the value i. Checks that every value of the box is read once,
+/// from its place, and that no piece is larger than `piece_bytes`. Returns the pieces.
 std::vector<BoxPiece> check(const Index3& extent, const Box& box, std::size_t voxel_bytes, std::uint64_t header,
                             std::uint64_t piece_bytes) {
   const BoxPieces pieces(extent, box, voxel_bytes, header, piece_bytes);
@@ -46,17 +46,17 @@ TEST(BoxPieces, WholePlanesAreOneRun) {
   ASSERT_EQ(one.size(), 1U);
   EXPECT_EQ(one[0].offset, 100U + 2 * 35 * 4);
   EXPECT_EQ(one[0].bytes, 4U * 35 * 4);
-  EXPECT_EQ(check({7, 5, 9}, {{0, 0, 0}, {7, 5, 9}}, 4, 0, 128).size(), 10U);  // 315 voxels, 32 a piece
+  EXPECT_EQ(check({7, 5, 9}, {{0, 0, 0}, {7, 5, 9}}, 4, 0, 128).size(), 10U);  // 315 voxels, 32 per piece
 }
 
 TEST(BoxPieces, WholeRowsAreARunAPlane) {
-  // 3 of 5 rows a plane; the gap of 2 rows is read through, 2 planes fit a piece.
+  // The box has 3 of 5 rows per plane. The gap of 2 rows is read too, and 2 planes fit into a piece.
   const auto grouped = check({7, 5, 9}, {{0, 1, 0}, {7, 4, 9}}, 4, 0, 250);
   ASSERT_EQ(grouped.size(), 5U);
   EXPECT_EQ(grouped[0].runs, 2);
   EXPECT_EQ(grouped[0].stride_bytes, 140U);
   EXPECT_EQ(grouped[4].runs, 1);
-  // Runs of 84 bytes cut at 80.
+  // Runs of 84 bytes are cut at 80 bytes.
   EXPECT_EQ(check({7, 5, 9}, {{0, 1, 0}, {7, 4, 9}}, 4, 0, 80).size(), 18U);
 }
 

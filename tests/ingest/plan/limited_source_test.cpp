@@ -11,7 +11,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// A source that reads four bytes a voxel; opening it took 100 bytes.
+/// A source that reads four bytes per voxel. Opening it has read 100 bytes.
 class CountingSource final : public VolumeSource {
  public:
   CountingSource() { info_.extent = {1000, 1, 1}; }
@@ -49,7 +49,7 @@ TEST(LimitedSource, ReadsTheSameAndNoFasterThanAllowed) {
   EXPECT_EQ(source->read({{3, 0, 0}, {53, 1, 1}}, values).inexact, 1U);
   EXPECT_EQ(values, std::vector<float>(50, 3.0F));
   EXPECT_EQ(source->bytes_read(), 300U);
-  EXPECT_EQ(now, start + 200ms);  // of 300 bytes 100 were free
+  EXPECT_EQ(now, start + 200ms);  // 100 of the 300 bytes, those of opening, are not limited
   source->read_alone({{3, 0, 0}, {53, 1, 1}}, values);
   EXPECT_EQ(now, start + 400ms);
   const std::vector<RepeatedPart> parts = source->repeated_parts({{0, 0, 0}, {50, 1, 1}});

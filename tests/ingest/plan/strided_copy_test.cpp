@@ -14,8 +14,8 @@ namespace {
 constexpr Box kBox{{-3, 5, 100}, {37, 28, 109}};
 constexpr Index3 kExtent = kBox.extent();
 
-// An array whose axes are stored in `order` (fastest first), with `gap` bytes between values, and, where `backwards`,
-// every axis the other way round. Each voxel holds its linear index, as far as it fits.
+// An array with its bytes. Function stored() stores its axes in `order` (fastest first), with `gap` bytes between
+// values, and if `backwards`, with every axis reversed. Each voxel holds its linear index, cast to the value type.
 struct Stored {
   std::vector<std::byte> bytes;
   StridedVoxels voxels;

@@ -17,7 +17,7 @@ class ForeignFormat : public ::testing::Test {
     std::ofstream(path, std::ios::binary) << bytes + std::string(300, '\0');
     return path;
   }
-  /// What is said of opening it, without its path.
+  /// Returns the error message of opening `path`, without the path.
   std::string refusal(const std::string& path, ErrorKind kind = ErrorKind::input) {
     const std::string text = message_of_error(kind, [&] { open_source(path, {}); });
     EXPECT_TRUE(text.starts_with(path + ": ")) << text;

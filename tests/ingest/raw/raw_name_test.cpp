@@ -39,7 +39,7 @@ TEST(RawName, AllScalarTypes) {
   }
 }
 
-// As --type takes them.
+// Option --type takes the same names of types.
 TEST(RawName, TypesOfCAndNumpy_AreTaken) {
   const auto expect = [](const std::string& text, ScalarType type, bool big_endian) {
     const auto name = parse_raw_name("a_4x4x4_" + text + ".raw");
@@ -71,7 +71,7 @@ TEST(RawName, ImpossibleExtentsAreReadAsWritten) {
             (Index3{kMax, 1, kMin}));
 }
 
-// As scanners write them under Windows.
+// Scanners write such names under Windows.
 TEST(RawName, ExtensionInCapitals_IsTaken) {
   const auto name = parse_raw_name("Scan_4x5x6_uint16be.RAW");
   ASSERT_TRUE(name);

@@ -16,7 +16,7 @@ namespace {
 const Index3 kExtent{7, 5, 9};
 constexpr std::size_t kVoxels = 7 * 5 * 9;
 
-/// 0, 1, 2, ... 125, 0, 1, ...: in the range of every type.
+/// Returns 0, 1, 2, ... 125, 0, 1, ...: values in the range of every type.
 template <typename T>
 std::vector<T> ramp(std::size_t count = kVoxels) {
   std::vector<T> values(count);
@@ -116,7 +116,7 @@ TEST(RawSource, AnyBoxInAnyMode) {
 }
 
 TEST(RawSource, ManyPiecesOnManyThreads) {
-  // Larger than one piece, with a header that puts every value off its alignment.
+  // The volume is larger than one piece, and its header of 3 bytes puts every value off its alignment.
   const Scratch scratch;
   const Index3 extent{512, 256, 24};
   std::vector<float> values(static_cast<std::size_t>(volume(extent)));
@@ -129,7 +129,7 @@ TEST(RawSource, ManyPiecesOnManyThreads) {
     options.direct_io = mode;
     const auto source = open_raw(path, options);
     EXPECT_EQ(read(*source, source->info().domain()), values);
-    // From several threads at once, which share the staging memory.
+    // Several threads read at once and share the staging memory.
     std::vector<std::jthread> threads;
     for (std::int64_t z = 0; z < 24; z += 6) {
       threads.emplace_back([&, z] {
@@ -250,7 +250,7 @@ TEST(RawSource, FileThatIsPackedByXzBzip2OrZstd_IsToBeUnpacked) {
   EXPECT_EQ(refused(".ZST", {0x28, 0xB5, 0x2F, 0xFD, 4}), ": is packed by zstd; unpack it first, with zstd -d");
 }
 
-// numpy's header of version 1 is padded to 128 bytes.
+// The header of a numpy file of version 1 is padded to 128 bytes.
 TEST(RawSource, ArrayOfNumpy_IsRefusedUnlessDimsAreGiven) {
   const Scratch scratch;
   const std::string remedy =

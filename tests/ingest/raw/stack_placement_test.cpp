@@ -1,4 +1,4 @@
-// Where the planes of a stack lie: by what its files say of themselves, whatever their order.
+// The planes of a stack lie where their files say, whatever the order of the files.
 #include "ingest/raw/stack_placement.h"
 
 #include <array>
@@ -11,7 +11,7 @@ namespace {
 
 using Triple = std::array<double, 3>;
 
-/// An NRRD file of 2 x 1 x `planes` voxels, all of them `value`, the first one's centre at `origin`.
+/// Writes an NRRD file of 2 x 1 x `planes` voxels of `value`. The centre of the first voxel lies at `origin`.
 void write_nrrd(const Scratch& scratch, const std::string& name, float value, int planes, const Triple& origin,
                 const std::string& directions = "(1,0,0) (0,1,0) (0,0,0.5)") {
   std::string text = "NRRD0004\ntype: float\ndimension: 3\nsizes: 2 1 " + std::to_string(planes) +

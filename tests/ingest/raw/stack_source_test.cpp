@@ -20,7 +20,8 @@ std::vector<std::uint16_t> ramp() {
   return values;
 }
 
-// The ramp in slabs of `planes`, the last one perhaps shorter, numbered from `first` on.
+// Writes the ramp in slabs of `planes` planes, numbered from `first` on. The last slab may be shorter. Returns the path
+// pattern of the slabs.
 std::string write_slabs(const Scratch& scratch, std::int64_t planes, int first = 7) {
   const auto values = ramp();
   const std::int64_t plane = kExtent.x * kExtent.y;
@@ -59,7 +60,7 @@ TEST(StackSource, ReadsItsFilesAsOneVolume) {
     EXPECT_EQ(source->info().file_bytes, 2 * all.size());
     EXPECT_EQ(read(*source, source->info().domain()), expected) << planes;
     EXPECT_EQ(source->bytes_read(), 2 * all.size());
-    // Boxes that begin and end inside slabs.
+    // A box that begins and ends inside slabs.
     const Box box{{1, 2, 3}, {5, 4, 38}};
     std::vector<float> part;
     for (std::int64_t z = 3; z < 38; ++z) {

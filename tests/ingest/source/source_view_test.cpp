@@ -29,7 +29,7 @@ TEST(SourceView, RegionKeepsIndicesAndOrigin) {
   EXPECT_EQ(info.extent, (Index3{6, 6, 3}));
   EXPECT_EQ(info.index_origin, (Index3{3, 2, 1}));
   EXPECT_EQ(info.domain(), (Box{{3, 2, 1}, {9, 8, 4}}));
-  EXPECT_EQ(info.origin, (std::array<double, 3>{1.0, 2.0, 3.0}));  // of index (0, 0, 0), not of the region
+  EXPECT_EQ(info.origin, (std::array<double, 3>{1.0, 2.0, 3.0}));  // the place of index (0, 0, 0), not of the region
   EXPECT_EQ(info.spacing, (std::array<double, 3>{0.5, 0.5, 0.5}));
   EXPECT_EQ(info.type, ScalarType::uint16);
   EXPECT_EQ(source->access().bytes_per_voxel, 2U);
@@ -131,7 +131,7 @@ TEST(SourceView, RefusesInvalidSpacingAndOrigin) {
   EXPECT_EQ(refusal(options), path + ": --origin has -2e+37; each must be within -1e+37 and 1e+37");
 }
 
-// Its far end lies beyond the greatest float32, 3.4e38, and its origin does not.
+// The far end of the volume lies beyond the greatest float32, 3.4e38, but its origin does not.
 TEST(SourceView, VolumeThatReachesBeyondFloat32_IsRefused) {
   const Scratch scratch;
   SourceOptions options;

@@ -44,7 +44,7 @@ TEST(StoredValue, HoldsTellsWhetherATypeCanStoreAValue) {
   EXPECT_FALSE(holds(ScalarType::float16, StoredValue{1e5}));
   EXPECT_TRUE(holds(ScalarType::bfloat16, StoredValue{3.38e38}));
   EXPECT_FALSE(holds(ScalarType::bfloat16, StoredValue{3.4e38}));
-  // The shortest text of the largest float32, of float16 and of bfloat16, as others write it.
+  // The shortest texts of the largest float32, float16 and bfloat16, as other programs write them.
   EXPECT_TRUE(holds(ScalarType::float32, StoredValue{-3.4028235e+38}));
   EXPECT_TRUE(holds(ScalarType::float32, StoredValue{0x1.FFFFFEFFFFFFFp127}));
   EXPECT_FALSE(holds(ScalarType::float32, StoredValue{0x1.FFFFFFp127})) << "rounds to infinity";
@@ -61,7 +61,7 @@ TEST(StoredValue, MissingIsAQuietNaNOfItsOwn) {
   EXPECT_TRUE(is_missing(missing_value()));
   EXPECT_FALSE(is_missing(std::numeric_limits<float>::quiet_NaN()));
   EXPECT_FALSE(is_missing(-missing_value()));
-  EXPECT_NE(kMissingBits & 0x00400000U, 0U);  // quiet: arithmetic may not trap on it
+  EXPECT_NE(kMissingBits & 0x00400000U, 0U);  // a quiet NaN, so that arithmetic does not trap on it
 }
 
 TEST(ValueMapping, DefaultMappingIsTheIdentity) {

@@ -102,7 +102,7 @@ TEST_F(SpoolFileTest, LiesBesideThePackedFileWhereNoDirectoryIsChosen) {
   const std::string packed = scratch_.path("data.gz");
   SpoolFile writer(watched, options_, packed, 1);
   EXPECT_EQ(watched.calls(), (std::vector<std::string>{"create_unnamed", "preallocate"}));
-  // The data's own directory may be closed to us: /var/tmp then.
+  // If this user may not write to the directory of the data, the spool file lies in /var/tmp.
   FaultyFileSystem closed(*files_, 0, EACCES);
   SpoolFile elsewhere(closed, options_, packed, 1);
   EXPECT_EQ(closed.calls(), (std::vector<std::string>{"create_unnamed", "create_unnamed", "preallocate"}));

@@ -6,7 +6,7 @@
 namespace weir::spool_inflated_test {
 namespace {
 
-/// Several of the reader's pieces when packed, so that piece borders are crossed.
+/// Returns noise. Because it hardly compresses, it can span several of the reader's pieces even when it is packed.
 std::vector<std::byte> noise(std::size_t bytes) {
   std::vector<std::byte> values(bytes);
   std::uint32_t state = 1;
@@ -19,7 +19,7 @@ std::vector<std::byte> noise(std::size_t bytes) {
 
 class SpoolInflated : public ::testing::Test {
  protected:
-  /// `head` bytes, then `content` packed.
+  /// Writes a file of `head` bytes and then `content`, packed. Returns its path.
   std::string pack(std::span<const std::byte> content, std::size_t head) {
     std::vector<std::byte> bytes(head, std::byte{'h'});
     const auto packed = deflated(content, Wrapper::gzip);
@@ -84,7 +84,7 @@ TEST_F(SpoolInflated, Cancelled_EndsBeforeTheStreamDoes) {
   SourceOptions options;
   options.cancel = &cancel;
   InputFile file(path, DirectIo::automatic);
-  // What is skipped takes as long as what is kept.
+  // Skipping bytes takes as long as keeping them, so both can be cancelled.
   for (const UnpackedRange& wanted : {UnpackedRange{0, 100, 100}, UnpackedRange{100, 0, 100}}) {
     EXPECT_EQ(message_of_error(ErrorKind::interrupted, [&] { spool_inflated(file, packed_, wanted, options); }),
               "interrupted");

@@ -6,7 +6,7 @@
 namespace weir::stream_inflater_test {
 namespace {
 
-/// Larger than the inflater's output buffer, and not a multiple of it.
+/// Returns test bytes. By default they are more than the inflater's output buffer, and not a multiple of it.
 std::vector<std::byte> content(std::size_t bytes = 3 * StreamInflater::kOutputBytes + 17) {
   std::vector<std::byte> values(bytes);
   for (std::size_t i = 0; i < bytes; ++i) values[i] = static_cast<std::byte>((i * i) >> 7U);

@@ -1,4 +1,4 @@
-// What each kind promises about its values: shares, counts, exact values at chosen voxels.
+// Tests what each kind promises about its values: shares, counts, exact values at chosen voxels.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -67,7 +67,7 @@ TEST(Cloud, VoxelsOnTheFaces_AreNearlyAllEmpty) {
 
 TEST(Cloud, InsideIsNotSmooth) {
   const Volume cloud = make_volume("cloud", {128, 128, 128});
-  // Mean absolute difference of neighbours, inside only.
+  // The mean absolute difference of neighbours that both lie inside the cloud.
   double sum = 0;
   std::int64_t pairs = 0;
   for (std::size_t i = 0; i + 1 < cloud.values.size(); ++i) {

@@ -35,7 +35,7 @@ TEST(Slabs, CoverEveryVoxelOnceInFileOrder) {
         ASSERT_LE(slab.voxels(), most);
         ASSERT_TRUE((Box{{0, 0, 0}, extent}.contains(slab)));
         ASSERT_EQ(linear_index(slab.lo, extent), first);
-        // Contiguous: the last voxel is where the count says.
+        // The slab is contiguous: its last voxel lies where its voxel count puts it.
         ASSERT_EQ(linear_index(slab.hi - Index3{1, 1, 1}, extent), first + slab.voxels() - 1);
         first += slab.voxels();
       }

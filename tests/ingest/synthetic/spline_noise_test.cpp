@@ -10,7 +10,7 @@
 namespace weir::spline_noise_test {
 namespace {
 
-// The definition, in double: the sum over octaves and 4^3 nodes.
+// Returns the noise by its definition, in double: the sum over octaves and 4^3 nodes.
 double reference(const SplineNoise& noise, const Index3& i) {
   const auto basis = [](double t, int tap) {
     const double s = 1 - t;

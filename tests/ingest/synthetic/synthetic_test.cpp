@@ -42,7 +42,7 @@ std::string message_of(const std::function<void()>& call) {
 
 class EveryKind : public testing::TestWithParam<std::string> {};
 
-// Golden digests of 70 x 45 x 37 voxels at seed 7: the values are part of the contract, on every compiler.
+// Golden digests of 70 x 45 x 37 voxels at seed 7. The values are a promise and are the same with every compiler.
 TEST_P(EveryKind, HasItsGoldenDigest) {
   const std::map<std::string, std::string> golden{
       {"cloud", "65c38ba15a7930a7"},         {"turbulence", "653c8a62b3c6742d"},

@@ -74,8 +74,8 @@ TEST(ArraySource, InfoSaysWhatTheArrayIs) {
   EXPECT_EQ(source->working_bytes(), 0U);
 }
 
-/// An array of `extent` in a block of bytes, its axes in memory in `order` (fastest first), each padded and, where
-/// `flipped`, running backwards; the bytes are off every alignment.
+/// An array of `extent` in a block of bytes. In memory its axes come in `order` (fastest first), each axis is padded,
+/// and axes that are `flipped` run backwards. No value is aligned.
 struct Strided {
   std::vector<std::byte> bytes;
   DenseArray array;
@@ -102,7 +102,7 @@ struct Strided {
   }
 };
 
-// Wider than a tile, and with boxes that begin and end inside one.
+// The array is wider than a tile, and boxes begin and end inside a tile.
 TEST(ArraySource, AnyOrderOfAxesAnyBox) {
   const Index3 extent{300, 21, 19};
   const std::array<std::array<std::size_t, 3>, 6> orders{
@@ -127,7 +127,7 @@ TEST(ArraySource, AnyOrderOfAxesAnyBox) {
   }
 }
 
-// A plane repeated along z, as a broadcast array has it.
+// A broadcast array repeats a plane along z with a stride of zero.
 TEST(ArraySource, AStrideOfZeroRepeats) {
   const std::vector<float> plane{1, 2, 3, 4};
   DenseArray array = packed(plane, {2, 2, 3}, ScalarType::float32);
@@ -152,7 +152,7 @@ TEST(ArraySource, ManyThreadsReadAtOnce) {
   EXPECT_EQ(source->bytes_read(), static_cast<std::uint64_t>(volume(extent)) * 4);
 }
 
-// As of a raw file of the same values, in whatever order of axes.
+// Loss and missing values are those of a raw file of the same values, in any order of axes.
 TEST(ArraySource, LossAndMissingAreThoseOfARawFile) {
   const Index3 extent{5, 4, 3};
   std::vector<double> values(60, 1.0);

@@ -24,7 +24,7 @@ TEST(AxisPlacement, PermutedAxesReorderTheOriginWithANote) {
   EXPECT_EQ(placement.orientation, "axes along +z, -x, +y of the file's world; voxels keep the file's order");
 }
 
-// As OpenVDB's map and VTK's image have it: index i lies at zero + i * step.
+// OpenVDB's map and VTK's image place index i at zero + i * step.
 TEST(AxisPlacement, FirstIndexOfAFallingAxis_LiesWhereTheFileSays) {
   const std::vector<Vector3> steps{{1, 0, 0}, {0, 2, 0}, {0, 0, -3}};
   const AxisPlacement placement = place_axes(steps, {10, 20, 30}, {-9, 2, -3});

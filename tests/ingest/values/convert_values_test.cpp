@@ -33,7 +33,7 @@ struct Converted {
   ConversionLoss loss;
 };
 
-/// Converts from unaligned memory, both byte orders, and checks that they agree bit for bit.
+/// Converts `values` from unaligned memory in both byte orders. Checks that both results agree bit for bit.
 template <typename T>
 Converted convert(const std::vector<T>& values, ScalarType type) {
   Converted result;
@@ -60,7 +60,7 @@ void expect_lossless(const ConversionLoss& loss) {
   EXPECT_EQ(loss.max_abs_error, 0.0);
 }
 
-/// Every value of an 8- or 16-bit type.
+/// Checks that every value of an 8- or 16-bit type converts exactly.
 template <typename T>
 void expect_all_exact(ScalarType type) {
   std::vector<T> values;
@@ -132,7 +132,7 @@ TEST(ConvertValues, Float64CountsRoundingOverflowAndNothingElse) {
   EXPECT_EQ(out[10], 0.0F);
   EXPECT_EQ(out[11], kInf);
   EXPECT_EQ(out[12], std::numeric_limits<float>::max());
-  EXPECT_EQ(loss.overflow, 4U);  // both huge ones, 1e39, just_below
+  EXPECT_EQ(loss.overflow, 4U);  // kHuge, -kHuge, 1e39, just_below
   EXPECT_EQ(loss.inexact, 4U);   // 0.1, 1e-60, rounds_to_max, 3e38
   EXPECT_EQ(loss.max_abs_error, rounds_to_max - static_cast<double>(std::numeric_limits<float>::max()));
 }
@@ -142,7 +142,7 @@ TEST(ConvertValues, SixtyFourBitIntegers) {
   const auto exact = convert(std::vector<std::int64_t>{0, -1, 1 << 24, kMin, std::int64_t{1} << 62}, ScalarType::int64);
   expect_lossless(exact.loss);
   EXPECT_EQ(exact.values[3], -0x1p63F);
-  // 2^63 - 1 rounds to 2^63; the error of 2^53 + 1 would vanish in a double.
+  // 2^63 - 1 rounds to 2^63. In a double, the error of 2^53 + 1 would vanish.
   const auto rounded = convert(std::vector<std::int64_t>{-(kMin + 1), (std::int64_t{1} << 53) + 1}, ScalarType::int64);
   EXPECT_EQ(rounded.values, (std::vector<float>{0x1p63F, 0x1p53F}));
   EXPECT_EQ(rounded.loss.inexact, 2U);
@@ -168,12 +168,12 @@ TEST(ConvertValues, BFloat16IsExactAndKeepsNaNs) {
               ScalarType::bfloat16);
   const std::vector<float> expected{0.0F, -0.0F, 0x1p-133F, 1.0F, -2.0F, 0x1.FEp127F, kInf, -kInf};
   EXPECT_EQ(std::memcmp(out.data(), expected.data(), expected.size() * sizeof(float)), 0);
-  EXPECT_EQ(std::bit_cast<std::uint32_t>(out[8]), 0x7F810000U);  // a signalling one, as it was
+  EXPECT_EQ(std::bit_cast<std::uint32_t>(out[8]), 0x7F810000U);  // a signalling NaN stays signalling
   expect_lossless(loss);
 }
 
 TEST(ConvertValues, CountsInEveryPlaceOfEveryLength) {
-  // The lanes of the vectorised loop and the tail after it count alike.
+  // The lanes of the vectorised loop count in the same way as the tail after it.
   for (std::size_t n = 1; n <= 50; ++n) {
     for (std::size_t at = 0; at < n; ++at) {
       std::vector<double> values(n, 1.0);

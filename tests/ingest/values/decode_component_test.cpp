@@ -37,7 +37,7 @@ TEST(DecodeComponent, MagnitudeIsTheRootOfTheSumOfSquares) {
 }
 
 TEST(DecodeComponent, MagnitudeOfDoublesIsComputedInDouble) {
-  const double small = 1e-30;  // its square is no float32
+  const double small = 1e-30;  // its square is too small for float32
   ConversionLoss loss;
   EXPECT_EQ(
       decoded(std::vector<double>{3 * small, 4 * small, 3e200, 4e200}, ScalarType::float64, {2, kMagnitude}, {}, &loss),

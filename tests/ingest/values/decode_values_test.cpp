@@ -20,7 +20,7 @@ struct Decoded {
   ConversionLoss loss;
 };
 
-// From unaligned memory, both byte orders, which must agree.
+// Decodes `stored` from unaligned memory in both byte orders, which must agree.
 template <typename T>
 Decoded decode(const std::vector<T>& stored, ScalarType type, const ValueMapping& mapping) {
   Decoded result;
@@ -59,7 +59,7 @@ TEST(DecodeValues, MissingValuesOfEveryTypeAreTold) {
     EXPECT_EQ(decoded.loss.inexact, 0U);
   };
   const auto ramp = [](auto zero) {
-    std::vector<decltype(zero)> values(1300);  // more than one chunk, and a rest
+    std::vector<decltype(zero)> values(1300);  // more than one chunk, and a remainder
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<decltype(zero)>(i % 13);
     return values;
   };
@@ -76,7 +76,7 @@ TEST(DecodeValues, MissingValuesOfEveryTypeAreTold) {
 }
 
 TEST(DecodeValues, SixtyFourBitNeighboursOfTheMissingValueStay) {
-  constexpr std::int64_t kFill = -9223372036854775806;  // NetCDF's for int64
+  constexpr std::int64_t kFill = -9223372036854775806;  // NetCDF's default fill value of int64
   const Decoded decoded = decode(std::vector<std::int64_t>{kFill, kFill + 1, kFill - 1, 5}, ScalarType::int64,
                                  {1, 0, {StoredValue{kFill}}});
   EXPECT_TRUE(is_missing(decoded.values[0]));
@@ -118,7 +118,7 @@ TEST(DecodeValues, ScaleAndOffsetInDouble) {
   const Decoded decoded = decode(std::vector<std::int16_t>{0, 100, -32767, -32768}, ScalarType::int16, packed);
   EXPECT_EQ(decoded.values[0], 273.15F);
   EXPECT_EQ(decoded.values[1], static_cast<float>(100 * 0.01 + 273.15));
-  EXPECT_TRUE(is_missing(decoded.values[2]));  // compared before scaling
+  EXPECT_TRUE(is_missing(decoded.values[2]));  // missing values are compared before scaling
   EXPECT_EQ(decoded.values[3], static_cast<float>(-32768 * 0.01 + 273.15));
   EXPECT_EQ(decoded.loss.inexact, 3U);
 
@@ -184,7 +184,7 @@ TEST(DecodeValues, OfAVolumeWithGaps_NoStoredValueIsOne) {
   decode_values(std::as_bytes(std::span(bits)), ScalarType::float32, kNativeIsBig, mapping, values);
   EXPECT_FALSE(is_missing(values[0]));
   EXPECT_TRUE(is_missing(values[1]));
-  mapping.keeps_missing = true;  // then missing values are data, and a gap still is none
+  mapping.keeps_missing = true;  // missing values become data, and a stored value still is no gap
   decode_values(std::as_bytes(std::span(bits)), ScalarType::float32, kNativeIsBig, mapping, values);
   EXPECT_TRUE(std::isnan(values[0]) && !is_missing(values[0]));
   EXPECT_EQ(values[1], 1.0F);
@@ -217,7 +217,7 @@ TEST(DecodeValues, ScaledIntegersOf64Bits_CountWhatFloat32Loses) {
 }
 
 TEST(DecodeValues, AHalfsMissingValueIsComparedRounded) {
-  const ValueMapping mapping{1, 0, {StoredValue{-999.9}, StoredValue{1e6}}};  // float16 holds no 1e6
+  const ValueMapping mapping{1, 0, {StoredValue{-999.9}, StoredValue{1e6}}};  // float16 cannot hold 1e6
   const Decoded half = decode(std::vector<std::uint16_t>{0xE3D0, 0x3E00, 0x7C00}, ScalarType::float16, mapping);
   EXPECT_TRUE(is_missing(half.values[0])) << half.values[0] << ", -1000 in float16";
   EXPECT_EQ(half.values[1], 1.5F);

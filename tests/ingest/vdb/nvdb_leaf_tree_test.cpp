@@ -47,7 +47,7 @@ TEST(NvdbNodes, OutsideOfTheGrid_IsAnError) {
   EXPECT_EQ(nodes.read(80, 10, 7)->size(), 10U);
 }
 
-// Reads where the stock file has leaves until something is wrong.
+// Reads the boxes in which the stock file has leaves. Returns the message of the first error; empty if there is none.
 std::string read_until_error(VolumeSource& source) {
   try {
     for (const Box& wanted : test::stock_sample_boxes()) {

@@ -45,8 +45,8 @@ TEST(NvdbSource, ReadsEveryTypeAsTheStockAccessorDoes) {
     EXPECT_EQ(info.file_bytes, std::filesystem::file_size(path));
     std::vector<Box> boxes = test::stock_sample_boxes();
     boxes.push_back({{60, 60, 60}, {84, 76, 76}});          // tiles of 8
-    boxes.push_back({{250, 120, 0}, {260, 132, 3}});        // of 128
-    boxes.push_back({{-8200, 4090, 0}, {-8180, 4100, 2}});  // of 4096
+    boxes.push_back({{250, 120, 0}, {260, 132, 3}});        // tiles of 128
+    boxes.push_back({{-8200, 4090, 0}, {-8180, 4100, 2}});  // tiles of 4096
     for (const Box& wanted : boxes) {
       const Box box = intersect(wanted, info.domain());
       std::vector<float> values(static_cast<std::size_t>(box.voxels()));
@@ -193,7 +193,7 @@ TEST(NvdbSource, MissingIsAnExactValue) {
   const StockNvdb stock(GridType::float32);
   const std::string path = scratch.write("a.nvdb", stock.file());
   SourceOptions options;
-  options.missing = StoredValue{0.75};  // of the leaf of one value; one voxel in it is 11
+  options.missing = StoredValue{0.75};  // the value of all voxels of one leaf, except for one voxel that is 11
   const auto source = open_source(path, options);
   std::vector<float> values(512);
   source->read({{96, 8, 8}, {104, 16, 16}}, values);

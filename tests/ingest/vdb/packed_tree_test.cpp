@@ -48,7 +48,8 @@ TEST(PackedTree, Read_DamagedSince_IsReported) {
   const std::string path = scratch.write("a.nvdb", made.file);
   const auto source = open_source(path, {});
   std::vector<float> values(static_cast<std::size_t>(PackedSample::kDomain.voxels()));
-  store(std::span(made.file), made.chunks.at(0) + packed::chunk::kBases + 4 * 240, 4U);  // of the blocks at x -1, y 0
+  store(std::span(made.file), made.chunks.at(0) + packed::chunk::kBases + 4 * 240,
+        4U);  // the group of the blocks at x -1, y 0
   scratch.write("a.nvdb", made.file);
   const std::string message = message_of_error(ErrorKind::input, [&] { source->read(PackedSample::kDomain, values); });
   EXPECT_NE(message.find("group 240 of blocks lies in bytes 4 to"), std::string::npos) << message;

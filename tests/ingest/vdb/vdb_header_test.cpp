@@ -55,7 +55,7 @@ TEST(VdbHeader, ParsesAHeaderWrittenByOpenVdb) {
   const VdbGrid& turned = header.grids[1];
   EXPECT_FALSE(turned.half);
   EXPECT_EQ(turned.map, "AffineMap");
-  // A quarter turn: along x of the index is along y, or against it, of the world.
+  // A quarter turn: the x of the index runs along the world's y, or against it.
   EXPECT_NEAR(std::abs(turned.steps[0][1]), 2, 1e-12);
   EXPECT_NEAR(turned.steps[0][0], 0, 1e-12);
   EXPECT_NEAR(turned.steps[2][2], 2, 1e-12);
@@ -67,7 +67,7 @@ TEST(VdbHeader, RefusesOtherVersionsAndImpossibleSizes) {
             "a.vdb: at byte 12: file format 221, and 222 to 224 can be read; write the file again with OpenVDB 10");
   EXPECT_EQ(refusal(with(whole, 8, 225)),
             "a.vdb: at byte 12: file format 225, and 222 to 224 can be read; write the file again with OpenVDB 10");
-  // Behind magic, versions, flag and uuid: the file's own metadata, of which there is none here.
+  // The file's own metadata come after magic, versions, flag and uuid. Here there are none.
   constexpr std::size_t kMetadata = 8 + 4 + 8 + 1 + 36;
   EXPECT_EQ(refusal(with(whole, kMetadata + 4, 5000)),
             "a.vdb: at byte 65: 5000 grids, at most 4096 can be read; the file is damaged");
@@ -80,7 +80,7 @@ TEST(VdbHeader, RefusesGridsPlacedBeforeTheirDescriptor) {
   std::string bytes = two_grids();
   const std::size_t name = bytes.find("Tree_float_5_4_3_HalfFloat");
   ASSERT_NE(name, std::string::npos);
-  const std::size_t position = name + 26 + 4;  // the type, an empty parent's length
+  const std::size_t position = name + 26 + 4;  // behind the type and the length of the empty parent name
   bytes.replace(position, 8, 8, '\0');
   const std::string message = refusal(bytes);
   EXPECT_NE(message.find(": grid 'density' is to lie at bytes 0 to "), std::string::npos) << message;

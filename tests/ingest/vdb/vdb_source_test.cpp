@@ -18,7 +18,8 @@ using test::Compression;
 using test::GridKind;
 using test::OpenVdbGrid;
 
-/// Leaves on both sides of every kind of node's edge, an inactive voxel of its own value, and tiles, inactive ones too.
+/// Returns a grid with leaves on both sides of the edges of every kind of node, an inactive voxel with a value of its
+/// own, and active and inactive tiles.
 OpenVdbGrid full_grid(GridKind kind) {
   OpenVdbGrid grid(kind, "density");
   grid.fill({{-13, -5, -9}, {21, 12, 13}}).fill({{120, 0, 0}, {133, 9, 9}});
@@ -33,7 +34,7 @@ SourceOptions naming(const std::string& dataset) {
   return options;
 }
 
-/// Every voxel of the source's domain against OpenVDB's own accessor.
+/// Compares every voxel of the source's domain with OpenVDB's own accessor.
 void expect_same(VolumeSource& source, const OpenVdbGrid& grid) {
   const Box domain = grid.active();
   ASSERT_EQ(source.info().domain(), domain);
@@ -77,7 +78,7 @@ TEST(VdbSource, ReadsRealsSavedAsHalf) {
   for (const GridKind kind : {GridKind::float32, GridKind::float64}) {
     for (const auto compression :
          {Compression::none, Compression::active_mask, Compression::zip_active_mask, Compression::blosc_active_mask}) {
-      // Eighths up to 256 are exact in float16.
+      // Multiples of 1/8 up to 256 are exact in float16.
       OpenVdbGrid grid(kind, "a");
       grid.fill({{-9, 0, 0}, {9, 9, 9}}).tile(1, {16, 0, 0}, -6, true).save_as_half();
       test::write_vdb(scratch.path("a.vdb"), {grid}, compression);
@@ -139,7 +140,7 @@ TEST(VdbSource, BoxesReadTheSameAloneAndFromSeveralThreads) {
 TEST(VdbSource, CountsWhatFloat32LosesOncePerVoxel) {
   const Scratch scratch;
   OpenVdbGrid grid(GridKind::int32, "a");
-  grid.fill({{5, 5, 5}, {10, 10, 10}}, (1 << 24) + 1.0);  // x + 3 y - 7 z odd and large: not all exact
+  grid.fill({{5, 5, 5}, {10, 10, 10}}, (1 << 24) + 1.0);  // x + 3 y - 7 z + 2^24 + 1: too large for all to be exact
   test::write_vdb(scratch.path("a.vdb"), {grid});
   const auto source = open_source(scratch.path("a.vdb"), {});
   std::vector<float> values(125);
@@ -341,7 +342,7 @@ TEST(VdbSource, AFileCutAtAnyByteIsRefused) {
     OpenVdbGrid grid(GridKind::float32, "a");
     test::write_vdb(scratch.path("a.vdb"), {grid.fill({{0, 0, 0}, {5, 4, 3}})}, compression);
     const auto whole = test::read_whole(scratch.path("a.vdb"));
-    // A node's masks are thousands of bytes that all are cut alike: every byte near an end, else some.
+    // A node's masks are thousands of bytes, and all cuts in them are alike. So only cuts near the ends try every byte.
     for (std::size_t size = 1; size < whole.size(); size += size < 600 || whole.size() - size < 300 ? 1 : 211) {
       const std::string path = scratch.write("cut.vdb", std::span(whole).first(size));
       const std::string message = message_of_error(ErrorKind::input, [&] { open_source(path, {}); });

@@ -13,7 +13,7 @@ using test::Compression;
 using test::GridKind;
 using test::OpenVdbGrid;
 
-/// Header and walk of the first grid of a file made by `change` from what OpenVDB wrote.
+/// Writes `grid` with OpenVDB, lets `change` edit the file's bytes, and returns what a walk of its first tree finds.
 template <typename Change>
 VdbTopology walk(const OpenVdbGrid& grid, Compression compression, const Change& change) {
   const Scratch scratch;
@@ -44,8 +44,8 @@ void put(std::string& bytes, std::uint64_t at, T value) {
   bytes.replace(at, sizeof value, reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-// From the tree: buffer count 4, background 4, tiles 4, children 4, origin 12, then the upper node's two masks of 4096
-// bytes and its values.
+// Offsets from the tree's beginning. Its fields, in bytes: buffer count 4, background 4, tiles 4, children 4, origin
+// 12, then the upper node's two masks of 4096 each, and its values.
 constexpr std::uint64_t kBufferCount = 0;
 constexpr std::uint64_t kChildren = 12;
 constexpr std::uint64_t kOrigin = 16;
@@ -85,7 +85,7 @@ TEST(VdbTopology, EstimatesTheMemoryThatOpenVdbCounts) {
 
 struct Damage {
   Compression compression;
-  std::uint64_t at;  ///< from the tree's beginning
+  std::uint64_t at;  ///< byte offset from the tree's beginning
   std::uint64_t value;
   std::size_t bytes;
   const char* message;
@@ -100,7 +100,7 @@ TEST(VdbTopology, RefusesInvalidTopology) {
       {Compression::none, kOrigin, 8, 4, "an entry of the root at 8,0,0, which is no multiple of 4096 or there twice"},
       {Compression::none, kUpperValueMask, 1, 1, "an entry of the node at 0,0,0 is both tile and child"},
       {Compression::none, kUpperValues, 7, 1, "values of kind 7, at most 6"},
-      // The overflow that a negative length of a zipped run would be: more bytes than the buffer has.
+      // A negative length of a zipped run stands for uncompressed bytes, here more than the buffer has: an overflow.
       {Compression::zip, kUpperValues + 1, ~std::uint64_t{0} << 20U, 8,
        "131072 bytes of values are stored in -1048576; the file is damaged"},
       {Compression::zip, kUpperValues + 1, std::uint64_t{1} << 63U, 8,

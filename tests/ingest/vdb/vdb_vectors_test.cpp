@@ -21,7 +21,8 @@ SourceOptions choosing(const std::string& component) {
   return options;
 }
 
-/// Every voxel of the domain: component 0, 1 or 2 of what OpenVDB reads, or, by 3, the length.
+/// Compares every voxel of the domain with component 0, 1 or 2 of the vector that OpenVDB reads, or with the vector's
+/// length if `component` is 3.
 void expect_component(VolumeSource& source, const OpenVdbGrid& grid, std::size_t component) {
   const Box domain = grid.active();
   ASSERT_EQ(source.info().domain(), domain);

@@ -62,7 +62,7 @@ TEST(VtkLegacyHeader, TimeValue_IsReadFromTheFieldData) {
 const std::string kHalf("\x3F\xE0\0\0\0\0\0\0", 8);  // 0.5
 const std::string kText = "# vtk DataFile Version 3.0\ntitle\nASCII\nDATASET STRUCTURED_POINTS\n";
 
-/// A string as vtkDataWriter writes it, behind its length in the fewest bytes.
+/// Returns a string as vtkDataWriter writes it: its length in the fewest bytes, then its text.
 std::string binary_string(const std::string& value) {
   const std::size_t n = value.size();
   const auto byte = [](std::size_t bits) { return static_cast<char>(bits & 0xFFU); };
@@ -71,7 +71,7 @@ std::string binary_string(const std::string& value) {
 }
 
 TEST(VtkLegacyHeader, StringsOfTheFieldData_AreSkipped) {
-  // Line ends and keywords in a string are no lines of the file.
+  // Line ends and keywords in a string must not be taken for lines of the file.
   const std::string long_one = "a\nPOINT_DATA 9\n" + std::string(5000, 'x');
   const VtkLegacyHeader binary =
       parse(kHead + "FIELD FieldData 3\nDate 1 3 string\n" + binary_string("1 May\n") + binary_string("") +
@@ -81,7 +81,7 @@ TEST(VtkLegacyHeader, StringsOfTheFieldData_AreSkipped) {
   EXPECT_EQ(binary.time, 0.5);
   ASSERT_EQ(binary.arrays.size(), 1U);
   EXPECT_EQ(binary.arrays[0].name, "a");
-  // In text each value is a line, an empty one too.
+  // In a text file each string is a line, which may be empty.
   const VtkLegacyHeader text =
       parse(kText + "FIELD FieldData 3\nDate 1 3 string\n1%20May%0A\n\n" + std::string(5000, 'x') +
             "\nMETADATA\nINFORMATION 0\n\nNote 1 1 UTF8_STRING\na b c\nTimeValue 1 1 double\n0.5\n"

@@ -97,7 +97,9 @@ TEST(VtkLegacySource, CellsOfAFlatImage_LieInItsPlane) {
 
 TEST(VtkLegacySource, FindsArraysAfterEveryOtherSection) {
   const Scratch scratch;
-  const auto bytes = [](std::size_t count) { return std::string(count, '\n'); };  // lines that are none
+  const auto bytes = [](std::size_t count) {
+    return std::string(count, '\n');
+  };  // binary values that look like line ends
   const std::string values = chars(stored(telling_values<std::int16_t>(24), true));
   const std::string text =
       head("BINARY", "SPACING 1 1 1\r\nFIELD FieldData 2\nTIME 1 1 double\n" + bytes(8) +
@@ -123,7 +125,7 @@ TEST(VtkLegacySource, FindsArraysAfterEveryOtherSection) {
             path + ": array 'bits' cannot be converted: its type is 'bit', and char to double can be read");
 }
 
-// Vectors (i, 2 i, -2 i) of voxel i, whose length is 3 i.
+// Voxel i has the vector (i, 2 i, -2 i). Its length is 3 i.
 TEST(VtkLegacySource, ComponentOfVectorsIsTheVolume) {
   const Scratch scratch;
   std::vector<float> vectors;
@@ -156,7 +158,7 @@ TEST(VtkLegacySource, ComponentOfVectorsIsTheVolume) {
   }
 }
 
-// As VTK writes scalars of unsigned char (vtkDataWriter::WriteScalarData).
+// VTK writes scalars of unsigned char in this form (vtkDataWriter::WriteScalarData).
 TEST(VtkLegacySource, ColorScalars_AreReadAsUint8) {
   const Scratch scratch;
   std::string bytes;
@@ -187,7 +189,7 @@ TEST(VtkLegacySource, ColorScalars_AreReadAsUint8) {
             path + ": holds 2 arrays that can be converted; name an array with --dataset: 'c', 'other'");
 }
 
-// 0.25 and 0.75 are 63.75 and 191.25, 2e-3 is 0.51: VTK rounds to the nearest.
+// 0.25 means 63.75, 0.75 means 191.25, and 2e-3 means 0.51 (times 255). VTK rounds to the nearest integer.
 TEST(VtkLegacySource, ColorScalarsOfSeveralComponents_TakeComponent) {
   const Scratch scratch;
   std::string text;
@@ -283,7 +285,7 @@ TEST(VtkLegacySource, AFileCutAtAnyByteIsRefused) {
     const std::string whole = head(binary ? "BINARY" : "ASCII", "POINT_DATA 24\n") + scalars("a", "short", values);
     for (std::size_t size = 1; size + 3 < whole.size(); ++size) {
       const std::string path = write_headed(scratch, "cut.vtk", whole.substr(0, size));
-      if (!binary && size + 4 >= whole.size()) continue;  // '2' of 23 is a number too
+      if (!binary && size + 4 >= whole.size()) continue;  // a cut in the last number, 23, leaves 2, also a number
       const std::string message = refusal(path);
       ASSERT_FALSE(message.empty()) << size;
       ASSERT_EQ(message.find('\n'), std::string::npos) << message;

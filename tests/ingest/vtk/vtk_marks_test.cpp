@@ -74,7 +74,7 @@ TEST_F(VtkMarks, GhostTypesAlone_AreNotTaken) {
             path +
                 ": holds no array that can be converted; 'vtkGhostType': it marks points or cells, and is converted "
                 "only where it is named");
-  // Nor in place of vectors, whose component is asked for.
+  // Ghost types do not take the place of vectors either: the error asks for a component of the vectors.
   const std::string vectors = write(points("<DataArray type=\"UInt8\" Name=\"v\" NumberOfComponents=\"3\">" +
                                            numbers(72, "2") + "</DataArray>" + array("vtkGhostType", "0")));
   EXPECT_EQ(message_of_error(ErrorKind::usage, [&] { open_source(vectors, {}); }),

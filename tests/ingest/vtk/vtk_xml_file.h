@@ -1,4 +1,4 @@
-// .vti files made by hand, byte by byte.
+// Makes .vti files by hand, byte by byte.
 #pragma once
 
 #include <cstddef>
@@ -27,11 +27,11 @@ inline std::string base64(std::span<const std::byte> bytes) {
   return text;
 }
 
-/// How values are stored: the attributes of VTKFile that say so.
+/// How values are stored, and the attributes of VTKFile that say so.
 struct VtiStorage {
   bool big_endian = false;
   bool wide = false;           ///< header_type UInt64
-  std::size_t zlib_block = 0;  ///< bytes unpacked; 0: uncompressed
+  std::size_t zlib_block = 0;  ///< unpacked bytes per block; 0: uncompressed
 
   std::string attributes() const {
     return std::string(" byte_order=\"") + (big_endian ? "BigEndian" : "LittleEndian") + "\"" +
@@ -43,7 +43,7 @@ struct VtiStorage {
   }
 };
 
-/// What stands before the values, and the values as they are stored.
+/// The sizes that precede the values, and the values as they are stored.
 struct VtiData {
   std::vector<std::byte> sizes;
   std::vector<std::byte> values;
@@ -53,7 +53,7 @@ struct VtiData {
     all.insert(all.end(), values.begin(), values.end());
     return all;
   }
-  /// As VTK writes it: sizes and compressed values apart, uncompressed ones together.
+  /// Returns the base64 text that VTK writes. It encodes sizes and compressed values apart, uncompressed ones together.
   std::string text(const VtiStorage& storage) const {
     return storage.zlib_block > 0 ? base64(sizes) + base64(values) : base64(raw());
   }
@@ -73,7 +73,7 @@ inline VtiData vti_data(std::span<const std::byte> values, const VtiStorage& sto
   return data;
 }
 
-/// A file of 4 x 3 x 2 points around `arrays`, the contents of a Piece.
+/// Returns a file of 4 x 3 x 2 points around `arrays`, the contents of its Piece.
 inline std::string vti(const VtiStorage& storage, const std::string& arrays, const std::string& appended = "",
                        const std::string& placement = "") {
   return "<?xml version=\"1.0\"?>\n<!-- by hand: a > b -->\n<VTKFile type=\"ImageData\" version=\"1.0\"" +

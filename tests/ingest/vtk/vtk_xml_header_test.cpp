@@ -28,7 +28,7 @@ TEST(VtkXmlSkeleton, KeepsTagsAndTellsWhereTextLies) {
   EXPECT_TRUE(whole.push(text));
   EXPECT_EQ(whole.xml(), "<?xml?><a x='>\"' y=\"<\"><b/>45 50<d></d></a>");
   EXPECT_EQ(text.substr(45, 5), " \n1 2");
-  // The same however the bytes come.
+  // The result is the same if the bytes come one by one.
   VtkXmlSkeleton parts("a.vti");
   for (const char c : text) parts.push({&c, 1});
   EXPECT_EQ(parts.xml(), whole.xml());

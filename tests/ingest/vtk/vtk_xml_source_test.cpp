@@ -17,7 +17,7 @@ std::string file_of(std::span<const std::byte> values, const std::string& type, 
   if (form == Form::inline_base64) {
     return vti(storage, point_array(attributes + "format=\"binary\"", "\n   " + data.text(storage) + "\n  "));
   }
-  // Eight other bytes come first.
+  // In the appended data, eight other bytes come first.
   const bool raw = form == Form::raw;
   return vti(storage, point_array(attributes + "format=\"appended\" offset=\"8\""),
              std::string("  <AppendedData encoding=\"") + (raw ? "raw" : "base64") + "\">\n   _" +
@@ -211,7 +211,7 @@ SourceOptions component(const std::string& text, const std::string& dataset = ""
   return options;
 }
 
-// Vectors (i, 2 i, -2 i) of voxel i, whose length is 3 i.
+// Returns the vector (i, 2 i, -2 i) for each voxel i. Its length is 3 i.
 std::vector<double> telling_vectors() {
   std::vector<double> values;
   for (int i = 0; i < 24; ++i) values.insert(values.end(), {1.0 * i, 2.0 * i, -2.0 * i});
@@ -291,7 +291,7 @@ TEST(VtkXmlSource, AFileCutAtAnyByteIsRefused) {
   for (const Form form : {Form::raw, Form::appended_base64, Form::inline_base64}) {
     for (const std::size_t block : {std::size_t{0}, std::size_t{8}}) {
       const std::string whole = file_of(stored(ramp()), "UInt8", {false, false, block}, form);
-      // What follows the values is not needed.
+      // The reader does not need the part of the file that follows the values.
       const std::size_t end = form == Form::inline_base64 ? whole.rfind("/VTKFile>") : whole.rfind("\n  </Appended");
       for (std::size_t size = 1; size < end; ++size) {
         const std::string message = refusal(write_headed(scratch, "cut.vti", whole.substr(0, size)));

@@ -10,7 +10,7 @@ const std::string kValues =
     "<PointData><DataArray type=\"UInt8\" Name=\"a\">0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 "
     "17 18 19 20 21 22 23</DataArray></PointData>";
 
-/// A file of text values with `array` in its field data.
+/// Returns a file of text values with `array` in its field data.
 std::string with_field(const VtiStorage& storage, const std::string& array, const std::string& appended = "") {
   std::string text = vti(storage, kValues, appended);
   return text.insert(text.find("<Piece"), "<FieldData>\n" + array + "</FieldData>\n");
@@ -66,7 +66,7 @@ TEST(VtkXmlTime, OtherFieldData_AreNoTime) {
   EXPECT_FALSE(time_of(with_field({}, time_array("type=\"Float64\"", "nan"))));
 }
 
-// A damaged time must not cost the volume.
+// The volume stays readable if its time is damaged.
 TEST(VtkXmlTime, TimeThatCannotBeRead_IsLeftOut_AndSaid) {
   const auto said = [](const std::string& content) {
     std::string notice;

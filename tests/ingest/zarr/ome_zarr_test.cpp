@@ -15,7 +15,7 @@ constexpr const char* kImage =
     R"({"path":"1","coordinateTransformations":[{"type":"scale","scale":[1,1,1,0.5,0.5]}]}],)"
     R"("coordinateTransformations":[{"type":"scale","scale":[0.1,1,2,2,2]}]}])";
 
-/// Two levels of 2 times and 1 channel; version 0.4 in Zarr 2, version 0.5 in Zarr 3.
+/// Writes an image of two levels, 2 times and 1 channel: OME-Zarr 0.5 in Zarr 3 if `v3`, otherwise 0.4 in Zarr 2.
 void write_image(const ZarrFiles& files, bool v3) {
   if (v3) {
     files.write("zarr.json", cat(R"({"zarr_format":3,"node_type":"group","attributes":{"ome":{"version":"0.5",)",
@@ -27,7 +27,7 @@ void write_image(const ZarrFiles& files, bool v3) {
     files.write(".zattrs", cat(R"({"multiscales":)", kImage, "}"));
     files.write("0/.zarray", zarray("[2,1,2,2,2]", "[1,1,2,2,2]", "|u1", "1"));
     files.write("1/.zarray", zarray("[2,1,1,1,1]", "[1,1,1,1,1]", "|u1", "2"));
-    // An image of its own, of labels.
+    // The labels are an image of their own.
     files.write("labels/.zgroup", R"({"zarr_format":2})");
     files.write("labels/cells/.zgroup", R"({"zarr_format":2})");
     files.write("labels/cells/.zattrs", R"({"multiscales":[{"axes":["z","y","x"],"datasets":[{"path":"0"}]}]})");

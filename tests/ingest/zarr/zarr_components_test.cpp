@@ -1,4 +1,4 @@
-// Arrays of vectors: which component is read, however chunks cut them.
+// Arrays of vectors: which component is read, however chunks cut the arrays.
 #include <cmath>
 
 #include "ingest/source/convert_command.h"
@@ -21,7 +21,7 @@ std::string list_text(const Extents& extents) {
   return cat('[', extents[0], ',', extents[1], ',', extents[2], ',', extents[3], ']');
 }
 
-/// Of the element at `at`: no two are the same.
+/// Returns the value of the element at `at`. No two elements have the same value.
 float value_at(const Extents& at) {
   return static_cast<float>(((at[0] * kY + at[1]) * kX + at[2]) * kComponents + at[3]) - 20.0F;
 }
@@ -46,7 +46,7 @@ std::size_t place_in_chunk(const Extents& at, const Extents& chunk, bool last_is
   return static_cast<std::size_t>(place);
 }
 
-/// value_at() of kShape in chunks of `chunk`, -99 beyond it.
+/// Writes value_at() for an array of kShape in chunks of `chunk`. Chunk elements beyond the array are -99.
 void write_vectors(const ZarrFiles& files, const Extents& chunk, bool last_is_fastest) {
   files.write(".zarray", cat(R"({"zarr_format":2,"shape":)", list_text(kShape), R"(,"chunks":)", list_text(chunk),
                              R"(,"dtype":"<f4","fill_value":7,"compressor":null,"filters":null,"order":")",
@@ -74,7 +74,7 @@ std::vector<float> component_of(std::int64_t c) {
   return values;
 }
 
-/// `second`: the value of component 1 where it is another one.
+/// Returns the magnitudes of all vectors. If `second` is given, it is the value of component 1 in each of them.
 std::vector<float> magnitudes(std::optional<double> second = {}) {
   std::vector<float> values;
   for_each_position({kZ, kY, kX, 1}, [&](const Extents& at) {
@@ -147,7 +147,7 @@ TEST(ZarrComponents, InChunksOfTheirOwnInAShard_AreGathered) {
                                      R"([{"name":"sharding_indexed","configuration":{"chunk_shape":[1,1,2,1],)"
                                      R"("codecs":[{"name":"bytes"}],)"
                                      R"("index_codecs":[{"name":"bytes","configuration":{"endian":"little"}}]}}])"));
-  std::string shard{3, 6, 4, 8};  // x of two voxels, y of two
+  std::string shard{3, 6, 4, 8};  // x of two voxels, then y of two voxels
   for (const std::uint64_t number : {0, 2, 2, 2}) {
     for (unsigned byte = 0; byte < 8; ++byte) shard += static_cast<char>(number >> (8 * byte));
   }

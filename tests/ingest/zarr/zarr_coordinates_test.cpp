@@ -1,4 +1,4 @@
-// Coordinates as xarray writes them: arrays of one axis beside the volume, called as its axes are.
+// Coordinates as xarray writes them: arrays of one axis beside the volume, with the names of its axes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view kGroup = R"({"zarr_format":2})";
 
-/// run.zarr/run/T of the axes time 2, z 2, lat 3, lon 4, values 0, 1, ... at time 0 and 100, 101, ... at time 1.
+/// Array run.zarr/run/T with axes time 2, z 2, lat 3, lon 4. Values: 0, 1, ... at time 0 and 100, 101, ... at time 1.
 class ZarrCoordinates : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -126,7 +126,7 @@ TEST_F(ZarrCoordinates, NamedByAnAttribute_AreLeftOutWhereTheyCannotBeReadOrDoNo
   for (const std::int64_t time : {0, 1}) EXPECT_EQ(info(time).details.time->value, 30 + time);
 }
 
-// As an xarray store has it before the first step is appended.
+// An xarray store looks like this before its first step is appended.
 TEST_F(ZarrCoordinates, OfAnAxisOfNoElements_AreNotLookedAt) {
   files_.write("run/T/.zarray", zarray("[0,2,3,4]", "[1,2,3,4]", "|u1", "null"));
   files_.write("run/time/.zarray", zarray("[0]", "[512]", "<f8", "null"));
@@ -211,7 +211,7 @@ TEST_F(ZarrCoordinates, OfATimeAmongTheLastThree_MakeNoVolume) {
   EXPECT_EQ(open_source(files_.path(), options)->info().dataset, "run/T");
 }
 
-// As xarray writes a timedelta, and yt a cosmology.
+// xarray writes such a time for a timedelta, and yt for a cosmology.
 TEST_F(ZarrCoordinates, OfATimeInAnyUnitButOneOfSpace_MakeNoVolumeAndSayWhenItIs) {
   files_.write("run/rain/.zarray", zarray("[2,3,4]", "[2,3,4]", "|u1", "null"));
   files_.write("run/rain/.zattrs", R"({"_ARRAY_DIMENSIONS":["time","lat","lon"]})");
@@ -250,7 +250,7 @@ TEST_F(ZarrCoordinates, ThatPointDown_AreKeptAndSaid) {
   const auto listed = list_zarr(files_.path(), {}).front().attributes;
   EXPECT_NE(std::find(listed.begin(), listed.end(), std::pair<std::string, std::string>{"orientation", said}),
             listed.end());
-  // As the line says.
+  // Negated coordinates, as the message advises, turn the voxels round.
   write_axis("z", {-5, -15}, R"({"positive":"up","axis":"Z"})");
   const auto turned = open(0);
   EXPECT_EQ(turned->info().details.orientation, "");

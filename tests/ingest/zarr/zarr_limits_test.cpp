@@ -1,4 +1,4 @@
-// How long metadata may be, and what is said where they are longer.
+// Tests how long metadata may be, and the messages for longer metadata.
 #include "ingest/zarr/metadata/zarr_json.h"
 #include "ingest/zarr/zarr_source.h"
 #include "tests/ingest/zarr/support/zarr_files.h"

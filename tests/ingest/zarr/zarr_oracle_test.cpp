@@ -1,4 +1,4 @@
-// Zarr arrays as other libraries write them: every value is what those have.
+// Zarr arrays that other libraries write: weir reads the values that these libraries have.
 #include <bit>
 #include <cmath>
 #include <cstdlib>
@@ -56,7 +56,7 @@ std::vector<float> part_of_volume(const std::vector<float>& all, const Index3& e
   return part;
 }
 
-/// NaN is equal to NaN, whatever their bits.
+/// Expects equal bits, except that every NaN equals every other NaN.
 void expect_same_values(const std::vector<float>& values, const std::vector<float>& expected, const std::string& what) {
   ASSERT_EQ(values.size(), expected.size()) << what;
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -76,8 +76,8 @@ std::vector<Box> odd_boxes(const Index3& e) {
           {{0, e.y / 3, 0}, {e.x, e.y / 3 + 2, e.z}}};
 }
 
-/// Every array that `script` wrote into `directory`, against the values in NAME and `suffix`; those without are left
-/// out.
+/// Compares each array of `directory` with the values in the file of the case's name and `suffix`. Leaves out arrays
+/// without such a file. Returns the number of compared arrays.
 std::size_t compare_all(const TemporaryDirectory& directory, const std::string& suffix) {
   std::size_t compared = 0;
   for (const OracleCase& c : read_cases(directory.path().string())) {
@@ -112,7 +112,7 @@ TEST(ZarrOracle, ArraysOfAllTypesOrdersAndCodecs_HaveTheValuesThatWereWritten) {
   EXPECT_EQ(compare_all(directory, ".f32"), 94U);
 }
 
-// Not one of the fast tests: `npm install zarrita` in a folder, and its node_modules in WEIR_NODE_MODULES.
+// Not one of the fast tests. Run `npm install zarrita` in a folder and set WEIR_NODE_MODULES to its node_modules.
 TEST(ZarrOracle, ArraysThatZarritaReads_HaveTheValuesThatItReads) {
   const char* const modules = std::getenv("WEIR_NODE_MODULES");
   if (modules == nullptr) GTEST_SKIP() << "WEIR_NODE_MODULES, the folder with npm's zarrita, is not set";
@@ -125,7 +125,7 @@ TEST(ZarrOracle, ArraysThatZarritaReads_HaveTheValuesThatItReads) {
   ASSERT_EQ(std::system(command.c_str()), 0);
   const std::size_t compared = compare_all(directory, ".zarrita");
   RecordProperty("arrays_compared", static_cast<int>(compared));
-  // It knows no float16, and no index at a shard's start.
+  // zarrita reads neither float16 nor an index at the start of a shard.
   EXPECT_GE(compared, 61U);
 }
 

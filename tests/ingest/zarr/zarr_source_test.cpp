@@ -32,7 +32,7 @@ TEST(ZarrSource, ChunksThatAreNotStored_ReadAsTheFillValueAndAreCounted) {
 }
 
 TEST(ZarrSource, ChunksNamedWithTheOtherSeparator_AreNotTakenForNone) {
-  // As zarr-python's NestedDirectoryStore wrote arrays before metadata named the separator.
+  // zarr-python's NestedDirectoryStore wrote such arrays before metadata named the separator.
   const ZarrFiles nested;
   nested.write(".zarray", zarray("[1,1,4]", "[1,1,2]"));
   nested.write_values("0/0/1", counted(2));
@@ -119,7 +119,7 @@ TEST(ZarrSource, DamagedChunks_AreNamedByFileAndPosition) {
   EXPECT_EQ(files.message(ErrorKind::input), "run.zarr/c/0/0/1: is empty (0 bytes); copy it again, or write it anew");
   files.write("zarr.json", zarr_json("[2,2,4]", "[2,2,2]", R"([{"name":"bytes"},{"name":"crc32c"}])"));
   files.write("c/0/0/0", std::string(12, '\0'));
-  std::filesystem::remove(files.path("c/0/0/1"));  // of two that are damaged, the threads would decide which is named
+  std::filesystem::remove(files.path("c/0/0/1"));  // if two are damaged, either may be named
   EXPECT_EQ(files.message(ErrorKind::input),
             "run.zarr/c/0/0/0: chunk at 0, 0, 0: its crc32c is 00000000, its bytes give 8c28b28a; the file is damaged");
   files.write("zarr.json", zarr_json("[2,2,4]", "[2,2,2]", R"([{"name":"bytes"},{"name":"gzip"}])"));
@@ -198,7 +198,7 @@ std::string index_text(const std::vector<std::uint64_t>& index) {
   return {reinterpret_cast<const char*>(index.data()), index.size() * sizeof(std::uint64_t)};
 }
 
-/// Two chunks of two elements in each shard, two of which are an object; its index stands first, theirs at their end.
+/// Each object has two inner shards, each with two chunks of two elements. An object's index is first, a shard's last.
 std::string nested_zarr_json() {
   const std::string index = R"("index_codecs":[{"name":"bytes","configuration":{"endian":"little"}}])";
   const std::string inner = R"({"name":"sharding_indexed","configuration":{"chunk_shape":[1,1,2],)"
@@ -381,7 +381,7 @@ TEST(ZarrSource, ExtentsThatNoVolumeHas_AreListedAsTheReason) {
   SourceOptions options;
   options.dataset = "long";
   EXPECT_EQ(files.message(ErrorKind::input, options), "run.zarr/long: " + list[0].obstacle);
-  // One that can be converted needs no name beside them.
+  // An array that can be converted needs no name, although the others are there.
   files.write("short/zarr.json", zarr_json("[1,1,1]", "[1,1,1]"));
   EXPECT_EQ(files.read(), (std::vector<float>{7}));
 }

@@ -1,4 +1,4 @@
-// What the attributes of a Zarr array say of its values, by the conventions of CF.
+// Tests what the attributes of a Zarr array say about its values, by the conventions of CF.
 
 #include <cmath>
 
@@ -24,7 +24,7 @@ TEST(ZarrValues, ScaleAndMissingValueOfXarray_AreApplied) {
   EXPECT_EQ(source->info().details.long_name, "temperature");
 }
 
-/// An array of two values, -999 and 1.5, with these attributes.
+/// Writes an array of two values, -999 and 1.5, with `attributes`.
 void write_floats(const ZarrFiles& files, std::string_view attributes) {
   files.write("zarr.json", zarr_json("[1,1,2]", "[1,1,2]", R"([{"name":"bytes","configuration":{"endian":"little"}}])",
                                      "float32", "0", cat(R"(,"attributes":)", attributes)));
@@ -97,7 +97,7 @@ TEST(ZarrValues, ValidRange_IsSaidNotToBeApplied) {
   }
 }
 
-// As xarray writes _FillValue in version 2, and nothing where there is none.
+// In Zarr 2, xarray writes _FillValue as the fill_value of .zarray, and null if there is no _FillValue.
 TEST(ZarrValues, FillValueOfXarrayInVersion2_HoldsNoData) {
   const ZarrFiles files;
   const auto read = [&](std::string_view type, std::string_view fill, std::string_view attributes) {
@@ -123,8 +123,7 @@ TEST(ZarrValues, FillValueOfXarrayInVersion2_HoldsNoData) {
   values = read("<f4", R"("NaN")", kNamed);
   EXPECT_TRUE(is_missing(values[0]));
   EXPECT_EQ(values[1], 1.5F);
-  files.write_values("0.0.0",
-                     std::vector<std::uint16_t>{0xE3D0, 0x3E00});  // -1000, to which -999.9 is rounded, and 1.5
+  files.write_values("0.0.0", std::vector<std::uint16_t>{0xE3D0, 0x3E00});  // -1000 (-999.9 rounds to it) and 1.5
   values = read("<f2", "-999.9", kNamed);
   EXPECT_TRUE(is_missing(values[0])) << values[0];
   EXPECT_EQ(values[1], 1.5F);

@@ -1,4 +1,4 @@
-// Tests what weir compare takes from the sidecar: how the source was read.
+// Tests that weir compare reads the source with the options that the sidecar records.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -64,7 +64,7 @@ TEST(CompareRecorded, IndexOfTheConversion_IsTakenFromTheSidecar) {
 
 TEST(CompareRecorded, HowARawFileWasRead_IsTakenFromTheSidecar) {
   const TemporaryDirectory directory;
-  std::string values(8, '\0');  // a file that is not of the volume
+  std::string values(8, '\0');  // a header of 8 bytes before the volume's values
   for (int i = 0; i < 60; ++i) values += std::string(1, static_cast<char>(i / 8)) + static_cast<char>(31 * i);
   const std::string raw = directory / "dump.bin";
   const std::string volume = directory / "a.nvdb";

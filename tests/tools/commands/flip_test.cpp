@@ -1,4 +1,4 @@
-// weir flip from outside.
+// Tests weir flip as a user runs it.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -16,7 +16,8 @@ namespace {
 
 class FlipCommand : public ::testing::Test {
  protected:
-  /// One colour (sRGB, 0 to 255) as a PNG, with another one in the left half.
+  /// Writes a PNG with the sRGB value `left` (0 to 255) in the left half and `right` in the right half. Returns its
+  /// path.
   std::string picture(const std::string& name, std::int32_t width, std::int32_t height, int left, int right) const {
     Image image(width, height);
     for (std::int32_t y = 0; y < height; ++y) {
@@ -60,14 +61,14 @@ TEST_F(FlipCommand, WritesAJsonReportAndAnErrorMap) {
   EXPECT_EQ(report["weighted_median"], expected.weighted_median);
   EXPECT_EQ(report["first_weighted_quartile"], expected.first_weighted_quartile);
   EXPECT_EQ(report["third_weighted_quartile"], expected.third_weighted_quartile);
-  EXPECT_EQ(report["min"], 0);  // far enough from the half that differs
+  EXPECT_EQ(report["min"], 0);  // pixels far from the changed half have no error
   EXPECT_EQ(report["max"], expected.max);
   EXPECT_GT(report["total_s"], 0);
   EXPECT_EQ(report.size(), 13U);
 
   const Image map = read_png(directory_ / "map.png");
   const Image drawn = flip_picture(errors, 60, 40);
-  for (std::size_t i = 0; i < map.pixels.size(); ++i) {  // but for the rounding to 8 bits
+  for (std::size_t i = 0; i < map.pixels.size(); ++i) {  // the pictures differ by the rounding to 8 bits at most
     ASSERT_NEAR(srgb_from_linear(map.pixels[i].x), srgb_from_linear(drawn.pixels[i].x), 0.501F / 255);
     ASSERT_NEAR(srgb_from_linear(map.pixels[i].z), srgb_from_linear(drawn.pixels[i].z), 0.501F / 255);
   }

@@ -1,6 +1,6 @@
-// The memory ceiling of the whole process over gzip-chunked HDF5 several times as
-// large, chunks being cubes, planes, and planes of which a layer of leaves does
-// not fit the ceiling; and over one whose values stay in memory.
+// Tests the memory ceiling of the whole process with gzip-chunked HDF5 files several times as large. The chunks are
+// cubes, planes, and planes so large that the chunks of a layer of leaves do not fit the ceiling. Another file's values
+// stay in memory.
 #include <gtest/gtest.h>
 #include <hdf5.h>
 #include <zlib.h>
@@ -99,7 +99,7 @@ TEST_P(Hdf5Memory, StaysUnderTheCeiling) {
   EXPECT_LT(convert.peak_rss_bytes, volume.memory_bytes);
   EXPECT_EQ(std::filesystem::file_size(output), bytes / 8);
   EXPECT_EQ(convert.err.find("times in a pass") != std::string::npos, volume.decodes_twice) << convert.err;
-  // Two passes decode each chunk once: it is fetched as stored, and no more often.
+  // Each of the two passes reads the stored bytes of each chunk once, unless a pass decodes chunks several times.
   const auto bytes_read = nlohmann::json::parse(convert.out)["timing"]["bytes_read"].get<std::uint64_t>();
   if (volume.decodes_twice) {
     EXPECT_GT(bytes_read, 2 * stored);
@@ -137,7 +137,7 @@ TEST(Hdf5KeptValues, AreDecodedOnceUnderTheCeiling) {
   const nlohmann::json kept = nlohmann::json::parse(once.out);
   EXPECT_EQ(kept["timing"]["bytes_read"].get<std::uint64_t>(), stored);
   EXPECT_LT(once.peak_rss_bytes, 400 * kMiB);
-  EXPECT_GT(once.peak_rss_bytes, 144 * kMiB);  // of its values
+  EXPECT_GT(once.peak_rss_bytes, 144 * kMiB);  // the kept values alone
   const nlohmann::json not_kept = nlohmann::json::parse(convert("b.nvdb", "100MiB").out);
   EXPECT_EQ(not_kept["timing"]["bytes_read"].get<std::uint64_t>(), 2 * stored);
   EXPECT_EQ(kept["file"]["digest"], not_kept["file"]["digest"]);

@@ -1,4 +1,4 @@
-// Tests what a conversion says of axes that are not those of the file's world.
+// Tests that a conversion reports and records axes that differ from those of the file's world.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>

@@ -1,4 +1,4 @@
-// weir sample from outside: files, exit codes, messages, and what a failure leaves behind.
+// Tests weir sample as a user runs it: files, exit codes, messages, and the files that a failure leaves behind.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <unistd.h>

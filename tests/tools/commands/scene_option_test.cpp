@@ -1,5 +1,5 @@
-// weir convert --scene as a user runs it: both certificates, and every scene that
-// cannot decide anything refused by name.
+// Tests weir convert --scene as a user runs it: the certificates of all voxels and of the visible voxels, and the
+// refusal of every scene that does not say what is visible.
 #include <nlohmann/json.hpp>
 
 #include "format/base/text.h"
@@ -24,7 +24,7 @@ TEST_F(SceneOption, CertifiesAllVoxelsAndThoseSeen) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const auto sidecar = nlohmann::json::parse(result.out);
   EXPECT_EQ(sidecar["visible"]["scene"], "s.toml");
-  // Values run up to 249 in rows along x from 20 on: blocks there, and those beside them.
+  // Visible are the blocks with large values (up to 249, in the rows along x from 20 on) and their neighbours.
   EXPECT_GT(sidecar["visible"]["blocks"], 20);
   EXPECT_LT(sidecar["visible"]["blocks"], 60);
   EXPECT_GE(sidecar["visible"]["psnr_db"], 60.0);

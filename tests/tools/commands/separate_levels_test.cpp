@@ -1,4 +1,4 @@
-// weir convert --levels separate: a file of each level, as the real command makes them.
+// Tests weir convert --levels separate, which writes a file for each level of refinement, with the real command.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Three levels, refined by 2 and by 4, 4 and 2, with boxes whose faces lie inside of blocks.
+/// Returns the plan of three levels with refinement ratios of 2, 2, 2 and 4, 4, 2. Faces of boxes lie inside blocks.
 test::PlotfilePlan three_levels() {
   test::PlotfilePlan plan;
   plan.domain = {{-3, 5, 0}, {17, 21, 19}};
@@ -109,7 +109,7 @@ TEST_F(SeparateLevels, ASizeIsThatOfEachFile) {
   for (const std::size_t n : {0U, 1U, 2U}) EXPECT_EQ(fs::file_size(out(n)), 600'000U);
 }
 
-/// A large finest level may take hours: what the others need is known before.
+/// Converting a large finest level may take hours, so every level's budget is checked before the first conversion.
 TEST_F(SeparateLevels, ARateBelowTheSmallestTreeOfOne_ConvertsNone_AndWhatTheErrorNamesSuitsAll) {
   test::PlotfilePlan plan;
   plan.domain = {{0, 0, 0}, {64, 64, 64}};
@@ -126,7 +126,7 @@ TEST_F(SeparateLevels, ARateBelowTheSmallestTreeOfOne_ConvertsNone_AndWhatTheErr
       "--rate ([0-9.]+) or less, --size ([0-9]+) or more, or for --encoding packed\n");
   ASSERT_TRUE(std::regex_match(refused.err, named, wording)) << refused.err;
   EXPECT_EQ(named[1], out(1));
-  EXPECT_GT(std::stoull(named[4]), std::stoull(named[2]));  // that of the finest level
+  EXPECT_GT(std::stoull(named[4]), std::stoull(named[2]));  // the smallest size that suits the finest level
   const CommandResult dry = convert({"--rate", "8", "--dry-run"});
   EXPECT_EQ(dry.exit_code, 4);
   EXPECT_EQ(dry.err, refused.err);
@@ -160,7 +160,7 @@ TEST_F(SeparateLevels, KilledBetweenTwoLevels_LeavesWholeFilesAndTheNextRunMakes
   while (command.running() && !fs::exists(sidecar_path(out(0)))) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
-  std::this_thread::sleep_for(std::chrono::milliseconds(200));  // the second is on its way
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));  // the second conversion is running
   command.send_signal(SIGKILL);
   EXPECT_EQ(command.wait().exit_code, 128 + SIGKILL);
   std::vector<std::string> visible = list_directory(directory_.path() / "out");

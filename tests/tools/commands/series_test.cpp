@@ -1,4 +1,4 @@
-// A series on the command line: every step a file of its own, all of one size.
+// Tests the conversion of a series on the command line: each step becomes a file, and all files have the same size.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -46,7 +46,7 @@ TEST_F(SeriesCommand, EveryStepHasTheSameSizeAndItsOwnValues) {
   EXPECT_EQ(list_directory(directory_.path() / "out").size(), 6U);
 }
 
-// As with a pattern of the shell: two steps of three would pass for the whole.
+// If a step were left out, as by a pattern of the shell, two of three steps would pass for the whole series.
 TEST_F(SeriesCommand, StepThatCannotBeRead_IsNotLeftOut) {
   write_steps(3);
   const std::string step = directory_ / "t_1_64x48x40_uint8.raw";
@@ -144,7 +144,7 @@ TEST_F(SeriesCommand, AStepThatFails_IsSaidWithWhatWasDone) {
 
 TEST_F(SeriesCommand, AVolumeOfAFileThatFails_IsSaidByItsOutput) {
   std::string bytes(3 * 16 * 16 * 16 * sizeof(float), '\0');
-  bytes.replace(16 * 16 * 16 * sizeof(float), 4, "\xFF\xFF\xFF\xFF");  // NaN, in the second
+  bytes.replace(16 * 16 * 16 * sizeof(float), 4, "\xFF\xFF\xFF\xFF");  // NaN, in the second volume
   const std::string nrrd = directory_ / "a.nrrd";
   write_file(nrrd, "NRRD0004\ntype: float\ndimension: 4\nsizes: 16 16 16 3\nencoding: raw\nendian: little\n\n" + bytes);
   const auto made = run_weir({"convert", nrrd, "--index", "*", "-o", directory_ / "out/", "--size", "400000"});

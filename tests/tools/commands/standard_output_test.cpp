@@ -1,4 +1,5 @@
-// A stdout that takes nothing is an error of every command that reports there; a reader that leaves early is none.
+// Tests stdout for every command that reports there. A stdout that cannot be written to is an error. A reader that
+// leaves early is none.
 #include <gtest/gtest.h>
 
 #include <string>

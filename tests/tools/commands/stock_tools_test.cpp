@@ -1,5 +1,5 @@
-// The stock NanoVDB command-line tools on files that `weir convert` made. Their exit code is 0 even where they
-// find a fault, so it is what they print that counts.
+// Tests files that `weir convert` made with the stock NanoVDB command-line tools. The tools return exit code 0 even if
+// they find a fault, so the tests check what the tools print.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -26,7 +26,7 @@ class StockTools : public ::testing::Test {
       if (!is_installed(program)) GTEST_SKIP() << program << " is not installed (package libnanovdb-tools)";
   }
 
-  /// A synthetic volume of `dims`, converted with `options`: the file's path.
+  /// Converts a synthetic volume of `dims` with `options`. Returns the file's path.
   std::string convert(const std::string& kind, const std::string& dims, const std::vector<std::string>& options) {
     const std::string raw = directory_ / "volume.raw";
     const std::string nvdb = directory_ / "volume.nvdb";
@@ -120,7 +120,7 @@ TEST_F(StockTools, PrintShowsQuantisedGrids) {
   }
 }
 
-// To OpenVDB and back, which makes a float grid of what the stock reader decodes: every voxel keeps its bits.
+// The tool decodes a quantised grid with the stock reader and writes a float grid. Every voxel keeps its bits.
 TEST_F(StockTools, ConvertToVdbAndBack) {
   for (const char* encoding : {"float", "fpn", "fp4", "fp8", "fp16"}) {
     for (const char* kind : {"turbulence", "signed", "offset"}) {

@@ -1,4 +1,4 @@
-// weir sweep from outside: its figures are those of the commands it stands for.
+// Tests weir sweep as a user runs it: its figures equal those of the single commands that it replaces.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -35,7 +35,7 @@ class SweepCommand : public testing::Test {
     return path;
   }
 
-  // Into out/ below the test's directory.
+  // Runs a sweep that writes to out/ below the test's directory.
   CommandResult run(const std::string& input, const std::vector<std::string>& options) {
     std::vector<std::string> arguments{"sweep", input, "-o", out_, "--progress", "never"};
     arguments.insert(arguments.end(), options.begin(), options.end());
@@ -279,7 +279,7 @@ TEST_F(SweepCommand, Refusals) {
 }
 
 TEST_F(SweepCommand, InterruptLeavesNothing) {
-  // Zeros take no disk; long enough that the signal meets the sweep at work.
+  // Zeros that take no disk space. Reading them takes so long that the signal arrives during the sweep.
   const std::string input = directory_ / "zeros_1024x1024x256_uint8.raw";
   write_file(input, "");
   fs::resize_file(input, std::uintmax_t{1} << 28U);

@@ -1,5 +1,5 @@
-// weir verify as a user runs it: an intact volume, and every kind of damage to it or
-// to its sidecar, by the line that it is reported with.
+// Tests weir verify as a user runs it: an intact volume, and the line that reports each kind of damage to the volume or
+// its sidecar.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -19,7 +19,7 @@ class Verify : public ConvertedVolume {
  protected:
   CommandResult verify() const { return run_weir({"verify", volume_, "--progress", "never"}); }
 
-  // Exchanges the bytes at `offset`; expects exit code 3 and exactly these lines on stderr.
+  // Replaces the bytes of the volume at `offset`.
   void damage(std::uint64_t offset, const std::string& bytes) const {
     std::string file = read_file(volume_);
     file.replace(offset, bytes.size(), bytes);
@@ -57,7 +57,7 @@ TEST_F(Verify, NameThatSteersATerminal_IsOneLine) {
       << result.err;
 }
 
-// A file that it reads is mapped, and mapped pages count as the process's memory.
+// verify maps the file that it reads, and mapped pages count as memory of the process.
 TEST(VerifyMemory, OfALargeFile_IsFarBelowItsSize) {
   const TemporaryDirectory directory;
   const std::string source = directory / "v.raw";
@@ -92,7 +92,7 @@ TEST_F(Verify, RelativeNameThatIsNotThere_IsSaidWithARemedy) {
   EXPECT_EQ(report.at("volumes").at(1).at("checks").at(0).at("name"), "structure");
 }
 
-// Of sysfs, whose files cannot be mapped: as of a disk or file server that fails, that says nothing of the content.
+// Files of sysfs cannot be mapped. Like a disk or file server that fails, this says nothing about the file's content.
 TEST_F(Verify, FileThatCannotBeRead_EndsWithExitCode5) {
   const std::string unreadable = directory_ / "unreadable.nvdb";
   fs::create_symlink("/sys/devices/system/cpu/online", unreadable);

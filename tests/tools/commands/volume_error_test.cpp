@@ -1,4 +1,4 @@
-// Which file weir render and weir play say that a volume which cannot be drawn is of.
+// Tests which file weir render and weir play name if they cannot draw a volume.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -11,7 +11,7 @@ namespace {
 
 class VolumeErrorTest : public ConvertedVolume {
  protected:
-  /// What weir says of a picture of `input` that it refuses.
+  /// Runs the command `input` with `more` options, which weir must refuse. Returns its message.
   std::string refusal(const std::vector<std::string>& input, const std::vector<std::string>& more) const {
     std::vector<std::string> all = input;
     all.insert(all.end(), {"--size", "8x6", "--spp", "1", "--backend", "cpu"});

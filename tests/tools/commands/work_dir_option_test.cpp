@@ -1,4 +1,4 @@
-// A work directory that cannot be used is refused at the start, by every command that takes one.
+// Tests that every command with --work-dir refuses a directory at its start if it cannot use the directory.
 #include "tests/tools/support/converted_volume.h"
 
 namespace weir::work_dir_option_test {
@@ -9,7 +9,7 @@ using WorkDirOption = ConvertedVolume;
 TEST_F(WorkDirOption, DirectoryThatCannotBeUsed_IsRefusedAtTheStart) {
   const bool serves = run_weir({"view", "--help"}).out.find("--work-dir") != std::string::npos;
   for (const std::string& command : {std::string("convert"), std::string("view")}) {
-    if (command == "view" && !serves) continue;  // this build was left without it
+    if (command == "view" && !serves) continue;  // this build has no weir view
     const auto refused = [&](const std::string& chosen, int code, const std::string& reason) {
       std::vector<std::string> words{command, volume_, "--work-dir", chosen};
       if (command == "convert") words.insert(words.end(), {"-o", directory_ / "o.nvdb"});

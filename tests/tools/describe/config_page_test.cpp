@@ -1,4 +1,4 @@
-// weir.toml(5) has the keys that the reader of configurations takes and that docs/operations.md explains.
+// Tests that weir.toml(5) has exactly the keys that load_config() accepts and that docs/operations.md explains.
 #include "tools/describe/config_page.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@
 namespace weir::config_page_test {
 namespace {
 
-// "table.key" of each row of the document's tables below `### `[service]`` and `### `[[watch]]``.
+// Returns "table.key" for each row of the tables below `### `[service]`` and `### `[[watch]]`` in docs/operations.md.
 std::set<std::string> documented_keys() {
   std::set<std::string> keys;
   std::string table;
@@ -40,7 +40,7 @@ TEST(ConfigPage, HasTheKeysOfTheDocument) {
   EXPECT_EQ(keys, documented_keys());
 }
 
-// An array of tables is no value of any key: the message is of the value, not of an unknown key.
+// No key accepts an array of tables. So the message must complain of the value, not of an unknown key.
 TEST(ConfigPage, KeysAreKnownToTheReader) {
   const TemporaryDirectory directory;
   const std::string path = directory / "weir.toml";
@@ -89,7 +89,7 @@ TEST(ConfigPage, TheDocumentListsTheEndingsThatAWatchTakes) {
   }
 }
 
-// What is installed to start from.
+// daemon/example.toml is installed as a starting point for users.
 TEST(ConfigPage, TheInstalledExampleIsValid) {
   const DaemonConfig config = load_config(WEIR_SOURCE_DIR "/daemon/example.toml");
   ASSERT_EQ(config.watches.size(), 1U);

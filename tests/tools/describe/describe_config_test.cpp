@@ -19,7 +19,7 @@ class WatchCheck : public testing::Test {
     write_file(directory_ / "watch.toml", text);
     return run_weir({"watch", "--check", directory_ / "watch.toml"});
   }
-  /// `text` with every @ replaced by the directory.
+  /// Returns `text` with every @ replaced by the test's directory.
   std::string here(std::string text) const {
     for (std::size_t at; (at = text.find('@')) != std::string::npos;) text.replace(at, 1, directory_.path().string());
     return text;

@@ -10,7 +10,7 @@
 namespace weir::man_examples_test {
 namespace {
 
-// Each option that an example gives is one that the help of its command names.
+// The help of a command must name each option that the command's examples use.
 TEST(ManExamples, GiveOptionsThatTheirCommandsHave) {
   for (const ManExample& example : man_examples()) {
     const std::string name(example.command);

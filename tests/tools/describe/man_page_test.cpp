@@ -122,7 +122,7 @@ Gates:
 )");
 }
 
-// Of the real command line: a page for every command that --help lists, and none that the formatter complains about.
+// The real command line has a page for every command that --help lists. The formatter must not complain of any page.
 TEST(ManPage, OfEveryCommand) {
   TemporaryDirectory directory;
   ASSERT_EQ(run_weir({"man", directory.path()}).exit_code, 0);

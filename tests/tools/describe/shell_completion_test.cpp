@@ -18,7 +18,7 @@ class ShellCompletion : public ::testing::Test {
     write_file(directory_ / "script", script(describe_commands(described.app)));
     return directory_ / "script";
   }
-  /// What bash offers for the last of `words`; it splits a line at '=' as well.
+  /// Returns what bash offers for the last of `words`. Bash splits a line at '=', too.
   std::string bash(const std::string& words) const {
     const std::string line = cat("source ", write(bash_completion), "; COMP_WORDS=(", words,
                                  "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _weir; echo \"${COMPREPLY[*]}\"");

@@ -32,7 +32,7 @@ TEST_F(PackedExportTree, Nodes_CoverTheDomainAlone) {
   tree->read_upper(roots[1].upper, upper);
   EXPECT_EQ(roots[1].origin, (Index3{0, 0, 0}));
   EXPECT_EQ(count(upper.children), 3);
-  EXPECT_EQ(count(upper.active), 0);  // all overhang the domain
+  EXPECT_EQ(count(upper.active), 0);  // all three children reach beyond the domain
   LowerNode lower;
   const ExportNode second = tree->lower_of(roots[1].upper, 32 * 32);
   EXPECT_EQ(second.origin, (Index3{128, 0, 0}));
@@ -46,7 +46,7 @@ TEST_F(PackedExportTree, Nodes_CoverTheDomainAlone) {
   EXPECT_EQ(PackedSample::kind({17, 1, 5}), 2);
   EXPECT_FALSE(has_leaf({17, 1, 5}));  // a tile
   EXPECT_EQ(PackedSample::kind({17, 0, 3}), 2);
-  EXPECT_TRUE(has_leaf({17, 0, 3}));  // overhangs the domain
+  EXPECT_TRUE(has_leaf({17, 0, 3}));  // a leaf, because the block reaches beyond the domain
   EXPECT_EQ(lower.values[packed_position({17, 1, 5})], PackedSample::value({17 * 8, 8, 40}));
 }
 

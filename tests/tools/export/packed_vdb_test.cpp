@@ -1,4 +1,4 @@
-// A packed grid written as .vdb, as OpenVDB and weir read it again.
+// Tests a packed grid that is written as .vdb: OpenVDB and weir read it.
 #include <gtest/gtest.h>
 
 #include "format/io/file_system.h"

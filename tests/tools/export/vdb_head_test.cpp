@@ -1,4 +1,4 @@
-// The head of a .vdb file as weir's own reader takes it; tests/tools/export/vdb_writer_test.cpp has OpenVDB read it.
+// Tests the head of a .vdb file with weir's own reader. vdb_writer_test.cpp tests it with OpenVDB.
 #include "tools/export/vdb_head.h"
 
 #include <gtest/gtest.h>

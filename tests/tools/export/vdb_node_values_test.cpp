@@ -1,4 +1,4 @@
-// A node's values as written here and read by OpenVDB, for every way in which inactive ones are kept.
+// Tests that OpenVDB reads a node's values as weir wrote them, for every way to store inactive values.
 #include "tools/export/vdb_node_values.h"
 
 #include <gtest/gtest.h>
@@ -39,7 +39,8 @@ std::string written(const Node& node, const VdbStorage& storage) {
   return out.str();
 }
 
-/// Voxels that OpenVDB reads otherwise, children left out; -1 where it does not read to the end.
+/// Returns the number of entries, without children, that OpenVDB reads with other bits; -1 if it does not read exactly
+/// to the end.
 int differing(const Node& node, const VdbStorage& storage) {
   std::istringstream in(written(node, storage));
   openvdb::io::setCurrentVersion(in);
@@ -132,7 +133,7 @@ TEST(VdbNodeValues, HalfRounding) {
   EXPECT_EQ(rounded_to_half(kMaxHalf), kMaxHalf);
   EXPECT_EQ(rounded_to_half(65519.0F), kMaxHalf);
   EXPECT_TRUE(std::isinf(rounded_to_half(65520.0F)));
-  EXPECT_EQ(rounded_to_half(0x1p-24F), 0x1p-24F);  // the least
+  EXPECT_EQ(rounded_to_half(0x1p-24F), 0x1p-24F);  // the smallest positive value
   EXPECT_EQ(rounded_to_half(0x1p-26F), 0.0F);
   EXPECT_TRUE(std::isnan(rounded_to_half(kNan)));
   EXPECT_TRUE(std::signbit(rounded_to_half(-0.0F)));

@@ -1,4 +1,4 @@
-// Grids of every type and shape written as .vdb, read by OpenVDB.
+// Tests grids of every type and shape that weir writes as .vdb and OpenVDB reads.
 #include "tools/export/vdb_writer.h"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ class VdbWriter : public testing::Test {
     return write_vdb(grid, "in.nvdb", options, *file);
   }
 
-  /// A sample with `value` at byte `offset` of its grid.
+  /// Returns a sample file with `value` at byte `offset` of its grid.
   template <typename T>
   static std::vector<std::byte> patched(std::uint64_t offset, const T& value) {
     std::vector<std::byte> bytes = test::StockNvdb(GridType::float32).file();
@@ -53,14 +53,15 @@ class VdbWriter : public testing::Test {
   std::unique_ptr<FileSystem> files_ = make_posix_file_system();
 };
 
-constexpr std::uint64_t kMatrix = nvdb::grid::kMap + 88;  ///< of doubles
+constexpr std::uint64_t kMatrix = nvdb::grid::kMap + 88;  ///< offset of the map's matrix of doubles
 
 TEST_F(VdbWriter, EveryTypeAndCompressionBitForBit) {
   for (const GridType type : {GridType::float32, GridType::fp4, GridType::fp8, GridType::fp16, GridType::fpn}) {
     const std::vector<std::byte> bytes = test::StockNvdb(type).file();
     const NvdbGrid grid = NvdbGrid::open(bytes, "in.nvdb");
     for (const std::uint32_t compression : kCompressions) {
-      if (compression != kVdbBlosc && type != GridType::float32) continue;  // the same for all types
+      if (compression != kVdbBlosc && type != GridType::float32)
+        continue;  // other compressions do the same for all types
       SCOPED_TRACE(cat(grid_type_name(type), ", compression ", compression));
       VdbWriterOptions options;
       options.compression = compression;
@@ -165,7 +166,7 @@ TEST_F(VdbWriter, ValuesThat16BitsCannotHold) {
   EXPECT_EQ(refusal(patched(background, 65520.0F), options, ErrorKind::usage),
             "in.nvdb: --half holds values up to 65504, and one is 65520; leave --half out");
   const auto infinite = patched(background, -std::numeric_limits<float>::infinity());
-  write(NvdbGrid::open(infinite, "in.nvdb"), options);  // is one in 16 bits too
+  write(NvdbGrid::open(infinite, "in.nvdb"), options);  // infinity is infinite in 16 bits, too
   EXPECT_EQ(test::difference(NvdbGrid::open(infinite, "in.nvdb"), path_, rounded_to_half), "");
 }
 

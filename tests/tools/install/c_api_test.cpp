@@ -1,5 +1,5 @@
-// The C interface as it is installed: its symbols, its header in the languages it is for, its examples built by CMake
-// and by pkg-config, and the document that shows them.
+// Tests the installed C interface: its symbols, its header in C and C++, its examples built by CMake and by pkg-config,
+// and the document that shows the examples.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -21,7 +21,7 @@ const std::string kExamples = WEIR_SOURCE_DIR "/examples";
 
 bool has_cuda() { return !std::string(WEIR_NVCC).empty(); }
 
-/// The lines of `text` between "```language" and "```", for each such block.
+/// Returns the lines of each block of `text` between "```language" and "```".
 std::vector<std::string> blocks_of(const std::string& text, const std::string& language) {
   std::vector<std::string> blocks;
   const std::string begin = cat("\n```", language, "\n");
@@ -32,15 +32,15 @@ std::vector<std::string> blocks_of(const std::string& text, const std::string& l
   return blocks;
 }
 
-// A program linked with one version must find in the next what it was linked with: what changes here changes the
-// library's soname.
+// A program that was linked with one version must find the same symbols in the next version. If a listed symbol
+// changes, the library's soname must change.
 TEST(CInterface, ExportsExactlyTheListedSymbols) {
   const CommandResult listed = run_command({"nm", "-D", "--defined-only", WEIR_C_LIBRARY});
   ASSERT_EQ(listed.exit_code, 0) << listed.err;
   std::istringstream lines(listed.out);
   std::set<std::string> symbols;
   for (std::string address, kind, symbol; lines >> address >> kind >> symbol;) {
-    if (kind == "A") continue;  // the version itself
+    if (kind == "A") continue;  // the symbol of the version itself
     EXPECT_EQ(kind, "T") << symbol;
     symbols.insert(symbol);
   }
@@ -66,7 +66,7 @@ TEST(CInterface, TheHeaderIsC99AndCPlusPlus) {
   }
 }
 
-// Whole files, or an excerpt of one.
+// The document shows whole files and an excerpt.
 TEST(CInterface, TheDocumentShowsTheCodeThatIsCompiled) {
   const std::string document = read_file(WEIR_SOURCE_DIR "/docs/embedding.md");
   std::string files;
@@ -87,7 +87,7 @@ TEST(CInterface, TheDocumentShowsTheCodeThatIsCompiled) {
 
 #ifdef WEIR_INSTALLS  // not in builds with sanitizers
 
-// A host of plugins unloads them; oneTBB's threads still run then, with code of a library that only weir needs.
+// A plugin host unloads its plugins. oneTBB's threads still run then, with code of a library that only weir needs.
 TEST(CInterface, UnloadedAfterAConversion_TheProgramGoesOn) {
   const TemporaryDirectory directory;
   const std::string program = directory / "plugin_host";
@@ -102,7 +102,7 @@ TEST(CInterface, UnloadedAfterAConversion_TheProgramGoesOn) {
 
 bool has_program(const std::string& name) { return run_command({"sh", "-c", "command -v " + name}).exit_code == 0; }
 
-/// For a build on a busy machine.
+/// Returns options with a timeout that is long enough for a build on a busy machine.
 CommandOptions patient() {
   CommandOptions options;
   options.timeout = std::chrono::seconds(600);
@@ -136,7 +136,8 @@ class CExamples : public testing::Test {
   static std::string prefix() { return *directory_ / "weir"; }
   static std::string program(const std::string& name) { return *directory_ / ("build/" + name); }
 
-  /// Two steps of a simulation, as files that keep what it asked for, and play.
+  /// Runs `program`, a simulation, and expects the files of two steps with the budget that it requested. Plays the
+  /// files.
   static void expect_steps(const std::string& program) {
     const TemporaryDirectory steps;
     const CommandResult simulated = run_command({program, "44", "40", "20", steps.path()});

@@ -1,5 +1,5 @@
-// docs/embedding.md is true: its programs are those of examples/embed, which build with a compiler alone and print
-// what the file holds.
+// Tests docs/embedding.md: its programs equal those of examples/embed, which build with only a compiler and print the
+// values of the file.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -40,7 +40,7 @@ TEST(Embedding, ADeviceProgramBuildsAloneAndPrintsTheValues) {
   const EmbeddedExample embedded({"-DWEIR_CUDA=ON", "-DCMAKE_CUDA_COMPILER=" + nvcc, "-DCMAKE_CUDA_ARCHITECTURES=90"});
   const CommandResult sampled =
       embedded.run("sample_device", {embedded.file(), "8", "5.5", "3.25", "15.5", "99", "-1"});
-  if (sampled.exit_code == 2) {  // it ran, on a machine without a device
+  if (sampled.exit_code == 2) {  // the program ran on a machine without a device
     EXPECT_EQ(sampled.err.rfind("no CUDA device: ", 0), 0U) << sampled.err;
     return;
   }

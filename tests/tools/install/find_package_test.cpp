@@ -1,4 +1,5 @@
-// find_package(weir) where something is missing: cmake/weirConfig.cmake beside targets that are names only.
+// Tests find_package(weir) if something is missing. The test puts cmake/weirConfig.cmake beside targets that are only
+// names.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -49,7 +50,7 @@ endif()
 constexpr const char* kWithMpi = "format_core;gpu_core;c;mpi, mpi: TRUE";
 constexpr const char* kWithoutMpi = "format_core;gpu_core;c, mpi: FALSE";
 
-/// An installation with the component mpi and without CUDA, and a project that looks for it.
+/// An installation with the component mpi and without CUDA, and a project that looks for the installation.
 class FindPackage : public ::testing::Test {
  protected:
   FindPackage() {
@@ -62,7 +63,7 @@ class FindPackage : public ::testing::Test {
     write_file(files_ / "CMakeLists.txt", kProject);
   }
 
-  /// What find_package(weir QUIET `arguments`) finds, or why it finds nothing.
+  /// Returns what find_package(weir QUIET `arguments`) finds, or why it finds nothing.
   std::string find(const std::string& arguments, bool compiles_c, bool has_mpi) const {
     const CommandResult configured =
         run_command({WEIR_CMAKE, "-S", files_.path(), "-B", files_ / "build", "-G", WEIR_GENERATOR,

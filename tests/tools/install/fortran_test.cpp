@@ -1,5 +1,5 @@
-// The Fortran modules against the C headers that they repeat: every constant, member and argument; and programs that
-// use them, where there is a compiler.
+// Compares the Fortran modules with the C headers that they repeat: every constant, member and argument. Also runs
+// programs that use the modules, if there is a Fortran compiler.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ std::string header(const std::string& name) {
   return without(read_file(kSource + "bindings/" + name), R"(/\*[^*]*\*+([^/*][^*]*\*+)*/)");
 }
 
-/// Each statement on one line, without comments and what the module has of its own.
+/// Returns the text of a module with each statement on one line, without comments, abstract interfaces and procedures.
 std::string module(const std::string& name) {
   std::string text = without(read_file(kSource + "examples/" + name), "![^\n]*");
   text = without(text, "&\\s*\n");
@@ -42,7 +42,7 @@ std::string lower(std::string text) {
   return text;
 }
 
-/// The whole and the groups of each match; a group that took no part is empty.
+/// Returns the whole and the groups of each match. A group that took no part in the match is empty.
 std::vector<std::vector<std::string>> all_of(const std::string& text, const char* pattern) {
   const std::regex regex(pattern);
   std::vector<std::vector<std::string>> found;
@@ -52,7 +52,7 @@ std::vector<std::vector<std::string>> all_of(const std::string& text, const char
   return found;
 }
 
-/// At the commas that are not in parentheses, without spaces around.
+/// Splits `text` at the commas outside parentheses and removes all spaces.
 std::vector<std::string> parts(const std::string& text) {
   std::vector<std::string> found{""};
   int depth = 0;
@@ -76,7 +76,7 @@ Table constants(const std::string& text, const char* pattern) {
   return table;
 }
 
-/// The Fortran type of a C type that is no pointer.
+/// Returns the Fortran type for a C type that is no pointer.
 std::string kind_of(const std::string& type) {
   static const std::map<std::string, std::string> kinds{
       {"size_t", "integer(c_size_t)"},       {"int64_t", "integer(c_int64_t)"},
@@ -88,7 +88,7 @@ std::string kind_of(const std::string& type) {
   return found == kinds.end() ? cat("type(", type, ")") : found->second;
 }
 
-/// "TYPE NAME" of each member, in order, by struct.
+/// Returns "TYPE NAME" for each member, in order, by struct. Types and names are Fortran's.
 Table structs(const std::string& c) {
   const std::map<std::string, std::string> renamed{{"size", "file_size"}, {"type", "scalar_type"}};
   const std::regex callback(R"(.*\(\*(\w+)\)\(.*)");
@@ -124,8 +124,8 @@ Table types(const std::string& fortran) {
   return table;
 }
 
-/// How Fortran declares what C returns, first, and what it takes, by call. A pointer is an address by value, or a
-/// reference to what it points to: "A or B".
+/// Returns the Fortran declarations of each C function, by its name: first the result, then the arguments. A pointer
+/// may be an address by value or a reference to its target, written as "A or B".
 Table calls(const std::string& c) {
   Table table;
   for (const auto& found : all_of(c, R"(WEIR_API ([^;(]*?)(weir_\w+)\(([^)]*)\);)")) {
@@ -196,7 +196,7 @@ TEST(Fortran, HasEveryCallOfTheHeaders) {
   EXPECT_GE(c.size(), 26U);
   expect_calls(c, interfaces(module("push/weir.f90")));
   Table mpi = calls(header("mpi/weir_mpi.h"));
-  EXPECT_EQ(mpi.erase("weir_mpi_push_begin"), 1U);  // takes C's handle of a communicator
+  EXPECT_EQ(mpi.erase("weir_mpi_push_begin"), 1U);  // it takes a C communicator handle
   EXPECT_EQ(mpi.size(), 4U);
   expect_calls(mpi, interfaces(module("mpi/weir_mpi.f90")));
 }
@@ -207,7 +207,7 @@ TEST(Fortran, ValuesComeBackFromFilesAndMemory) {
   if (run_command({"sh", "-c", "command -v gfortran"}).exit_code != 0) GTEST_SKIP() << "no gfortran";
   const TemporaryDirectory work;
   CommandOptions here;
-  here.directory = work.path();  // where the compiler leaves weir.mod
+  here.directory = work.path();  // the compiler writes weir.mod there
   const std::string library = WEIR_C_LIBRARY;
   const CommandResult compiled =
       run_command({"gfortran", "-std=f2008", "-Wall", "-Wextra", "-Werror", "-fcheck=all", "-o", work / "round_trip",

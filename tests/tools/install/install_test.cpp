@@ -1,4 +1,5 @@
-// What cmake --install brings: exactly these files, a command that runs, libraries that another build takes.
+// Tests the result of cmake --install: exactly the listed files, a command that runs, and libraries that another build
+// can use.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -21,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 #ifdef WEIR_PYTHON_CORE
-const std::string kPythonFolder = "lib/python" WEIR_PYTHON_VERSION "/dist-packages";  // that of /usr/local
+const std::string kPythonFolder = "lib/python" WEIR_PYTHON_VERSION "/dist-packages";  // the folder below /usr/local
 #else
 const std::string kPythonFolder;
 #endif
@@ -43,7 +44,7 @@ class Installation : public ::testing::Test {
   static inline std::unique_ptr<TemporaryDirectory> directory_;
 };
 
-/// The files (no directories) below `root`, as paths below `as`.
+/// Adds the files (no directories) below `root` to `files`, as paths below `as`.
 void add_files(const fs::path& root, const std::string& as, std::set<std::string>& files) {
   for (const std::string& path : list_directory(root)) {
     if (!path.ends_with('/')) files.insert(cat(as, "/", path));
@@ -134,7 +135,7 @@ std::set<std::string> cuda_files() {
   return files;
 }
 
-// Of the Python module, in `folder`.
+// Returns the files of the Python module, which lies in `folder`.
 std::set<std::string> python_files([[maybe_unused]] const std::string& folder) {
   std::set<std::string> files;
 #ifdef WEIR_PYTHON_CORE
@@ -147,7 +148,7 @@ std::set<std::string> python_files([[maybe_unused]] const std::string& folder) {
   return files;
 }
 
-/// With a folder for Python modules.
+/// Returns all files of an installation. `python` is the folder for Python modules.
 std::set<std::string> installed_files(bool has_cuda, const std::string& python) {
   std::set<std::string> expected{
       "bin/weir",
@@ -225,7 +226,7 @@ TEST_F(Installation, DebianPackageHasTheSameFiles) {
     EXPECT_TRUE(line.empty() || line[7] == 'r') << "not for all: " << line;
   }
   std::set<std::string> expected = installed_files(has_cuda(), "lib/python3/dist-packages");
-  expected.erase("share/doc/weir/LICENSE");  // Debian has the text already, and wants these two:
+  expected.erase("share/doc/weir/LICENSE");  // Debian has the text already, and requires these two files:
   expected.insert({"share/doc/weir/changelog.gz", "share/doc/weir/copyright"});
   std::set<std::string> found;
   for (const std::string& path : files_below(work / "content")) {
@@ -260,7 +261,7 @@ TEST_F(Installation, TheCommandRuns) {
   }
 }
 
-// Moved to another place, as an archive of an installation is: nothing leads to the build any more.
+// The installation is moved, like an unpacked archive. No path may lead to the build any more.
 TEST_F(Installation, ProgramsFindTheDriversBesideThem) {
   const TemporaryDirectory work;
   const std::string moved = work / "opt";
@@ -314,7 +315,7 @@ TEST_F(Installation, SystemdUnitNamesTheInstallPrefix) {
 
 TEST_F(Installation, SystemdFindsNoFaultInTheUnit) {
   if (std::system("command -v systemd-analyze >/dev/null") != 0) GTEST_SKIP() << "systemd-analyze is not installed";
-  // Without --man=no it would look for the manual in the system's own folders.
+  // Without --man=no, systemd-analyze would look for the manual in the system's own folders.
   const CommandResult result =
       run_command({"systemd-analyze", "verify", "--man=no", prefix() + "/lib/systemd/system/weir@.service"});
   EXPECT_EQ(result.exit_code, 0);
@@ -326,10 +327,10 @@ TEST_F(Installation, LinksOfTheDocumentsPointToInstalledFiles) {
   const std::regex link("\\]\\(([^)#:]+)(#[^)]*)?\\)");
   std::size_t links = 0;
   for (const std::string& name : list_directory(documents)) {
-    if (!name.ends_with(".md") || name == "docs/internals.md") continue;  // that one leads through the sources
+    if (!name.ends_with(".md") || name == "docs/internals.md") continue;  // docs/internals.md leads through the sources
     const std::string text = read_file(documents / name);
     for (auto at = std::sregex_iterator(text.begin(), text.end(), link); at != std::sregex_iterator(); ++at) {
-      if (at->str(1).ends_with(".h")) continue;  // FORMAT.md says where in the sources
+      if (at->str(1).ends_with(".h")) continue;  // FORMAT.md links to places in the sources
       ++links;
       EXPECT_TRUE(fs::exists((documents / name).parent_path() / at->str(1))) << name << ": " << at->str(1);
     }
@@ -361,7 +362,7 @@ TEST_F(Installation, AnotherBuildFindsTheDeviceLibrary) {
   EXPECT_TRUE(example.has("sample_device"));
 }
 
-// Each alone, so that none relies on what another one includes.
+// Each header is compiled alone, so that no header relies on the includes of another one.
 TEST_F(Installation, EveryHeaderCompilesAlone) {
   const TemporaryDirectory work;
   for (const std::string& header : headers()) {

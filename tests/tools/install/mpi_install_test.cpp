@@ -1,4 +1,4 @@
-// docs/mpi.md is true: what it shows installs weir-mpi and builds the example, and both find their libraries.
+// Tests docs/mpi.md: its commands install weir-mpi and build the example, and both programs find their libraries.
 #include <gtest/gtest.h>
 
 #include <chrono>

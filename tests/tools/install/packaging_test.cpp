@@ -1,4 +1,4 @@
-// The parts of the build that configure and package, each run alone by CMake.
+// Tests the parts of the build that configure and package weir. CMake runs each part alone.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 const std::string kCmake = WEIR_SOURCE_DIR "/cmake/";
 
-/// What weir_auto_option makes of `value`, or its message.
+/// Returns the result of weir_auto_option for `value`, or its message.
 std::string read_option(const std::string& value) {
   const TemporaryDirectory work;
   write_file(work / "a.cmake", cat("include(\"", kCmake,
@@ -43,7 +43,7 @@ TEST(AutoOption, RefusesAnythingElse) {
   }
 }
 
-/// The files that cmake/install_unit.cmake installs for `prefix`, in `root` as DESTDIR.
+/// Returns the files that cmake/install_unit.cmake installs for `prefix` with `root` as DESTDIR.
 std::vector<std::string> unit_files(const TemporaryDirectory& root, const std::string& prefix) {
   CommandOptions options;
   options.environment = {cat("DESTDIR=", root.path().string())};
@@ -68,7 +68,7 @@ TEST(InstallUnit, WritesOutsideThePrefixOnlyForUsr) {
                                                                        "home/a/usr/lib/systemd/system/weir@.service"}));
 }
 
-/// The package that cmake/package.cmake makes of nothing but its documents, with the umask 077.
+/// Makes a Debian package with cmake/package.cmake and the umask 077. Returns its path. It has only its documents.
 std::string make_package(const TemporaryDirectory& work, const std::string& daemon) {
   write_file(work / "CMakeLists.txt", cat("cmake_minimum_required(VERSION 3.25)\n"
                                           "project(weir VERSION " WEIR_VERSION " LANGUAGES NONE)\n"
@@ -122,7 +122,7 @@ TEST_F(DebianPackage, SpeaksOfTheServiceOnlyWhereThereIsOne) {
             (std::vector<std::string>{"control", "md5sums", "triggers"}));
 }
 
-/// The sources of weir_library in a checkout below folders that have the names of those it leaves out.
+/// The checkout lies below folders with names that weir_library leaves out inside the checkout.
 TEST(SourceFilters, LookOnlyBelowTheCheckout) {
   const TemporaryDirectory work;
   const std::string checkout = work / "a b/gpu/cuda/tools/without";
@@ -143,7 +143,7 @@ TEST(SourceFilters, LookOnlyBelowTheCheckout) {
   EXPECT_EQ(read_file(checkout + "/sources"), checkout + "/gpu/a.cpp");
 }
 
-// CMake hands flags to a shell as they are.
+// CMake passes flags to a shell unchanged. So a path with a space needs quotes.
 TEST(Presets, QuoteTheCheckoutInFlags) {
   std::size_t quoted = 0;
   const auto presets = nlohmann::json::parse(read_file(WEIR_SOURCE_DIR "/CMakePresets.json"));

@@ -35,7 +35,7 @@ TEST(CommandMessage, FileThatIsNotThere_IsSaidWithARemedyWhereItsNameIsRelative)
     CLI::App app;
     std::string text;
     app.add_subcommand("read")->add_option(option, text);
-    std::vector<std::string> words{named, "read"};  // the last one first, as parse takes them
+    std::vector<std::string> words{named, "read"};  // in reverse order, as parse() expects them
     if (option.starts_with("-")) words.insert(words.begin() + 1, option);
     app.parse(std::move(words));
     return command_message(app, io_error(path, "open", ENOENT));

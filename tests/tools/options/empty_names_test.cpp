@@ -1,4 +1,4 @@
-// What an unset variable leaves of a command line is refused, and nothing is written.
+// Tests command lines in which an unset shell variable left an empty name. They are refused, and nothing is written.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -43,7 +43,7 @@ TEST_F(EmptyNames, Input_ExitsWith2) {
   expect_refused({"compare", "", volume_}, "the argument input is empty; give a name");
 }
 
-// The parser takes the next word for the value.
+// Without this check, the parser would take the next word for the value.
 TEST_F(EmptyNames, ValueBehindAnEqualsSign_ExitsWith2) {
   const auto line = [](const char* name) {
     return cat("--", name, "= has nothing behind it; give a value, or leave it out");

@@ -38,7 +38,8 @@ TEST(ParserWording, ValueOfAnyLengthThatSaysWhatTheParserSays_IsNamedAsItIs) {
       << result.err.substr(0, 200);
 }
 
-// The parser's own words, of which another version may have others, are those that are known.
+// weir rewords the parser's messages. Another version of the parser may word them differently, and this test would
+// fail.
 TEST(ParserWording, EveryWrongValue_IsNamedWithWhatItMustBe) {
   const auto refused = [](const std::vector<std::string>& words) {
     const CommandResult result = run_weir(words);

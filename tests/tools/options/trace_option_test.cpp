@@ -1,4 +1,4 @@
-// --trace from outside: what the file says of a conversion.
+// Tests --trace as a user runs it: the contents of the trace file of a conversion.
 #include "tools/options/trace_option.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,8 @@ struct Span {
 
 using Threads = std::map<int, std::vector<Span>>;
 
-// The events of the file by thread, outer ones before those within. Expects them to be in each other or apart.
+// Returns the file's events by thread, each outer event before its inner ones. Expects any two events of a thread to be
+// nested or apart.
 Threads read_trace(const std::string& path) {
   Threads threads;
   for (const Json& event : Json::parse(read_file(path))) {
@@ -73,7 +74,7 @@ constexpr double kLeaves = 32 * 32 * 5;
 class TraceOption : public ::testing::Test {
  protected:
   TraceOption() { EXPECT_EQ(run_weir({"sample", "noise", "--dims", "256,256,40", "-o", input_}).exit_code, 0); }
-  // Reading ahead and in place.
+  // Checks the trace of a conversion that reads ahead (`direct_io` "on") or in place.
   void expect_whole(const std::string& direct_io) {
     const CommandResult result =
         run_weir({"convert", input_, "-o", directory_ / "o.nvdb", "--overwrite", "--lossless", "--encoding", "float",
@@ -81,7 +82,7 @@ class TraceOption : public ::testing::Test {
     ASSERT_EQ(result.exit_code, 0) << result.err;
     Threads threads = read_trace(trace_);
     const double leaves = kLeaves * 2144;
-    // Once in the survey; in the encode pass again unless the survey has left them in memory.
+    // The survey reads all voxels. The encode pass reads them again unless the survey has left them in memory.
     EXPECT_EQ(bytes_of(threads, "read"), (direct_io == "on" ? 1 : 2) * 4 * kVoxels);
     EXPECT_EQ(bytes_of(threads, "write"), leaves + kLeaves * 64) << "leaves and the survey's rows";
     EXPECT_EQ(bytes_of(threads, "survey pass"), 4 * kVoxels);
@@ -95,7 +96,7 @@ class TraceOption : public ::testing::Test {
       if (thread != 0) inner.merge(names_of(spans));
     }
     EXPECT_EQ(inner, (Names{"read", "survey", "encode", "write"}));
-    // The passes are most of the time there is.
+    // The passes take at least half of the total time.
     const Json timing = Json::parse(result.out)["timing"];
     double passes = 0;
     for (const Span& span : threads[0]) {

@@ -98,7 +98,7 @@ TEST(SummariseSeries, OtherVoxelSizesAndOrigins) {
             a + " has voxels of 1 x 1 x 1 from 0,0,0, " + c + " has voxels of 1 x 1 x 1 from 500,0,0");
 }
 
-// As OpenVDB's tools leave them: the ends in the root are no values.
+// OpenVDB's tools can leave files without statistics. The minimum and maximum in the root are no values then.
 TEST(SummariseSeries, FilesWithoutStatistics) {
   const TemporaryDirectory directory;
   const std::string raw = directory / "v_9x8x7_float32.raw";
@@ -123,7 +123,7 @@ TEST(SummariseSeries, ReadsHeadsAlone) {
   const std::string raw = directory / "v_9x8x7_float32.raw";
   ASSERT_EQ(run_weir({"sample", "gradient", "-o", raw}).exit_code, 0);
   ASSERT_EQ(run_weir({"convert", raw, "--lossless", "-o", directory / "v.nvdb"}).exit_code, 0);
-  // All behind the second page, which ends past the root: nodes and leaves.
+  // Overwrites nodes and leaves: all bytes after the second page, which ends behind the root.
   std::string bytes = read_file(directory / "v.nvdb");
   ASSERT_GT(bytes.size(), 100'000U);
   std::fill(bytes.begin() + 8192, bytes.end(), '\xFF');

@@ -1,5 +1,5 @@
-// One list of wrong options, wrong_options.json, refused by every front end for the same reason in its own words.
-// Python reads the same list: tests/bindings/python/test_options.py.
+// Tests the wrong options of the list wrong_options.json. Every front end refuses them for the same reason, with its
+// own names of the options. tests/bindings/python/test_options.py reads the same list.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ struct WrongOptions {
   Message reason;
 };
 
-/// "{metric farthest} has no ..." with its options told from its text.
+/// Parses a reason like "{metric farthest} has no ...": braces enclose an option and its value.
 Message parse_reason(const std::string& text) {
   Message message;
   for (std::size_t at = 0; at < text.size();) {
@@ -69,7 +69,7 @@ TEST(WrongOptions, ListHasEveryOptionThatCanBeWrong) {
 TEST(WrongOptions, CommandLine) {
   const std::string input = std::string(WEIR_SOURCE_DIR) + "/none_8x8x8_uint8.raw";
   for (const WrongOptions& wrong : wrong_options()) {
-    if (has_wrong_flag(wrong.given)) continue;  // of a flag the parser refuses every text
+    if (has_wrong_flag(wrong.given)) continue;  // the parser refuses any value of a flag
     std::vector<std::string> arguments{"convert", input};
     for (const auto& [key, text] : wrong.given) arguments.push_back("--" + key + "=" + text);
     const CommandResult result = run_weir(arguments);
@@ -98,7 +98,7 @@ TEST(WrongOptions, Configuration) {
   EXPECT_EQ(refused, 52);
 }
 
-/// The members of weir.h that say the same; none where C cannot say it.
+/// Sets the members of `o` that mean the same as `given`. Returns false if C cannot express the options.
 bool set_members(const GivenOptions& given, weir_convert_options& o) {
   for (const auto& [key, text] : given) {
     const double number = std::strtod(text.c_str(), nullptr);

@@ -37,7 +37,7 @@ TEST(PlotCanvas, LinesAreAsWideAsAsked) {
   EXPECT_EQ(image.at(10, 10), kBlack);
   EXPECT_EQ(image.at(10, 8), kWhite);
   EXPECT_EQ(image.at(10, 11), kWhite);
-  EXPECT_EQ(image.at(19, 10), kWhite);  // past the round end
+  EXPECT_EQ(image.at(19, 10), kWhite);  // beyond the line's round end
 }
 
 TEST(PlotCanvas, PolygonsAreFilledWithinTheirOutline) {
@@ -49,7 +49,7 @@ TEST(PlotCanvas, PolygonsAreFilledWithinTheirOutline) {
   EXPECT_EQ(image.at(10, 17), kWhite);
 }
 
-// Dark pixels left and right of the middle of the sheet.
+// Draws a text at the middle of the sheet. Returns the number of dark pixels left and right of the middle.
 std::array<int, 2> dark_halves(TextAnchor anchor) {
   const auto sheet = canvas();
   sheet->text({20, 10}, "mm", 12, kBlack, anchor);
@@ -71,7 +71,7 @@ TEST(PlotCanvas, TextStandsWhereItsAnchorIs) {
   EXPECT_GT(canvas()->text_width("wide", 12), canvas()->text_width("ii", 12));
 }
 
-// A name may hold any bytes, of which cairo takes UTF-8 alone.
+// A name may hold any bytes, but cairo accepts only UTF-8.
 TEST(PlotCanvas, TextThatIsNoUtf8_IsDrawnWithQuestionMarks) {
   const auto drawn = [](std::string_view text) {
     const auto sheet = canvas();

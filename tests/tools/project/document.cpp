@@ -41,7 +41,7 @@ class Parser {
     return static_cast<bool>(std::getline(stream_, line_));
   }
 
-  // "<!-- NAME: TEXT -->", over several lines or in one.
+  // Reads a mark "<!-- NAME: TEXT -->" of one or more lines.
   void mark() {
     const int first = number_;
     std::string text = line_.substr(5);
@@ -100,7 +100,7 @@ class Parser {
   std::istringstream stream_;
   std::string line_;
   int number_ = 0;
-  CommandBlock block_;  ///< marks of the block to come
+  CommandBlock block_;  ///< marks of the next block
   bool marked_ = false;
   bool behind_failure_ = false;
   Document document_;

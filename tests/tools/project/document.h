@@ -1,8 +1,8 @@
-// The commands that a document shows, as a reader would run them one after the other, and the document's links.
+// Parses a document: the commands that it shows, in the order in which a reader runs them, and its links.
 //
 //   ```sh                 a block of commands, run by bash in an empty folder that all blocks of the document share
-//   <!-- before: ... -->  ahead of a block: hidden commands that make what the block needs
-//   <!-- fails: N -->     the block ends with exit code N; a block ```text right behind the block is its stderr
+//   <!-- before: ... -->  before a block: hidden commands that make the block's inputs
+//   <!-- fails: N -->     the block ends with exit code N; a ```text block directly after it is its stderr
 //   <!-- not run: WHY --> nobody runs the block
 #pragma once
 

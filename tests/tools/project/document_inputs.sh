@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# What the commands in README.md and docs/ read, made in the current folder; see document.h.
+# Makes the input files of the commands in README.md and docs/, in the current folder; see document.h.
 set -euo pipefail
 
 weir sample cloud --dims 256,256,256 -o density_256x256x256_float32.raw --log-level error
-python=/usr/bin/python3 # Debian's, which h5py and netCDF4 are for
+python=/usr/bin/python3 # Debian's Python, for which h5py and netCDF4 are installed
 "$python" - <<'END'
 import h5py, netCDF4, numpy
 

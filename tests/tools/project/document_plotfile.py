@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes small plotfiles of AMReX, with two components on two levels, at the paths that are given."""
+"""Writes small AMReX plotfiles with two components on two levels to the given paths."""
 
 import array
 import itertools

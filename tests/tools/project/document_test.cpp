@@ -71,7 +71,7 @@ TEST(ParseDocument, UnknownOrMisplacedMarksAreErrors) {
   EXPECT_EQ(refusal("<!-- not run: -->\n```sh\n```\n"), "line 1: \"not run:\" is no mark: NAME: TEXT");
 }
 
-/// What is shown to users, relative to the source tree.
+/// Returns the paths of the documents for users, relative to the source tree.
 std::vector<std::filesystem::path> documents() {
   std::vector<std::filesystem::path> result{"README.md"};
   for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(WEIR_SOURCE_DIR) / "docs")) {
@@ -98,7 +98,7 @@ TEST_P(Documentation, LinksPointToExistingFiles) {
   }
 }
 
-/// The cells of a table's row: what its bars, but for escaped ones, divide.
+/// Returns the number of cells in a row of a table. Escaped bars do not separate cells.
 std::size_t cells(const std::string& row) {
   std::size_t bars = 0;
   for (std::size_t i = 0; i < row.size(); ++i) bars += row[i] == '|' && (i == 0 || row[i - 1] != '\\') ? 1 : 0;
@@ -153,7 +153,7 @@ TEST(FormatDocument, LinksPointToExistingFiles) {
   for (const std::string& link : links) EXPECT_TRUE(std::filesystem::exists(format / link)) << link;
 }
 
-// A page that nothing leads to is not read.
+// Nobody would read a page without a link to it.
 TEST(DocumentationIndex, ReadmeLinksToEveryPage) {
   const auto links = parse_document(read_file(std::filesystem::path(WEIR_SOURCE_DIR) / "README.md")).links;
   for (const std::filesystem::path& page : documents()) {

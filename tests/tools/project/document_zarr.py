@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Writes in the current folder what docs/zarr.md reads: run.zarr, version 3, two fields of two times; run.zarr.zip, the same
-in a zip file; image.ome.zarr, version 2, an image of two scales."""
+"""Writes the inputs of docs/zarr.md to the current folder: run.zarr (version 3, two fields at two times),
+run.zarr.zip (the same in a zip file) and image.ome.zarr (version 2, an image of two scales)."""
 
 import array
 import gzip

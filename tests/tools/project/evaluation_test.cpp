@@ -1,4 +1,5 @@
-// bench/evaluate.sh --quick: the evaluation runs, goes on where it was, keeps its promises, and reports them.
+// Tests bench/evaluate.sh --quick: the evaluation runs, continues after an interruption, keeps weir's promises, and
+// reports its figures.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,13 +28,13 @@ class Evaluation : public testing::Test {
     if (kSanitized) GTEST_SKIP() << "hundreds of conversions, which other tests run sanitized";
   }
 
-  // In the test's directory.
+  // Runs the evaluation in the test's directory.
   CommandResult evaluate(std::vector<std::string> options) {
     std::vector<std::string> command{kPython,  "-B",         std::string(WEIR_SOURCE_DIR) + "/bench/evaluate",
                                      "--weir", WEIR_COMMAND, directory_.path().string()};
     command.insert(command.end(), options.begin(), options.end());
     CommandOptions run;
-    run.timeout = std::chrono::minutes(5);  // of a busy machine
+    run.timeout = std::chrono::minutes(5);  // for a busy machine
     return run_command(command, run);
   }
 
@@ -64,7 +65,7 @@ TEST_F(Evaluation, QuickRun_WritesAllFiguresAndTheReport) {
   ASSERT_EQ(all["lossless"].size(), 1U);
   EXPECT_LT(all["lossless"][0]["packed_bytes"], all["lossless"][0]["auto_bytes"]);
   EXPECT_GE(all["derived"].size(),
-            4 * 2 * 1U);  // volumes, shares, methods: leaves fit into neither, ZFP may be missing
+            4 * 2 * 1U);  // volumes, shares, methods; leaves fit into no share, ZFP may be missing
   for (const Json& row : all["derived"]) {
     if (row["gradient_rms_certified"].is_null()) continue;
     EXPECT_NEAR(row["gradient_rms_certified"].get<double>(), row["gradient_rms"].get<double>(),
@@ -72,7 +73,7 @@ TEST_F(Evaluation, QuickRun_WritesAllFiguresAndTheReport) {
         << row;
   }
   EXPECT_EQ(all["metrics"].size(), 2 * 2 * (4 * 2 + 1U));  // volumes, rates; metrics, fills; packed
-  EXPECT_GE(all["speed"].size(), 3 * 2U);                  // encodings, caches; more where there are threads to compare
+  EXPECT_GE(all["speed"].size(), 3 * 2U);  // encodings, caches; more rows if there are threads to compare
   const std::size_t places = std::filesystem::exists("/dev/shm") ? 2 : 1;
   EXPECT_EQ(all["two_passes"].size(), places * 5U);  // cases
   for (const char* stage : {"read", "survey", "encode", "select", "commit"}) {
@@ -81,12 +82,12 @@ TEST_F(Evaluation, QuickRun_WritesAllFiguresAndTheReport) {
   ASSERT_EQ(all["headline"].size(), 2U);
   for (const Json& row : all["headline"]) EXPECT_TRUE(row["same_bytes"]) << row;
 
-  ASSERT_GE(all["pictures"].size(), 1 + 3 * 2U);  // another seed; methods, rates; ZFP's where its command is installed
+  ASSERT_GE(all["pictures"].size(), 1 + 3 * 2U);  // another seed; methods, rates; ZFP only if installed
   for (const Json& row : all["pictures"]) {
     const bool same_seed = !row["rate"].is_null();
     if (row["lossless"] && same_seed) {
       EXPECT_EQ(row["flip_mean"], 0) << row;
-    } else if (row["method"] != "packed") {  // whose error may lie far below what 8 bits show
+    } else if (row["method"] != "packed") {  // an error of packed may be invisible in 8 bits
       EXPECT_GT(row["flip_mean"], 0) << row;
     }
   }
@@ -153,7 +154,7 @@ TEST_F(Evaluation, Interrupted_EndsAndKeepsFinishedMeasurements) {
   EXPECT_EQ(list_directory(state), std::vector<std::string>{first});
 }
 
-// In the place of sz3: rounds to the bound, and deflates.
+// A script in place of sz3. It rounds values within the error bound and deflates them.
 constexpr const char* kPretendedSz3 = R"(
 import array, sys, zlib
 given = sys.argv[1:]
@@ -189,7 +190,7 @@ TEST_F(Evaluation, APeerIsMeasuredWhereItIsFoundAndKeptWhereNot) {
   Json theirs = Json::array();
   const Json first = figures();
   for (const Json& row : first["peers"]) {
-    if (row["method"] == "zfp_rate" && !row["share"].is_null()) {  // as many whole bits for each block of 4^3 as fit
+    if (row["method"] == "zfp_rate" && !row["share"].is_null()) {  // the most whole bits per 4^3 block
       const double asked = row["share"].get<double>() / 100 * 4 * 48 * 48 * 48;
       EXPECT_LE(row["bytes"], asked) << row;
       EXPECT_GT(row["bytes"], asked - (12 * 12 * 12 / 8 + 16)) << row;
@@ -206,7 +207,7 @@ TEST_F(Evaluation, APeerIsMeasuredWhereItIsFoundAndKeptWhereNot) {
   EXPECT_NE(report().find("| auto | SZ3, bytes for a PSNR, in "), std::string::npos) << report();
   EXPECT_NE(report().find("SZ3 9.9.9 of 0123456789ab"), std::string::npos);
 
-  // As --publish leaves them, for a directory that has none.
+  // Keeps the peers' records like --publish, and then removes the records of SZ3 from the directory.
   const std::string source = WEIR_SOURCE_DIR;
   const CommandResult keep =
       run_command({kPython, "-B", "-c",
@@ -234,7 +235,7 @@ TEST_F(Evaluation, APeerIsMeasuredWhereItIsFoundAndKeptWhereNot) {
   for (const Json& row : second["peers"]) {
     if (row["method"] == "sz3") again.push_back(row);
   }
-  EXPECT_EQ(again, theirs);  // without seconds, which are not comparable with those of weir in another run
+  EXPECT_EQ(again, theirs);  // without the speeds, because the seconds of another run are not comparable with weir's
 }
 
 TEST_F(Evaluation, UnknownExperiment_IsRefusedWithTheKnownNames) {

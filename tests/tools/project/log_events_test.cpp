@@ -1,4 +1,4 @@
-// docs/operations.md names every event that the service logs.
+// Tests that docs/operations.md names every event that the service logs.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -30,7 +30,7 @@ TEST(LogEvents, AreAllDocumented) {
   std::set<std::string> logged;
   for (const auto& file : std::filesystem::recursive_directory_iterator(WEIR_SOURCE_DIR "/daemon")) {
     if (file.path().extension() != ".cpp") continue;
-    // An event may depend on something: `log_.info(gone ? "source-gone" : "source-changed", {`.
+    // A condition may choose the event: `log_.info(gone ? "source-gone" : "source-changed", {`.
     for (const std::string& event :
          matches(read_file(file.path()), std::regex("log_\\.(?:debug|info|warn|error)\\(([^{]*)"))) {
       logged.merge(matches(event, std::regex("\"([a-z-]+)\"")));

@@ -1,4 +1,4 @@
-// tools/structure.py: every fault that it looks for is found, and where.
+// Tests that tools/structure.py finds every kind of fault that it looks for, and names its place.
 #include <gtest/gtest.h>
 
 #include <filesystem>

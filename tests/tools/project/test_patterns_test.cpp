@@ -1,5 +1,5 @@
-// CMakePresets.json and tests/left_out/ say by patterns which tests a build runs or leaves out. One that fits no test
-// any more does neither.
+// Tests the patterns in CMakePresets.json and tests/left_out/, which select the tests that a build runs or leaves out.
+// Each pattern must match a test, because otherwise it has no effect.
 #include <fnmatch.h>
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@
 namespace weir::test_patterns_test {
 namespace {
 
-/// The first two arguments of each call of the macro `name` at the begin of a line.
+/// Returns the first two arguments of each call of the macro `name` at the beginning of a line.
 std::vector<std::pair<std::string, std::string>> calls(const std::string& source, const std::string& name) {
   std::vector<std::pair<std::string, std::string>> found;
   const std::string begin = "\n" + name + "(";
@@ -29,7 +29,8 @@ std::vector<std::pair<std::string, std::string>> calls(const std::string& source
   return found;
 }
 
-/// "Suite.Name", or "Prefix/Suite.Name" of each set of parameters, whose own names are left out.
+/// Returns the tests as "Suite.Name", or as "Prefix/Suite.Name" for each set of parameters, without the parameters'
+/// names.
 std::vector<std::string> test_names() {
   std::vector<std::string> names;
   for (const auto& file : std::filesystem::recursive_directory_iterator(WEIR_SOURCE_DIR "/tests")) {
@@ -48,7 +49,8 @@ std::vector<std::string> test_names() {
   return names;
 }
 
-/// Those of a preset's variable, which names them or, as @FILE, a file with one on each line.
+/// Returns the patterns of a preset's variable. It lists them, separated by colons, or names a file with a pattern per
+/// line as @FILE.
 std::vector<std::string> patterns_of(const std::string& variable) {
   const std::string file = "@${sourceDir}";
   if (!variable.starts_with(file)) return split(variable, ':');

@@ -101,7 +101,7 @@ TEST_F(KilledOverwriteTest, Verify_SaysWhichSidecarIsTheVolumesOwn) {
   EXPECT_EQ(mended.exit_code, 0) << mended.err;
 }
 
-// The other sidecar is not the volume's own either, so nobody knows whose it is.
+// The other sidecar does not describe the volume either, so verify cannot know to which volume it belongs.
 TEST_F(KilledOverwriteTest, Verify_OfADamagedVolume_NamesNoOtherSidecar) {
   std::string damaged = killed_.old_volume;
   damaged[damaged.size() / 2] = static_cast<char>(damaged[damaged.size() / 2] ^ 1);

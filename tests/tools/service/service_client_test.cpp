@@ -274,7 +274,7 @@ TEST_F(ServiceCommands, FindTheServiceOfAConfiguration) {
             "weir: the configuration listens on any free port and has no port_file; give --address\n");
 }
 
-// As if the service hung with its file server.
+// The server accepts the connection but never answers, like a service that hangs with its file server.
 TEST_F(ServiceCommands, InterruptBeforeTheAnswer_EndsTheCommand) {
   boost::asio::io_context io;
   boost::asio::ip::tcp::acceptor silent(io, {boost::asio::ip::make_address("127.0.0.1"), 0});

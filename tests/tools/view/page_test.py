@@ -1,5 +1,5 @@
-"""page_test.py CASE DIRECTORY WEIR ARGUMENT...: one test of the page of `WEIR view ARGUMENT...` in headless Chromium.
-Screenshots go to WEIR_PAGE_SCREENSHOTS, where that is set. Exits with 0 where all holds."""
+"""page_test.py CASE DIRECTORY WEIR ARGUMENT...: runs one test of the page of `WEIR view ARGUMENT...` in headless
+Chromium. Writes screenshots to WEIR_PAGE_SCREENSHOTS if that is set. Exits with 0 if the test passes."""
 
 import base64
 import json
@@ -42,7 +42,7 @@ class Server:
 
 
 def watch_frames(browser):
-    """Keeps the headers of all pictures that are drawn in window.drawn."""
+    """Collects in window.drawn the headers of all pictures that the page draws."""
     browser.script("""
         window.drawn = [];
         document.querySelector('#canvas').addEventListener('drawn', (event) => window.drawn.push(event.detail))""")
@@ -67,7 +67,7 @@ def canvas_bytes(browser):
 
 
 def pixels(browser):
-    """The canvas, a quarter as wide, as [r, g, b] of each pixel."""
+    """Returns the canvas at a quarter of its width, as [r, g, b] of each pixel."""
     return browser.script("""
         const canvas = document.querySelector('#canvas');
         return [...canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data]""")
@@ -97,14 +97,14 @@ def drag(browser, selector, dx, dy, steps=8):
 
 
 def state(browser):
-    """The URL's parameters."""
+    """Returns the URL's parameters."""
     browser.script("return new Promise(done => setTimeout(done, 500))")
     text = browser.script("return location.hash.slice(1)")
     return dict(part.split("=") for part in text.split("&") if part)
 
 
 def scene_of(browser):
-    """The scene that the page saves."""
+    """Returns the scene that the page saves."""
     return browser.script("""
         return new Promise((done) => {
             const made = URL.createObjectURL;
@@ -147,7 +147,7 @@ def turns_and_refines(browser, url):
     same = canvas_bytes(browser)
     equal(len(same) > 1000 and same == seen, True)
     equal(browser.complaints(), [])
-    # Of a screen with several hundred frames a second the server is asked for about as many views as of one with 60.
+    # A screen with several hundred frames per second asks the server for about as many views as a screen with 60.
     views = browser.script("""
         window.requestAnimationFrame = (draw) => setTimeout(() => draw(performance.now()), 1);
         let views = 0;
@@ -223,7 +223,7 @@ def edits_the_transfer_function(browser, url):
     assert "o" in state(browser), state(browser)
     converged(browser)
     assert canvas_bytes(browser) != before, "the picture is the same"
-    # One more point by a click, away again by Delete; then undo of all.
+    # A click adds a point, Delete removes the point, then everything is undone.
     drag(browser, ".curve-field", -20, -30, 2)
     equal(browser.script("return document.querySelectorAll('.handle').length"), points + 1)
     browser.press("DELETE")
@@ -256,7 +256,7 @@ def shows_the_opacity_of_the_range(browser, url):
     browser.script("document.querySelector('#convert-panel').open = true")
     saved = scene_of(browser)
     assert "range = [-2, 1]\nopacity = [[0, 1], " in saved, saved
-    # The picture is that of the curve which is shown.
+    # The picture uses the curve that is shown.
     by_default = pixels(browser)
     curve = browser.script("""
         return import('./page/panels.js').then(({curve_of}) =>
@@ -287,20 +287,20 @@ def takes_extreme_values(browser, url):
     equal(state(browser)["el"], "-89.9")
     converged(browser)
     equal(browser.visible("#banner"), False)
-    # The address has all digits of places and values.
+    # The URL keeps all digits of positions and values.
     exact = {"m": "iso", "at": "1000000000.125,-2,3e-7", "r": "0.123456789,16777217", "iso": "1.23456789012"}
     browser.script("location.hash = arguments[0]", "&".join(f"{key}={value}" for key, value in exact.items()))
     equal(state(browser), exact)
 
 
 def touch(browser, kind, *points):
-    """A touch of the screen, as a browser gets it of a finger at each (x, y) of the window."""
+    """Sends the browser a touch of the screen with a finger at each (x, y) of the window."""
     browser.devtools("Input.dispatchTouchEvent", type=kind,
                      touchPoints=[{"x": x, "y": y, "id": i} for i, (x, y) in enumerate(points)])
 
 
 def slide(browser, *fingers):
-    """Each finger goes from its first point to its second one."""
+    """Moves each finger from its first point to its second point."""
     at = lambda share: [(a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share) for a, b in fingers]
     touch(browser, "touchStart", *at(0))
     for i in range(1, 6):
@@ -336,7 +336,7 @@ def works_by_touch(browser, url):
     touch(browser, "touchEnd")
     text = browser.wait("the value at a tap", lambda: browser.text("#value"))
     assert " at " in text, text
-    # A point of the opacity.
+    # Drags a point of the opacity curve.
     handle = browser.script("""
         document.querySelector('.handle:last-child').scrollIntoView({block: 'center'});
         const box = document.querySelector('.handle:last-child').getBoundingClientRect();
@@ -487,7 +487,7 @@ def shows_steps_that_come(browser, url):
     browser.wait("that it is gone", lambda: browser.text("#step-name") == "no longer there: s_4.nvdb")
     browser.press("[")
     equal(browser.text("#step-name"), "3 of 3: s_3.nvdb")
-    # Where one step is left, nothing plays, and it is refined.
+    # If only one step is left, playing stops and the step's picture is refined.
     browser.press("SPACE")
     browser.wait("it plays", lambda: browser.text("#play") == "Stop")
     for name in ("s_1.nvdb", "s_3.nvdb"):
@@ -629,7 +629,7 @@ def converts(browser, url):
 
 
 def asks_again(browser, url):
-    """Messages of a server that is made up: the page's questions go to window.asked, and window.tell answers."""
+    """Replaces the server: window.asked collects the page's requests, and window.tell sends answers."""
     loaded(browser, url)
     browser.script("""
         window.asked = [];
@@ -797,7 +797,7 @@ def says_when_the_server_is_gone(browser, url):
 
 
 def of_process(pid, name):
-    """The text of a file of /proc; empty where the process is gone."""
+    """Returns the text of a file in /proc; empty if the process has ended."""
     try:
         return pathlib.Path(f"/proc/{pid}/{name}").read_text(encoding="utf-8", errors="replace")
     except OSError:
@@ -810,20 +810,20 @@ def descendants(pid):
 
 
 def processes_of(browser):
-    """All of its own. It is no child of its driver, but known by its profile."""
+    """Returns the browser's processes. The browser is not a child of its driver, so its profile identifies it."""
     running = [int(entry.name) for entry in pathlib.Path("/proc").iterdir() if entry.name.isdigit()]
     own = [pid for pid in running if browser.profile.name in of_process(pid, "cmdline")]
     return {*own, *(one for pid in own for one in descendants(pid))}
 
 
 def kill(browser):
-    """Ends a browser as a crash does: nothing of it says goodbye."""
+    """Kills a browser as a crash would: no connection is closed properly."""
     own = processes_of(browser)
     assert own, "no process has this profile"
     for pid in own:
         try:
             os.kill(pid, signal.SIGKILL)
-        except ProcessLookupError:  # gone with its parent
+        except ProcessLookupError:  # the process ended with its parent
             pass
     browser.driver.kill()
     browser.driver.wait()

@@ -161,7 +161,8 @@ TEST_F(RenderLoopTest, PassThatMadeRoom_GoesOnWithWhatWasKept) {
   EXPECT_EQ(kept_, (std::vector<std::uint64_t>{0, 1, 2, 3}));
 }
 
-// As on a device, nothing can be kept: the turns grow until a pass ends within one turn.
+// The back end keeps nothing of an interrupted pass, like a device. So the turns grow until a pass ends within one
+// turn.
 TEST_F(RenderLoopTest, PassOfWhichNothingIsKept_EndsAllTheSame) {
   backend_.slow = [](const SampleOptions& sampling) {
     const auto end = std::chrono::steady_clock::now() + 3 * RenderLoop::kSlice / 2;

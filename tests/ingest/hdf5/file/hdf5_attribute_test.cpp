@@ -1,4 +1,4 @@
-// Attributes that the library cannot read: an error, and never values or places as if they were not there.
+// Attributes that the library cannot read are an error. weir never treats them as absent when it maps or places values.
 #include "ingest/hdf5/file/hdf5_attribute.h"
 
 #include "format/base/text.h"
@@ -15,7 +15,7 @@ class Hdf5Attribute : public ::testing::Test {
   void SetUp() override {
     if (!python_has("h5py, numpy")) GTEST_SKIP() << "python3 with h5py is missing";
   }
-  /// What opening, and listing, say of the file.
+  /// Returns the message with which open_source() refuses the file. Checks that list_hdf5() gives the same message.
   std::string refused(const std::string& file) {
     std::string opened = message_of_error(ErrorKind::input, [&] { open_source(scratch_.path(file), {}); });
     EXPECT_EQ(message_of_error(ErrorKind::input, [&] { list_hdf5(scratch_.path(file), {}); }), opened);
@@ -111,7 +111,7 @@ with h5py.File("a.h5", "w") as f:
   EXPECT_EQ(open_source(scratch_.path("a.h5"), options)->info().mapping.missing.size(), 2U);
 }
 
-// Of an attribute that gives a place or a name, as many values as that are of another meaning.
+// A `spacing` of 5000 numbers is no spacing, and a `description` of 2 MiB is no name: weir ignores both attributes.
 TEST_F(Hdf5Attribute, LongAttributeOfAnotherMeaning_IsPassedOver) {
   write_by_h5py(scratch_, R"(
 with h5py.File("a.h5", "w", libver="latest") as f:
@@ -144,7 +144,7 @@ with h5py.File("a.h5", "w") as f:
           "hold no data is unknown; correct or remove it");
 }
 
-// The library takes five times their bytes to read them.
+// To read a long text, the library takes five times its bytes.
 TEST_F(Hdf5Attribute, MemoryOfLongTexts_IsNotTaken) {
   write_by_h5py(scratch_, R"(
 with h5py.File("a.h5", "w") as f:
@@ -159,7 +159,7 @@ with h5py.File("a.h5", "w") as f:
             "");
 }
 
-// NAME tells whether a dataset is the bare dimension of a netCDF file: it is looked for before all else.
+// NAME tells whether a dataset is a NetCDF dimension without coordinates. weir looks for NAME before other attributes.
 TEST_F(Hdf5Attribute, MemoryOfALongName_IsNotTaken) {
   write_by_h5py(scratch_, R"(
 with h5py.File("a.h5", "w", libver="latest") as f:

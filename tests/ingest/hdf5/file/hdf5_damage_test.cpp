@@ -1,5 +1,5 @@
-// HDF5 files in which something besides the values of a volume cannot be read: what depends on it is an error, what is
-// only listed is said.
+// HDF5 files with a part that cannot be read, other than the values of a volume. A volume that depends on this part is
+// refused. Objects that are only listed get a message.
 #include <algorithm>
 
 #include "format/base/text.h"
@@ -9,7 +9,7 @@
 namespace weir::hdf5_damage_test {
 namespace {
 
-// In scripts: writes `bytes` at an address of a closed file.
+// For scripts: patch() writes `bytes` at the address `at` of the closed file `name`.
 constexpr const char* kPatch = R"(
 def patch(name, at, bytes):
     with open(name, "r+b") as f: f.seek(at); f.write(bytes)
@@ -152,8 +152,7 @@ patch("a.h5", at, b"????")
       << message;
 }
 
-// The number of chunks that the index has says that all are there, and one has a place that no chunk of the dataset
-// has.
+// The index has as many chunks as the dataset needs, but gives one of them a place that no chunk of the dataset has.
 TEST_F(Hdf5Damage, ChunkThatTheIndexNamesElsewhere_IsAnErrorAndNoFillValue) {
   write_by_h5py(scratch_, R"(
 import struct
@@ -170,7 +169,7 @@ open("a.h5", "wb").write(b)
                          "file is damaged");
 }
 
-// The library reads as many bytes as the index says, into memory of a chunk's size.
+// The library would read as many bytes as the index says into memory of a chunk's size.
 TEST_F(Hdf5Damage, ChunkOfAnotherLengthInTheIndex_IsAnErrorAndIsNotRead) {
   for (const std::string bytes : {"0", "1024", "4096", "2000000"}) {
     write_by_h5py(scratch_, cat(R"(

@@ -33,8 +33,8 @@ with h5py.File("a.h5", "w") as f: f["v"] = values("f4")
                                  std::to_string(whole) + "; copy it again, or wait until it is written");
 }
 
-// Contiguous and chunked values, old and new metadata: whatever is left of the file, either the values are
-// whole or one line says why not.
+// The values are contiguous and chunked, the metadata old and new. However much of the file is left, reading gives all
+// values or an error of one line.
 TEST_F(Hdf5File, CutAtAnyByteIsAnErrorInOneLine) {
   write_by_h5py(scratch_, R"(
 v = values("u1", (2, 3, 4)); expect("v", v)
@@ -46,7 +46,7 @@ for name, how in [("old", {}), ("new", {"libver": "latest"})]:
   const std::vector<float> whole = expected(scratch_, "v");
   for (const char* name : {"old.h5", "new.h5"}) {
     const std::string path = scratch_.path(name);
-    // From the end on: files that grow again would wait for the device each time.
+    // The sizes fall, because a file that grows again would wait for the device each time.
     for (auto size = std::filesystem::file_size(path) - 1; size > 0; --size) {
       std::filesystem::resize_file(path, size);
       for (const char* dataset : {"plain", "packed"}) {
@@ -62,7 +62,7 @@ for name, how in [("old", {}), ("new", {"libver": "latest"})]:
   }
 }
 
-// The same with the end that the superblock tells moved along, as a writer of before 1.10 that died leaves it.
+// The files are cut, and the superblock states the new end, as a writer of before HDF5 1.10 that died leaves it.
 TEST_F(Hdf5File, ValuesBeyondTheEndAreAnError) {
   write_by_h5py(scratch_, R"(
 v = values("f4", (16, 16, 16))
@@ -109,7 +109,7 @@ v = values("f4", (4, 6, 8)); expect("v", v)
 with h5py.File("a.h5", "w", libver="latest") as f:
     f.create_dataset("v", data=v, chunks=(2, 3, 4), maxshape=(None, 6, 8), compression="gzip")
 )");
-  // The writer is a process of its own: in one process the library shares the open file.
+  // The writer is a process of its own, because within one process the library shares the open file.
   const std::string script = std::string(kPrelude) + R"(
 f = h5py.File("a.h5", "r+", libver="latest")
 if sys.argv[2] == "swmr": f.swmr_mode = True
@@ -123,7 +123,7 @@ sys.stdin.readline()
     const std::string start = kPython + " -c '" + script + "' '" + scratch_.path("") + "' " +
                               (readers ? "swmr" : "alone") + " < '" + hold + "' > '" + ready + "' &";
     ASSERT_EQ(std::system(start.c_str()), 0);
-    std::ofstream writer(hold);  // opens when the python does; it ends when this closes
+    std::ofstream writer(hold);  // opens once Python reads the pipe; Python ends when this closes
     for (int i = 0; i < 500 && (!std::filesystem::exists(ready) || std::filesystem::is_empty(ready)); ++i) {
       ASSERT_EQ(std::system("sleep 0.02"), 0);
     }
@@ -155,7 +155,7 @@ os._exit(0)
                                  "writes it or died at it; wait until it is closed, or clear the mark with h5clear -s");
 }
 
-// Extents that the file only claims: no allocation, no overflow, no hang.
+// Extents that the file only claims cause no allocation, no overflow and no hang.
 TEST_F(Hdf5File, HostileExtentsAreAnError) {
   write_by_h5py(scratch_, R"(
 import struct
@@ -184,7 +184,7 @@ claim("deep packed.h5", (2**62, 11, 13, 17), 4, chunks=(1, 4, 4, 4))
                     .starts_with(scratch_.path(name) + ": /v: "))
         << name;
   }
-  // Chunks that are not there are not made: a volume of mostly unwritten chunks is nothing wrong.
+  // Unwritten chunks are not allocated, so a volume of mostly unwritten chunks can be read.
   std::vector<float> values(8);
   open_source(scratch_.path("large packed.h5"), {})->read({{990, 990, 990}, {992, 992, 992}}, values);
   EXPECT_EQ(values, std::vector<float>(8, 0.0F));

@@ -1,3 +1,4 @@
+// Tests the limit on nested groups.
 #include "ingest/hdf5/file/hdf5_walk.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +14,7 @@
 namespace weir::hdf5_walk_test {
 namespace {
 
-// A dataset of 2^3 floats in `depth` groups within each other; its name.
+// Writes a dataset of 2^3 floats within `depth` nested groups. Returns the name of the dataset.
 std::string write_nested(const std::string& path, int depth) {
   const Hdf5Lock lock;
   const Hdf5Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT));

@@ -1,3 +1,4 @@
+// Tests the fletcher32 checksum.
 #include "ingest/hdf5/filters/undo_filters.h"
 
 #include <cstdint>
@@ -17,19 +18,19 @@ std::vector<std::byte> bytes_of(std::initializer_list<int> values) {
 TEST(Fletcher32, MatchesSumsComputedByHand) {
   EXPECT_EQ(fletcher32({}), 0U);
   EXPECT_EQ(fletcher32(bytes_of({0, 0, 0, 0})), 0U);
-  // Words 0x0102 and 0x0304: sums 0x0406 and 0x0102 + 0x0406.
+  // The words are 0x0102 and 0x0304, the sums 0x0406 and 0x0102 + 0x0406.
   EXPECT_EQ(fletcher32(bytes_of({1, 2, 3, 4})), 0x05080406U);
-  // An odd byte is the upper half of its word.
+  // An odd last byte is the upper half of a word.
   EXPECT_EQ(fletcher32(bytes_of({1, 2, 3})), 0x05040402U);
-  // Ones' complement: a sum of 65535 stays, it is not 0.
+  // Sums are in ones' complement: 65535 stays and does not become 0.
   EXPECT_EQ(fletcher32(bytes_of({0xFF, 0xFF})), 0xFFFFFFFFU);
   EXPECT_EQ(fletcher32(bytes_of({0xFF, 0xFF, 0, 1})), 0x00010001U);
 }
 
 TEST(Fletcher32, LongInputsDoNotOverflow) {
-  // n words of 65535 are 0 in ones' complement, but not the zero of no words.
+  // Ones' complement has two zeros: n words of 65535 have the sum 65535, no words have the sum 0.
   EXPECT_EQ(fletcher32(std::vector<std::byte>(std::size_t{1} << 20U, std::byte{0xFF})), 0xFFFFFFFFU);
-  // n words of 1: sums n and n (n + 1) / 2 modulo 65535.
+  // The sums of n words of 1 are n and n (n + 1) / 2, modulo 65535.
   constexpr std::uint64_t kWords = 1'000'003;
   std::vector<std::byte> ones(2 * kWords);
   for (std::size_t i = 1; i < ones.size(); i += 2) ones[i] = std::byte{1};

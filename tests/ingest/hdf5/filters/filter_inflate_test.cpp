@@ -1,3 +1,4 @@
+// Tests ChunkInflater with good, damaged and wrongly sized deflate streams.
 #include "ingest/chunks/chunk_inflater.h"
 
 #include <vector>
@@ -53,7 +54,7 @@ std::string message_for(std::span<const std::byte> stream, std::size_t size) {
 }
 
 TEST(ChunkInflater, RefusesStreamsOfTheWrongLength) {
-  // 64 MiB of zeros in 64 KiB: a bomb where 4096 bytes are right.
+  // A bomb: 64 KiB inflate to 64 MiB of zeros, but the chunk should have 4096 bytes.
   const std::vector<std::byte> bomb = deflated(std::vector<std::byte>(std::size_t{64} << 20U));
   EXPECT_LT(bomb.size(), 70'000U);
   EXPECT_EQ(message_for(bomb, 4096), "its deflate stream holds more than 4096 bytes");
@@ -70,7 +71,7 @@ TEST(ChunkInflater, RefusesDamagedStreams) {
   EXPECT_EQ(message_for(stream, 1000), "its deflate stream is damaged after 1000 of 1000 bytes (incorrect data check)");
   stream.front() = std::byte{0x79};
   EXPECT_EQ(message_for(stream, 1000), "its deflate stream is damaged after 0 of 1000 bytes (incorrect header check)");
-  // Cut anywhere: never accepted, never beyond the end.
+  // A stream that is cut at any byte is refused, and nothing is written beyond the end.
   stream = deflated(expected);
   for (std::size_t size = 0; size < stream.size(); ++size) {
     EXPECT_NE(message_for(std::span(stream).first(size), 1000), "") << size;

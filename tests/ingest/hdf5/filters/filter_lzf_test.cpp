@@ -1,3 +1,4 @@
+// Tests unpack_lzf() with good and damaged streams.
 #include "ingest/hdf5/filters/undo_filters.h"
 
 #include <string>
@@ -18,13 +19,13 @@ TEST(FilterLzf, LiteralsAndRepeats) {
   EXPECT_EQ(unpacked("", 0), "");
   EXPECT_EQ(unpacked({"\x02xyz", 4}, 3), "xyz");
   EXPECT_EQ(unpacked({"\x02xyz\x20\x02", 6}, 6), "xyzxyz");
-  // A repeat that reaches into itself, of the longest length there is.
+  // A repeat of the greatest length, 264 bytes, that overlaps its own output.
   EXPECT_EQ(unpacked({"\x00"
                       "a\xE0\xFF\x00",
                       5},
                      1 + 264),
             std::string(265, 'a'));
-  // As far back as can be: 8192 bytes.
+  // A repeat from the greatest distance, 8192 bytes back.
   std::string far;
   std::string plain;
   for (int i = 0; i < 256; ++i) {

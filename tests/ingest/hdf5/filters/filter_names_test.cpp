@@ -1,3 +1,4 @@
+// Tests the names of filters, and the remedies for filters without a plugin.
 #include "ingest/hdf5/filters/filter_names.h"
 
 #include <gtest/gtest.h>

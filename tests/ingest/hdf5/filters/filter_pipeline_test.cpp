@@ -1,3 +1,4 @@
+// Tests which pipelines of filters weir undoes itself, and how it undoes them.
 #include "ingest/hdf5/filters/filter_pipeline.h"
 
 #include <functional>
@@ -19,11 +20,11 @@ std::optional<FilterPipeline> pipeline_after(const std::function<void(hid_t)>& s
 }
 
 TEST(FilterPipeline, SupportedFiltersAreListedInOrder) {
-  const LeaksOfLibraries of_plugins;  // the library looks for the filter
+  const LeaksOfLibraries of_plugins;  // the library searches its plugins for the filter
   EXPECT_TRUE(pipeline_after([](hid_t) {}).value().empty());
   const auto all = pipeline_after([](hid_t p) {
     H5Pset_fletcher32(p);
-    const unsigned value_bytes = 8;  // the library fills it in when a dataset is made
+    const unsigned value_bytes = 8;  // the library sets this when it creates a dataset
     H5Pset_filter(p, H5Z_FILTER_SHUFFLE, 0, 1, &value_bytes);
     H5Pset_deflate(p, 9);
   });
@@ -39,7 +40,7 @@ TEST(FilterPipeline, SupportedFiltersAreListedInOrder) {
 }
 
 TEST(FilterPipeline, UnsupportedFiltersAreLeftToTheLibrary) {
-  const LeaksOfLibraries of_plugins;  // the library looks for the filter
+  const LeaksOfLibraries of_plugins;  // the library searches its plugins for the filter
   EXPECT_FALSE(pipeline_after([](hid_t p) { H5Pset_nbit(p); }));
   EXPECT_FALSE(pipeline_after([](hid_t p) { H5Pset_scaleoffset(p, H5Z_SO_INT, 0); }));
   EXPECT_FALSE(pipeline_after([](hid_t p) {
@@ -55,7 +56,7 @@ TEST(FilterPipeline, UnsupportedFiltersAreLeftToTheLibrary) {
     H5Pset_deflate(p, 1);
     H5Pset_filter(p, 32000, H5Z_FLAG_OPTIONAL, 0, nullptr);
   })) << "deflate and lzf";
-  // A file says values of no bytes: nothing is divided by them.
+  // The file states values of 0 bytes, by which nothing may be divided.
   EXPECT_FALSE(pipeline_after([](hid_t p) {
     const unsigned value_bytes = 0;
     H5Pset_filter(p, H5Z_FILTER_SHUFFLE, 0, 1, &value_bytes);
@@ -75,7 +76,7 @@ TEST(FilterPipeline, GivesTheStoredSizeBoundAndBufferNeed) {
   EXPECT_TRUE(needs_other_buffer(packed));
 }
 
-/// Undoes `pipeline` on `stored`; buffers are as small as may be.
+/// Returns the result of undo_filters() on `stored`. The buffers have the smallest size that is allowed.
 std::vector<std::byte> undone(const FilterPipeline& pipeline, FilterMask left_out, std::size_t chunk_bytes,
                               const std::vector<std::byte>& stored) {
   std::vector<std::byte> buffer(most_stored_bytes(pipeline, chunk_bytes));

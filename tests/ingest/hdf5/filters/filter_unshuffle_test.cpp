@@ -1,3 +1,4 @@
+// Tests unshuffle() against the definition of the shuffle filter.
 #include "ingest/chunks/unshuffle.h"
 
 #include <gtest/gtest.h>
@@ -7,14 +8,14 @@
 namespace weir::filter_unshuffle_test {
 namespace {
 
-/// Byte i is i, so that each byte's place tells where it came from.
+/// Returns bytes that differ between neighbouring places, so that a test notices a misplaced byte.
 std::vector<std::byte> counted(std::size_t size) {
   std::vector<std::byte> bytes(size);
   for (std::size_t i = 0; i < size; ++i) bytes[i] = static_cast<std::byte>(i * 7 + i / 256);
   return bytes;
 }
 
-/// The definition: byte j of value i is in plane j at i; what is left over stays at the end.
+/// Shuffles by the definition: byte j of value i becomes byte i of plane j. Bytes after the last whole value stay.
 std::vector<std::byte> shuffled(const std::vector<std::byte>& values, std::size_t value_bytes) {
   const std::size_t count = values.size() / value_bytes;
   std::vector<std::byte> planes = values;

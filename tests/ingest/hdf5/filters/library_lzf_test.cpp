@@ -1,4 +1,4 @@
-// Datasets packed by lzf that the HDF5 library reads, which does not know it.
+// Datasets packed by lzf that weir reads through the HDF5 library, which has no lzf filter of its own.
 #include "ingest/hdf5/filters/library_lzf.h"
 
 #include "ingest/hdf5/hdf5_source.h"

@@ -152,7 +152,7 @@ n.close()
   ASSERT_EQ(values.size(), wanted.size());
   EXPECT_TRUE(is_missing(values[1]));
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (wanted[i] == -1) continue;  // 255, the fill value
+    if (wanted[i] == -1) continue;  // stored as 255, the fill value
     ASSERT_EQ(values[i], wanted[i]) << i;
   }
 }

@@ -1,5 +1,5 @@
-// Where volumes of HDF5 files lie and what their values mean: openPMD, NetCDF-4
-// and plain attributes, as the libraries of each convention write them.
+// Tests where volumes of HDF5 files lie and what their values mean. The files follow openPMD, NetCDF-4, VTKHDF and
+// plain attributes, as the libraries of each convention write them.
 
 #include "ingest/hdf5/hdf5_source.h"
 #include "tests/ingest/hdf5/support/h5py_file.h"
@@ -124,7 +124,7 @@ n.close()
             scratch_.path("a.nc") +
                 ": /t: its axes are time=2 x level=5 x lat=7 x lon=9, and a volume has three; give "
                 "--index with 1 position: time in 0..1");
-  // The dimension without coordinates is no dataset.
+  // The dimension `bare` has no coordinates, so it is not listed as a dataset.
   for (const DatasetInfo& listed : list_hdf5(scratch_.path("a.nc"), {})) EXPECT_NE(listed.name, "/bare");
 }
 
@@ -199,7 +199,7 @@ n.close()
   EXPECT_TRUE(is_missing(marked[2 * 63 + 3 * 9 + 4]));
   EXPECT_EQ(marked[0], expected(scratch_, "marked")[0]);
 
-  // NetCDF's own fill value is missing to its tools, and so it is here.
+  // NetCDF's tools take its own fill value as missing, and so does weir.
   const std::vector<float> unwritten = all_values(*open_source(scratch_.path("a.nc"), dataset_options("unwritten")));
   EXPECT_EQ(unwritten[62], 1.0F);
   EXPECT_TRUE(is_missing(unwritten[63]));
@@ -261,8 +261,8 @@ with h5py.File("a.h5", "w") as f:
   for (std::size_t i = 0; i < 8; ++i) EXPECT_EQ(is_missing(values[i]), i == 3 || i == 5);
 }
 
-// "VTKHDF File Format", ImageData: the origin is that of point 0,0,0, at which WholeExtent need not begin; cells lie
-// between points. Direction's columns are the axes' directions.
+// "VTKHDF File Format", ImageData: Origin is the position of point 0,0,0, but WholeExtent may begin at any point. Cells
+// lie between points. The columns of Direction are the directions of the axes.
 TEST_F(Hdf5Placement, VtkHdfPointsLieOnTheLatticeAndCellsHalfASpacingOn) {
   write_by_h5py(scratch_, R"(
 with h5py.File("a.vtkhdf", "w") as f:
@@ -286,9 +286,9 @@ with h5py.File("a.vtkhdf", "w") as f:
   EXPECT_EQ(origin("flat/CellData/c"), (Triple{11, 22, 70})) << "cells of one layer of points lie in it";
 }
 
-// CF conventions, 4: a coordinate variable gives the locations of the values themselves; cells around them are in
-// `bounds`, which changes nothing. openPMD 1.1: gridGlobalOffset is where the first cell begins, `position` where in
-// its cell a value lies, from 0 to 1.
+// CF conventions, 4: a coordinate variable gives the locations of the values themselves. `bounds` gives the cells
+// around them and moves no value. openPMD 1.1: the first cell begins at gridGlobalOffset. `position` is the place of a
+// value in its cell, from 0 to 1.
 TEST_F(Hdf5Placement, CoordinatesAndOpenPmdPositionsAreOfVoxelCentres) {
   write_by_h5py(scratch_, R"(
 with h5py.File("a.h5", "w") as f:
@@ -310,8 +310,8 @@ with h5py.File("a.h5", "w") as f:
   EXPECT_EQ(info_of("a.h5", "/data/0/meshes/cell").origin, (Triple{11, 22, 34}));
 }
 
-// Every name weir looks for, in every shape and type there is: no crash, and the volume opens or is refused in one
-// line.
+// The attributes have every name that weir looks for, in every shape and type. Nothing crashes, and each volume opens
+// or is refused in one line.
 TEST_F(Hdf5Placement, AttributesOfAnyTypeCauseNoCrash) {
   write_by_h5py(scratch_, R"(
 names = ["_FillValue", "missing_value", "scale_factor", "add_offset", "units", "Units", "unitSI", "position", "value", "shape",

@@ -1,3 +1,4 @@
+// Tests which names of datasets are suggested for a name that the file does not have.
 #include "ingest/hdf5/meaning/hdf5_lookup.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +15,7 @@ TEST(NearNames, FindsNamesOfOtherCasePathOrSpelling) {
   EXPECT_EQ(near_names("/b/tempreature", names, 8), (Names{"/b/temperature"}));
   EXPECT_EQ(near_names("/velocity_z", names, 8), (Names{"/velocity_x", "/velocity_y"}));
   EXPECT_EQ(near_names("/velocityx", names, 8), (Names{"/velocity_x", "/velocity_y"}));
-  EXPECT_EQ(near_names("/z", names, 8), Names{});  // every one-letter name is as near
+  EXPECT_EQ(near_names("/z", names, 8), Names{});  // every one-letter name is equally near
   EXPECT_EQ(near_names("/pressure", names, 8), Names{});
   EXPECT_EQ(near_names("", names, 8), Names{});
 }

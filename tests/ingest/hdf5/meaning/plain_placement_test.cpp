@@ -1,4 +1,4 @@
-// Spacing and origin as plain attributes.
+// Tests spacings and origins that plain attributes give.
 #include "ingest/hdf5/hdf5_source.h"
 #include "tests/ingest/hdf5/support/h5py_file.h"
 
@@ -52,7 +52,7 @@ with h5py.File("a.h5", "w") as f:
                 "0; give --spacing x,y,z");
 }
 
-// Simulations call their number of cells resolution, as an attribute of the file or of the dataset.
+// Simulations store their number of cells in an attribute `resolution` of the file or of the dataset.
 TEST_F(PlainPlacement, ResolutionIsASpacingOfTheDatasetAloneAndNeverItsExtents) {
   write_by_h5py(scratch_, R"(
 with h5py.File("a.h5", "w") as f:

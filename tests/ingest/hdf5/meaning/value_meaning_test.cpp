@@ -1,4 +1,4 @@
-// What attributes say of the values of HDF5 files, and weir makes nothing of.
+// Tests attributes of HDF5 files that weir does not apply to the values, and the default fill values of NetCDF.
 #include "ingest/hdf5/hdf5_source.h"
 #include "tests/ingest/hdf5/support/h5py_file.h"
 
@@ -40,7 +40,7 @@ with h5py.File("a.h5", "w") as f:
   EXPECT_EQ(info_of("a.h5", "held").details.values_note, "");
 }
 
-// What netCDF4-python masks of the values that nobody has written.
+// netCDF4-python masks values that were never written. The same values must be missing in weir.
 TEST_F(Hdf5ValueMeaning, NetcdfsDefaultFill_IsNoDataBesideMissingValueAndInFilesOfOldLibraries) {
   if (!python_has("netCDF4")) GTEST_SKIP() << "python3 with netCDF4 is missing";
   write_by_h5py(scratch_, R"(
@@ -68,7 +68,7 @@ with h5py.File("old.nc", "a") as f: del f.attrs["_NCProperties"]
   }
 }
 
-// A whole number may well be somebody's own fill value.
+// In a file of another writer, a whole number like NetCDF's default may be a fill value that the writer chose.
 TEST_F(Hdf5ValueMeaning, WholeNumberLikeNetcdfsDefaultFill_IsDataInOtherFiles) {
   write_by_h5py(scratch_, R"(
 with h5py.File("a.h5", "w") as f:

@@ -1,3 +1,4 @@
+// Tests which axes of an array make the volume, and the positions on its other axes.
 #include "ingest/hdf5/meaning/volume_slice.h"
 
 #include "tests/ingest/support/scratch.h"

@@ -1,4 +1,4 @@
-// Times and marks of VTK's own HDF5 files. Where their voxels lie: hdf5_placement_test.cpp.
+// Tests the times and marks in VTK's own HDF5 files. hdf5_placement_test.cpp tests where their voxels lie.
 #include "ingest/hdf5/meaning/vtk_hdf.h"
 
 #include "ingest/hdf5/hdf5_source.h"
@@ -13,7 +13,7 @@ class VtkHdf : public ::testing::Test {
   void SetUp() override {
     if (!python_has("h5py, numpy")) GTEST_SKIP() << "python3 with h5py is missing";
   }
-  /// a.vtkhdf with the image `g` of 9 x 7 x 5 points, and what `script` puts there.
+  /// Writes a.vtkhdf with the group `g`, an image of 9 x 7 x 5 points, and whatever `script` adds.
   void write(const std::string& script) const {
     write_by_h5py(scratch_, R"(
 f = h5py.File("a.vtkhdf", "w")
@@ -37,7 +37,7 @@ def steps(times, **offsets):
   Scratch scratch_;
 };
 
-// "VTKHDF File Format", temporal data: an array of an image has the steps along its slowest axis.
+// "VTKHDF File Format", temporal data: an array of an image stores the steps along its slowest axis.
 TEST_F(VtkHdf, ValuesOfItsSteps_AreTheTimes) {
   write(R"(
 v = values("f4", (3,) + SHAPE)
@@ -57,7 +57,7 @@ steps([0.5, 0.75, 2.0])
   EXPECT_EQ(open_source(scratch_.path("a.vtkhdf"), component)->info().details.time->value, 2.0);
 }
 
-// The mechanism by which steps share what did not change.
+// By offsets, several steps share one element of an array that did not change.
 TEST_F(VtkHdf, OffsetsOfAnArray_SayWhichElementAStepHas) {
   write(R"(
 g["PointData/shared"] = values("f4", (2,) + SHAPE)

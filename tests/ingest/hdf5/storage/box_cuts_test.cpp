@@ -1,3 +1,4 @@
+// Tests how BoxCuts cuts a box into parts of a limited size, along the edges of storage units.
 #include "ingest/hdf5/storage/stored_boxes.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +19,7 @@ TEST(BoxCuts, PartsCoverTheBoxExactlyOnce) {
             const Box part = cuts.part(i);
             ASSERT_FALSE(part.empty());
             ASSERT_TRUE(box.contains(part));
-            // A whole unit at least, or the limit holds.
+            // A part may exceed the limit only up to one whole unit.
             EXPECT_LE(part.voxels(), std::max(voxels, volume(unit)));
             for (std::int64_t v = 0; v < part.voxels(); ++v) {
               ++seen[static_cast<std::size_t>(linear_index(part.lo + index_at(v, part.extent()), {10, 9, 8}))];
@@ -48,7 +49,7 @@ TEST(BoxCuts, HasNoMoreUnitsThanAreAllowed) {
   EXPECT_EQ(BoxCuts(box, {4, 4, 4}, {0, 0, 0}, 1 << 18, 3).part(0), (Box{{0, 0, 0}, {12, 4, 4}}));
   EXPECT_EQ(BoxCuts(box, {4, 4, 4}, {0, 0, 0}, 1 << 18, 40).part(0), (Box{{0, 0, 0}, {64, 8, 4}}));
   EXPECT_EQ(BoxCuts(box, {4, 4, 4}, {0, 0, 0}, 1 << 18, 512).part(0), (Box{{0, 0, 0}, {64, 64, 8}}));
-  // A plane of voxels crosses as many units as one that is four times as thick.
+  // A box of one plane of voxels crosses as many units as a box of four planes.
   EXPECT_EQ(BoxCuts({{0, 0, 0}, {64, 64, 1}}, {4, 4, 4}, {0, 0, 0}, 1 << 18, 40).part(0), (Box{{0, 0, 0}, {64, 8, 1}}));
   EXPECT_EQ(BoxCuts(box, {4, 4, 4}, {0, 0, 0}, 1 << 18, 0).part(0), (Box{{0, 0, 0}, {4, 4, 4}}));
 }

@@ -1,5 +1,5 @@
-// A gzip-chunked dataset as a source: each chunk is fetched as it is stored, once in
-// a pass, and decoded by several threads.
+// Reads a gzip-chunked dataset as a source. Each chunk is fetched as it is stored, once in a pass, and several threads
+// decode the chunks.
 #include <tbb/task_scheduler_observer.h>
 
 #include <atomic>
@@ -56,7 +56,7 @@ TEST(ChunkPath, GzipAndShuffleAreFetchedAsStoredAndOnceEach) {
       ASSERT_EQ(values[v], file.values[static_cast<std::size_t>(linear_index(at, {130, 100, 96}))]);
     }
   }
-  // By the library, decoded bytes would be counted.
+  // If the library decoded the chunks, bytes_read() would count decoded bytes.
   EXPECT_EQ(source->bytes_read(), file.stored_bytes);
 }
 

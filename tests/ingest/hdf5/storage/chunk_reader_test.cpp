@@ -1,3 +1,4 @@
+// Tests ChunkReader: boxes of chunked datasets with every filter, unwritten chunks, and damaged chunks.
 #include "ingest/hdf5/storage/chunk_reader.h"
 
 #include <zlib.h>
@@ -24,7 +25,7 @@ std::vector<std::byte> bytes_of(float value) {
   return {bytes.begin(), bytes.end()};
 }
 
-/// Smooth values with some noise: they compress, but no two chunks are the same.
+/// Returns smooth values with some noise. The values compress, but no two chunks are the same.
 std::vector<float> field(std::size_t count) {
   std::vector<float> values(count);
   std::uint32_t state = 1;
@@ -52,7 +53,7 @@ std::vector<float> read(ChunkReader& reader, const Box& box) {
   return values;
 }
 
-/// The part of `all`, of `extent` voxels, that `box` holds.
+/// Returns the values in `box` of the volume `all`, which has `extent` voxels.
 std::vector<float> part_of(const std::vector<float>& all, const Index3& extent, const Box& box) {
   std::vector<float> part;
   for (std::int64_t i = 0; i < box.voxels(); ++i) {
@@ -72,7 +73,7 @@ class ChunkReaderFilters : public testing::TestWithParam<FilterCase> {};
 
 TEST_P(ChunkReaderFilters, AnyBoxReadsBackWhatWasWritten) {
   const Scratch scratch;
-  const Index3 extent{37, 29, 23};  // chunks overhang in every axis
+  const Index3 extent{37, 29, 23};  // chunks overhang on every axis
   for (const H5F_libver_t oldest : {H5F_LIBVER_V18, H5F_LIBVER_V110}) {
     for (const bool partial_unfiltered : {false, true}) {
       if (partial_unfiltered && oldest == H5F_LIBVER_V18) continue;
@@ -240,7 +241,7 @@ TEST(ChunkReader, ChunksNeverWrittenReadAsTheFillValue) {
     EXPECT_EQ(values, (std::vector<float>{kFill, 1, 1, 1, 1, 1, 1, 1, 1, kFill}));
     EXPECT_EQ(reader.counts().unallocated, 2U);
     EXPECT_EQ(reader.counts().decoded, 1U);
-    // The same, where a fill value is no data.
+    // If the fill value means no data, unwritten voxels are missing.
     ChunkedSlice slice = slice_of(file);
     slice.mapping.missing = {double{kFill}};
     ChunkReader missing(slice, kMemory);
@@ -250,7 +251,7 @@ TEST(ChunkReader, ChunksNeverWrittenReadAsTheFillValue) {
   }
 }
 
-// Damage. Every message names the dataset and the chunk, and no other chunk is harmed.
+// Tests of damaged chunks. Every message names the dataset and the chunk, and all other chunks stay readable.
 
 std::string message_of_read(const ChunkedFile& file, const Box& box) {
   ChunkReader reader(slice_of(file), kMemory);
@@ -281,7 +282,7 @@ TEST(ChunkReader, RefusesDeflateBombsAndShortStreams) {
   file.write_chunk({0, 0, 8}, std::vector<std::byte>(5000));
   EXPECT_EQ(message_of_read(file, box_of({16, 8, 8})),
             "run.h5: d: chunk at 0, 0, 8: takes 5000 bytes, and at most 2120 can be right; the file is damaged");
-  // The whole chunk beside it reads well.
+  // The undamaged chunk at 0, 0, 0 can still be read.
   ChunkReader reader(slice_of(file), kMemory);
   EXPECT_EQ(read(reader, box_of({8, 8, 8})), std::vector<float>(512, kFill));
 }
@@ -312,7 +313,7 @@ TEST(ChunkReader, TruncatedFileIsReportedAsDamaged) {
   file.write(H5T_NATIVE_FLOAT, field(file.elements()));
   file.reopen();
   std::filesystem::resize_file(scratch.path("f.h5"), std::filesystem::file_size(scratch.path("f.h5")) / 2);
-  // The library reads zeros beyond the end.
+  // Beyond the end of the file, the library reads zeros and reports no error.
   const std::string message = message_of_read(file, box_of({32, 32, 64}));
   EXPECT_TRUE(std::string_view(message).starts_with("run.h5: d: chunk at ")) << message;
   EXPECT_TRUE(std::string_view(message).ends_with("; the file is damaged")) << message;

@@ -1,3 +1,4 @@
+// Tests that ChunkStore fetches the chunks of a dataset as the file stores them.
 #include "ingest/hdf5/storage/chunk_store.h"
 
 #include <zlib.h>

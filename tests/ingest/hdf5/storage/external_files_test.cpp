@@ -1,3 +1,4 @@
+// Tests datasets with their values in external files, and where such files are searched.
 #include "ingest/hdf5/storage/external_files.h"
 
 #include <cstdlib>

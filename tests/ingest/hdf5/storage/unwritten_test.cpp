@@ -1,4 +1,4 @@
-// Datasets to which nothing was ever written.
+// Tests datasets and chunks to which nothing was ever written.
 #include "ingest/hdf5/hdf5_source.h"
 #include "tests/ingest/hdf5/support/h5py_file.h"
 
@@ -54,7 +54,7 @@ with h5py.File("a.h5", "w") as f: f.create_dataset("d", (4, 3, 2), "f4", fillval
                 "--missing-chunks fill");
 }
 
-// As NetCDF's NC_NOFILL has it: the library leaves what is in memory.
+// FILL_TIME_NEVER is what NetCDF's NC_NOFILL sets. The library then leaves what is in memory for unwritten chunks.
 TEST_F(Hdf5Unwritten, ChunkThatTheLibraryReads_IsTheFillValueThoughThatIsNeverWritten) {
   write_by_h5py(scratch_, R"(
 with h5py.File("a.h5", "w") as f:
@@ -88,7 +88,7 @@ with h5py.File("a.h5", "w") as f:
             "value, 3");
 }
 
-// Nobody chose what such a one reads as, it is no data, or the library would leave what is in memory.
+// The writer did not choose the fill value, or it means no data, or the library would leave what is in memory.
 TEST_F(Hdf5Unwritten, IsRefusedWhereItsFillValueIsNoData) {
   write_by_h5py(scratch_, R"(
 import netCDF4

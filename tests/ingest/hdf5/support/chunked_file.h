@@ -1,5 +1,5 @@
-// A chunked dataset in an HDF5 file of its own, made by libhdf5: what the tests of
-// the chunk reader read, byte by byte as they want it.
+// Writes a chunked dataset in an HDF5 file of its own with libhdf5. Tests of the chunk reader can set the stored bytes
+// of each chunk.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -14,17 +14,17 @@
 
 namespace weir {
 
-/// How the dataset is made. Axes in the file's order, slowest first.
+/// How the dataset is created. Axes are in the file's order, slowest first.
 struct ChunkedShape {
   std::vector<hsize_t> extent;
   std::vector<hsize_t> chunk;
-  std::vector<H5Z_filter_t> filters;     ///< among deflate, shuffle, fletcher32; in this order
+  std::vector<H5Z_filter_t> filters;     ///< any of deflate, shuffle and fletcher32, in the order of use
   bool partial_unfiltered = false;       ///< H5D_CHUNK_DONT_FILTER_PARTIAL_CHUNKS
-  hid_t type = H5T_NATIVE_FLOAT;         ///< as stored
-  H5F_libver_t oldest = H5F_LIBVER_V18;  ///< H5F_LIBVER_V110: chunk indices of HDF5 1.10
+  hid_t type = H5T_NATIVE_FLOAT;         ///< type in the file
+  H5F_libver_t oldest = H5F_LIBVER_V18;  ///< H5F_LIBVER_V110 gives chunk indices of HDF5 1.10
 };
 
-/// The dataset "d", open for reading and writing until the end of the object.
+/// Creates a file with the dataset "d", which stays open for reading and writing until close() or the destructor.
 class ChunkedFile {
  public:
   ChunkedFile(const std::string& path, const ChunkedShape& shape) : path_(path), shape_(shape) {
@@ -56,23 +56,23 @@ class ChunkedFile {
     return std::accumulate(shape_.extent.begin(), shape_.extent.end(), hsize_t{1}, std::multiplies<>());
   }
 
-  /// All values, in the file's order.
+  /// Writes all values, which are in the file's order.
   template <typename T>
   void write(hid_t memory_type, const std::vector<T>& values) const {
     ASSERT_EQ(values.size(), elements());
     ASSERT_GE(H5Dwrite(dataset_, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), 0);
   }
-  /// Stored bytes of one chunk, as they are; bit i of `left_out`: filter i was not applied.
+  /// Writes the stored bytes of one chunk as they are. Bit i of `left_out` says that filter i was not applied.
   void write_chunk(const std::vector<hsize_t>& corner, std::span<const std::byte> bytes, std::uint32_t left_out = 0) {
     ASSERT_GE(H5Dwrite_chunk(dataset_, H5P_DEFAULT, left_out, corner.data(), bytes.size(), bytes.data()), 0);
   }
-  /// What libhdf5 itself reads, as float32.
+  /// Returns all values as libhdf5 itself reads them, as float32.
   std::vector<float> read() const {
     std::vector<float> values(elements());
     EXPECT_GE(H5Dread(dataset_, H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), 0);
     return values;
   }
-  /// Writes all to the file and opens it again, so that nothing of it is cached.
+  /// Writes everything to the file and opens it again, so that nothing of the file is cached.
   void reopen() {
     close();
     file_ = H5Fopen(path_.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);

@@ -1,4 +1,4 @@
-// Files that h5py and netCDF4 write, and what they read back from them.
+// Helpers for tests that read files of h5py and netCDF4 and compare the values with what these libraries read.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -15,8 +15,8 @@
 
 namespace weir {
 
-/// What scripts start with: the directory, random values of any type, and `expect(name, values)`, which puts
-/// values, as float32, x fastest, beside the file where expected() finds them.
+/// The beginning of every script. Changes to the directory sys.argv[1]. Defines values(), which makes random values of
+/// any type, and expect(name, values), which writes the values for expected(name): float32, x fastest.
 inline constexpr const char* kPrelude = R"(
 import sys, os, numpy as np, h5py
 os.chdir(sys.argv[1])
@@ -33,7 +33,7 @@ def expect(name, values):
     np.asarray(values).astype("<f4").tofile(name + ".expected")
 )";
 
-/// Runs `script` after kPrelude in the directory of `scratch`.
+/// Runs kPrelude and then `script` in the directory of `scratch`.
 inline void write_by_h5py(const Scratch& scratch, const std::string& script) {
   ASSERT_TRUE(run_python(kPrelude + script, scratch.path("")));
 }
@@ -60,12 +60,13 @@ inline std::vector<float> all_values(VolumeSource& source) {
   return values;
 }
 
-/// Values bit for bit; NaN equals NaN of the same bits.
+/// Returns whether the values are equal bit for bit. A NaN equals a NaN of the same bits.
 inline bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
 }
 
-/// The whole of `dataset`, and boxes of it that lie across its chunks, are what h5py read.
+/// Checks that the dataset that `options` names has the values that the script gave to expect(name, ...). Reads it
+/// whole and in boxes that lie across its chunks.
 inline void expect_reads(const Scratch& scratch, const std::string& file, const SourceOptions& options,
                          const std::string& name) {
   SCOPED_TRACE(file + ": " + options.dataset);

@@ -1,3 +1,4 @@
+// Tests the search for elements that no box covers.
 #include "ingest/hdf5/virtual/coverage.h"
 
 #include <gtest/gtest.h>
@@ -45,7 +46,7 @@ TEST(Coverage, TheHoleOfAFrameIsFound) {
 }
 
 TEST(Coverage, RandomBoxesAgreeWithCountedElements) {
-  // Deterministic boxes of a 4^3 lattice, against the count of each element.
+  // Pseudo-random boxes in a lattice of 4^3 elements, the same in each run. The reference marks each covered element.
   unsigned state = 1;
   const auto next = [&](unsigned below) { return (state = state * 1103515245U + 12345U) / 65536U % below; };
   for (int round = 0; round < 200; ++round) {

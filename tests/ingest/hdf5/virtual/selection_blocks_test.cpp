@@ -1,3 +1,4 @@
+// Tests how a selection of the library is split into boxes.
 #include "ingest/hdf5/virtual/selection_blocks.h"
 
 #include <gtest/gtest.h>

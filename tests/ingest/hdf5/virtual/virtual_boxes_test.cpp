@@ -1,5 +1,5 @@
-// Virtual datasets: read as h5py reads them where all sources are there, and an
-// error, not fill values, where one is not.
+// Reads virtual datasets. If all sources are there, the values are those that h5py reads. A missing source is an error
+// and does not read as fill values.
 #include "ingest/hdf5/virtual/virtual_boxes.h"
 
 #include <filesystem>
@@ -81,7 +81,7 @@ expect("17", v[17]); expect("joined", v.reshape(120, 5, 7))
 )");
   expect_reads(scratch_, "all.h5", dataset_options("v", {17}), "17");
   expect_reads(scratch_, "joined.h5", {}, "joined");
-  // Only what the volume needs has to be there.
+  // Only the sources that the volume needs must be there.
   std::filesystem::remove(scratch_.path("step3.h5"));
   expect_reads(scratch_, "all.h5", dataset_options("v", {17}), "17");
   EXPECT_EQ(refused("all.h5", dataset_options("v", {3})),
@@ -117,12 +117,12 @@ make("numbered.h5", numbered)
 )");
   expect_reads(scratch_, "endless.h5", {}, "v");
   expect_reads(scratch_, "numbered.h5", {}, "v");
-  // As the library does, a numbered series ends before the first block that is missing.
+  // A numbered series ends before the first block that is missing, as in the library.
   std::filesystem::remove(scratch_.path("block2%.h5"));
   expect_reads(scratch_, "numbered.h5", {}, "four");
 }
 
-// As a detector's frames have between its modules: the library gives the fill value there.
+// A detector's frames have such elements between its modules. The library gives the fill value for them.
 TEST_F(VirtualDataset, ElementsWithoutASource_ReadAsTheFillValueAndAreCounted) {
   write_by_h5py(scratch_, R"(
 v = values("f4", (5, 7, 9))

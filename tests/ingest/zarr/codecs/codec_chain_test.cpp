@@ -33,7 +33,7 @@ std::vector<std::byte> zlib_of(std::size_t zeros) {
 }
 
 TEST(CodecChain, TransposedChunks_GetTheOrderOfTheArray) {
-  // Of shape (2, 3, 4), stored as (4, 2, 3): the value at (i, j, k) is 100 i + 10 j + k.
+  // A chunk of shape (2, 3, 4) is stored as (4, 2, 3). The value at (i, j, k) is 100 i + 10 j + k.
   std::vector<std::byte> stored;
   std::vector<std::byte> expected;
   for (int k = 0; k < 4; ++k)
@@ -46,7 +46,8 @@ TEST(CodecChain, TransposedChunks_GetTheOrderOfTheArray) {
 }
 
 TEST(CodecChain, Filters_AreUndoneFromTheLastOn) {
-  // 1, 3, 2, 258 as 16-bit differences 1, 2, -1, 256, high bytes first; then the first bytes of all, then the second.
+  // 1, 3, 2, 258 become the 16-bit differences 1, 2, -1, 256, high byte first. The shuffle then puts all first bytes
+  // before all second bytes.
   ZarrCodecs codecs{{}, true, {}};
   codecs.filters = {{ZarrFilter::Kind::delta, 1, ScalarType::int16, true}, {ZarrFilter::Kind::shuffle, 2}};
   std::vector<std::byte> stored;
@@ -115,7 +116,7 @@ TEST(CodecChain, BloscBlocksLargerThanTheirMemory_AreRefused) {
   const ZarrCodecs blosc{{}, false, {ZarrPacker::blosc}};
   const ChunkShape shape{{8, 1024, 1024}, 1};
   EXPECT_LT(scratch_size(blosc, shape.bytes()).codec_bytes, std::size_t{13} << 20U);
-  // A header of 8 MiB in one block, and nothing behind it.
+  // A Blosc header that announces 8 MiB in one block, without compressed values.
   std::vector<std::byte> header(24);
   header[0] = std::byte{2};
   header[1] = header[3] = std::byte{1};

@@ -1,4 +1,4 @@
-// What the metadata of arrays say, in both versions, and what is refused of them.
+// Tests what is read from the metadata of arrays, in Zarr 2 and Zarr 3, and which metadata are refused.
 #include "ingest/zarr/metadata/array_v2.h"
 #include "ingest/zarr/metadata/array_v3.h"
 #include "ingest/zarr/metadata/fill_value.h"
@@ -134,7 +134,7 @@ TEST(ZarrMetadata, NestedTooDeep_IsRefusedBeforeItIsParsed) {
 TEST(ZarrMetadata, MoreValuesThanTheLimit_AreRefused) {
   const auto text = [](std::size_t values) {
     std::string zeros = "0";
-    for (std::size_t i = 3; i < values; ++i) zeros += ",0";  // the document and the list are values, too
+    for (std::size_t i = 3; i < values; ++i) zeros += ",0";  // the document and the list count as values, too
     return cat(R"({"a":[)", zeros, "]}");
   };
   EXPECT_EQ(json_values(parse_zarr_json(text(kMostMetadataValues), "a")), kMostMetadataValues);

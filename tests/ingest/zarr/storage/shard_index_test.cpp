@@ -1,4 +1,4 @@
-// Places that an index of a shard has.
+// Tests the places that the index of a shard gives for its chunks.
 #include "ingest/zarr/storage/shard_index.h"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 namespace weir::shard_index_test {
 namespace {
 
-/// Of one place, in a shard of 36 bytes: 20 of chunks and 16 of the index.
+/// Returns the error message for an index with the one `place`. The shard has 36 bytes: 20 of chunks, 16 of the index.
 std::string refusal(bool index_first, const ShardPlace& place) {
   ZarrSharding sharding;
   sharding.index_first = index_first;

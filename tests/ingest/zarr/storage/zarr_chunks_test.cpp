@@ -1,4 +1,5 @@
-// What is read and held open of an array in shards, of a store in memory that counts it.
+// Tests how often the objects of a sharded array are opened and read, and how many are held open. A store in memory
+// counts this.
 #include "ingest/zarr/storage/zarr_chunks.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +19,7 @@ constexpr std::uint64_t kNotStored = ShardPlace::kNone;
 struct Counts {
   int opened = 0;
   int reads = 0;
-  int open = 0;  // now
+  int open = 0;  // open now
 };
 
 class CountedObject final : public ZarrObject {
@@ -64,7 +65,7 @@ std::string index_text(const std::vector<std::uint64_t>& index) {
   return {reinterpret_cast<const char*>(index.data()), index.size() * sizeof(std::uint64_t)};
 }
 
-/// The parts one after another, behind them their places; empty ones are not stored.
+/// Returns a shard: the parts one after another, then an index of their places. Empty parts are not stored.
 std::string shard_of(const std::vector<std::string>& parts) {
   std::string bytes;
   std::vector<std::uint64_t> index;
@@ -75,7 +76,8 @@ std::string shard_of(const std::vector<std::string>& parts) {
   return bytes + index_text(index);
 }
 
-/// Bytes in objects of `levels[0]` elements, which are shards of chunks of `levels[1]`, and so on.
+/// Returns an array of bytes in objects of `levels[0]` elements. Each object is a shard with chunks of `levels[1]`
+/// elements, and so on.
 ZarrArray bytes_in_shards(const std::vector<std::int64_t>& shape,
                           const std::vector<std::vector<std::int64_t>>& levels) {
   ZarrArray array;
@@ -102,7 +104,7 @@ TEST(ZarrChunks, MoreShardsInAShardThanAreKept_EachIndexIsReadOnce) {
   std::vector<std::string> inner(kInner, shard_of({"a", "", "b", "c"}));
   inner[3].clear();
   store.objects["0.0.0"] = shard_of(inner);
-  // Two planes: a walk along x comes to every inner shard twice.
+  // The array has two planes, so a walk along x comes to every inner shard twice.
   const ZarrArray array = bytes_in_shards({2, 1, 2 * kInner}, {{2, 1, 2 * kInner}, {2, 1, 2}, {1, 1, 1}});
   ZarrChunks chunks = chunks_of(store, array);
   const UnstoredChunks unstored = chunks.count_unstored(all_of(array));
@@ -118,8 +120,8 @@ TEST(ZarrChunks, ShardsThatTheVolumeEndsIn_AreCountedAsFarAsItGoes) {
   const std::string inner = shard_of({"a", "", "", ""});
   const std::string third = shard_of({inner, "", inner, inner});
   store.objects["0.0.0"] = shard_of({third, third});
-  // x: 16 elements an object, 8 a shard in it, 2 an innermost shard of 2 chunks; z: 2, 2 and 2 chunks. The volume
-  // has 11.
+  // Along x, an object has 16 elements, a shard in it 8, an innermost shard 2, a chunk 1. Along z, each kind of shard
+  // has 2 elements. The volume has 11 elements along x.
   ZarrArray array = bytes_in_shards({2, 1, 11}, {{2, 1, 16}, {2, 1, 8}, {2, 1, 2}, {1, 1, 1}});
   ZarrChunks chunks = chunks_of(store, array);
   const UnstoredChunks unstored = chunks.count_unstored(all_of(array));
@@ -136,7 +138,7 @@ TEST(ZarrChunks, ObjectsHeldOpen_AreBoundedOverAllLevels) {
   constexpr std::int64_t kMost = OpenShards::kMostOpenShards;
   CountedStore store;
   for (std::int64_t i = 0; i < 2 * kMost; ++i) {
-    // Those behind have no inner shard: what the inner level keeps is of those before.
+    // Later objects have no inner shard. So the inner level keeps only objects of the first half.
     store.objects[cat("0.0.", i)] = i < kMost ? shard_of({shard_of({"a", "b"})}) : shard_of({""});
   }
   const ZarrArray array = bytes_in_shards({1, 1, 4 * kMost}, {{1, 1, 2}, {1, 1, 2}, {1, 1, 1}});

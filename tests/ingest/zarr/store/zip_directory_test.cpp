@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint64_t kMiB = std::uint64_t{1} << 20U;
 
-/// "ab", stored as a/b, as zip writes it.
+/// A file of the program zip with one entry, a/b, that holds "ab" uncompressed.
 constexpr std::string_view kZip(
     "PK\3\4\x14\0\0\0\0\0\0\0!\0m\x48\x83\x9e\2\0\0\0\2\0\0\0\3\0\0\0a/bab"
     "PK\1\2\x14\3\x14\0\0\0\0\0\0\0!\0m\x48\x83\x9e\2\0\0\0\2\0\0\0\3\0\0\0\0\0\0\0\0\0\0\0\x80\1\0\0\0\0a/b"

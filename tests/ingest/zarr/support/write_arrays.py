@@ -21,7 +21,7 @@ cases = []
 
 
 def values_of(dtype, shape):
-    """Smooth enough to be compressed, with every bit in use here and there; of floats also what is no number."""
+    """Returns values that are smooth enough to compress but use every bit somewhere. Some floats are not finite."""
     dtype = np.dtype(dtype)
     smooth = np.cumsum(random.integers(0, 3, int(np.prod(shape)))).reshape(shape)
     if dtype.kind == "f":
@@ -66,7 +66,7 @@ for i, dtype in enumerate(TYPES):
                 file.unlink()
             array = zarr.open(store)[:]
         note(name, f"{name}.zarr", "", array)
-# With filters, and of truth values.
+# Arrays with filters, and arrays of bool.
 for i, dtype in enumerate(["<i2", ">i4", "<u8", "|u1", "<f4", ">f4", "<f8", "|b1"]):
     for variant in range(2):
         name = f"v2_filter_{i}_{variant}"
@@ -126,7 +126,7 @@ def encode(chunk, codecs):
 
 
 def chunks_of(array, shape, fill):
-    """Each chunk, filled up beyond the array, with its position."""
+    """Yields each chunk, filled up beyond the array's edge, with its position."""
     for position in itertools.product(*(range(-(-n // c)) for n, c in zip(array.shape, shape))):
         part = array[tuple(slice(p * c, (p + 1) * c) for p, c in zip(position, shape))]
         chunk = np.full(shape, fill, dtype=array.dtype)
@@ -215,7 +215,7 @@ for i, dtype in enumerate(["uint16", "float32", "float64", "int32", "uint8", "fl
     write_v3(out / f"{name}.zarr", array, (2, 8, 12, 16), [sharding], FILL,
              leave_out=lambda position: i == 3 and position == (0, 1, 1, 1))
     note(name, f"{name}.zarr", "", array, (1,))
-# Shards in shards, indices at either end.
+# Shards within shards, with the index at the start or the end.
 for i, dtype in enumerate(["uint16", "float32", "float64", "int32"]):
     name = f"v3_nested_{i}"
     array = values_of(dtype, (13, 17, 39))
@@ -231,7 +231,7 @@ for i, dtype in enumerate(["uint16", "float32", "float64", "int32"]):
     write_v3(out / f"{name}.zarr", array, (8, 16, 24), codecs, FILL,
              leave_out=lambda position: i == 3 and position == (1, 0, 1))
     note(name, f"{name}.zarr", "", array)
-# In a zip file, stored and deflated, with names of axes and a group around it.
+# Arrays in a zip file, stored and deflated, with names of axes and inside a group.
 for variant, method in enumerate([zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED]):
     name = f"v3_zip_{variant}"
     array = values_of("float32", (3, 9, 10, 11))

@@ -13,7 +13,7 @@
 
 namespace weir {
 
-/// A directory run.zarr; files in it are written by their keys.
+/// A directory run.zarr. Its files are written by their keys.
 class ZarrFiles {
  public:
   std::string path(std::string_view key = {}) const {
@@ -55,7 +55,7 @@ inline std::string zarr_json(std::string_view shape, std::string_view chunk,
              R"(}},"chunk_key_encoding":{"name":"default"},"codecs":)", codecs, R"(,"fill_value":)", fill, more, "}");
 }
 
-/// Returns a .zarray in the same way.
+/// Returns the .zarray of an array in the same way as zarr_json().
 inline std::string zarray(std::string_view shape, std::string_view chunk, std::string_view type = "|u1",
                           std::string_view fill = "7", std::string_view more = R"("compressor":null,"filters":null)") {
   return cat(R"({"zarr_format":2,"order":"C","shape":)", shape, R"(,"chunks":)", chunk, R"(,"dtype":")", type,
