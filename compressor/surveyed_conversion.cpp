@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <string>
 #include <thread>
 #include <utility>
@@ -18,6 +19,7 @@
 #include "compressor/file_digest.h"
 #include "compressor/outlook/budget_outlook.h"
 #include "compressor/packed/exact_block.h"
+#include "compressor/plan/own_threads.h"
 #include "compressor/refused_values.h"
 #include "compressor/result_notices.h"
 #include "compressor/select/file_size.h"
@@ -26,6 +28,7 @@
 #include "compressor/select/leaf_reach.h"
 #include "compressor/survey/background.h"
 #include "compressor/survey/ladder_completion.h"
+#include "compressor/surveyed_request.h"
 #include "compressor/work_beside.h"
 #include "format/base/error.h"
 #include "format/base/seconds_since.h"
@@ -47,56 +50,6 @@ Background choose_background(const ConversionOptions& options, const Survey& sur
   if (options.background) return {*options.background, "user", 0};
   if (options.paper_background) return paper_background(survey, source, plan, stream, rows.team());
   return find_background(survey, rows, source, plan, stream);
-}
-
-FileRequest request_for(const ConversionOptions& options, const Survey& survey, const SourceInfo& info,
-                        float background) {
-  FileRequest request;
-  request.encoding = options.encoding;
-  request.rule.metric = options.metric;
-  request.rule.brick_leaves = options.brick / kLeafDim;
-  request.rule.fill = {options.fill, background, options.non_finite, info.mapping.gaps};
-  request.budget = options.budget;
-  request.domain = info.domain();
-  request.keeps_non_finite = options.non_finite == NonFinitePolicy::keep && survey.non_finite + survey.missing > 0;
-  request.path = options.output;
-  return request;
-}
-
-// Returns the request for packing. `background` takes the place of values that are not finite.
-PackedRequest packed_request(const ConversionOptions& options, const Survey& survey, const SourceInfo& info,
-                             float background) {
-  PackedRequest packed;
-  packed.preview = options.preview;
-  packed.lattice = lattice_of(info);
-  BlockConstants& c = packed.constants;
-  const bool replaced = options.non_finite != NonFinitePolicy::keep && survey.non_finite + survey.missing > 0;
-  c.minimum = replaced ? std::min(survey.min, background) : survey.min;
-  c.maximum = replaced ? std::max(survey.max, background) : survey.max;
-  c.coarsest = coarsest_step(survey.min, survey.max);
-  const Lattice lattice = packed.lattice.value_or(kWholeNumbers);
-  c.lattice_minimum = lattice.minimum;
-  c.lattice_quantum = lattice.quantum;
-  c.lattice_bits = lattice.bits;
-  c.below_one = kBelowOne;
-  c.below_more = kBelowMore;
-  c.tables = built_in_tables();
-  return packed;
-}
-
-// Returns whether the default rate gives way to a larger file if it keeps too little. With fewer than kSmall voxels,
-// the tree takes most of the default rate's bytes, so that the values kept are no result. Errors that a scene weighs
-// and the paper's metrics have no such bound, and FP4 does not reach every bound.
-bool raises_default(const ConversionOptions& options, const Box& domain) {
-  constexpr std::int64_t kSmall = std::int64_t{128} * 128 * 128;
-  return options.budget.kind == Budget::Kind::automatic && domain.voxels() < kSmall && !options.scene &&
-         options.metric == Metric::sse && options.encoding != Encoding::fp4;
-}
-
-// Returns the squared error, summed over `finite` voxels, that the budget's PSNR allows.
-double allowed_error(const Budget& budget, const Survey& survey, std::uint64_t finite) {
-  const double range = static_cast<double>(survey.max) - static_cast<double>(survey.min);
-  return range * range * static_cast<double>(finite) / std::pow(10, budget.target / 10);
 }
 
 }  // namespace
@@ -163,6 +116,7 @@ class SurveyedConversion {
     const std::jthread release = released(stores_.rows.give_up_cache());
     memory_ = beside_resident([](ResidentVolume& resident) { resident.free_memory(); });
     write_inner_nodes(encoded);
+    if (source_digest_.valid()) sidecar_.source.digest = source_digest_.get();
     describe_file(sidecar_, info_, survey_, options_, background_, head_, encoded, shown_);
     say_result(sidecar_, options_, parts_.control.notice);
     digest(encoded);
@@ -204,7 +158,12 @@ class SurveyedConversion {
                           : choose_background(options_, survey_, stores_.rows, parts_.source, reading_.survey, stream_);
     };
     const auto digest = [&] { sidecar_.source.digest = source_digest(stores_.rows); };
-    if (team_.alone()) {
+    if (team_.alone() && parts_.source.resident() != nullptr && stores_.rows.held() != nullptr) {
+      // Takes one thread as long as a device takes for half of the survey. Rows that are not in memory would need
+      // memory that the selection has planned for itself.
+      source_digest_ = std::async([this] { return OwnArena(1).run([&] { return source_digest(stores_.rows); }); });
+      find();
+    } else if (team_.alone()) {
       tbb::parallel_invoke(find, digest);
     } else {  // ranks must meet in the same order everywhere
       find();
@@ -386,7 +345,8 @@ class SurveyedConversion {
   Shown shown_;
   GridHead head_;
   std::uint32_t checksum_ = 0;
-  std::jthread memory_;  // allocates or frees the device's memory
+  std::future<std::string> source_digest_;  // if it is computed beside the selection
+  std::jthread memory_;                     // allocates or frees the device's memory
 };
 
 }  // namespace

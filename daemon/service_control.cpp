@@ -207,6 +207,7 @@ WatchView ServiceControl::watch(const WatchedTree& tree, const std::map<std::str
   view.method = status.method;
   view.up = status.up;
   view.reason = status.reason;
+  if (!config.output_mount.empty()) view.output_mounted = runner_.is_mounted(config.output_mount);
   view.overflows = status.overflows;
   if (const auto found = counts.find(config.label); found != counts.end()) view.jobs = found->second;
   view.done_per_min = 60 * runner_.figures().converted(config.label).per_s;

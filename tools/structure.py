@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Checks rules for the structure of the C++ files: tools/structure.py [--figures] [ROOT]
 
-A room is a folder within a top folder. A unit is a header with its source.
+A room is a folder. A unit, a "concept" in messages, is a header with its source.
 - Includes run down: a folder includes only files of itself and of the folders that BELOW lists for it. Every included
   file exists.
-- There are no include cycles between units, nor between rooms, except in tests/.
+- There are no include cycles between units. Outside tests/ there are none between rooms either.
 - The map in CONTRIBUTING.md names the rooms of its folders, and those of gpu/cuda/.
 - No two types in named namespaces have the same qualified name (the one-definition rule).
 - A header begins with a comment that says what it is for, and has #pragma once; C headers have guards.

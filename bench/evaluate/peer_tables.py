@@ -17,7 +17,8 @@ TITLES = {"auto": "auto", "packed": "packed", "sperr": "SPERR", "sz3": "SZ3", "z
 
 
 def by_volume(measured):
-    """Returns volume's name -> method -> result, in the order of METHODS, without seconds of other weir versions."""
+    """Returns volume's name -> method -> result, in the order of METHODS. A result of another weir version than the
+    volume's first has no speeds."""
     by, versions = {}, {}
     for record in sorted(measured.records("peers"), key=lambda r: METHODS.index(r["result"]["method"])):
         result = record["result"]

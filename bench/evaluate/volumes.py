@@ -16,7 +16,7 @@ import sys
 from phantom import write_phantom
 
 _TYPE_CODES = {"uint8": "B", "int16": "h", "uint16": "H", "float32": "f"}
-_LARGE_BYTES = 1 << 30  # larger files are deleted after each use
+_LARGE_BYTES = 1 << 30  # as float32: the raw file of a larger volume is deleted after each use
 PHANTOM = "phantom"  # the kind that phantom.py makes
 
 
@@ -129,7 +129,7 @@ def full_set():
 
 
 class VolumeFiles:
-    """Makes missing files of volumes. Files stay in DIR/volumes, large ones only while they are used."""
+    """Makes missing files of volumes in DIR/volumes. They stay, except raw files of large volumes."""
 
     def __init__(self, directory, data, weir):
         self.directory = pathlib.Path(directory) / "volumes"

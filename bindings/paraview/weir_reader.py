@@ -7,13 +7,13 @@
     reader.Update()
     image = reader.GetOutputDataObject(0)     # vtkImageData
 
-The point data has the grid's values, float32, under the grid's name. Each voxel is a point. The point with index (i,
-j, k) lies at origin + spacing * (i, j, k), with the file's origin and spacing; the extent counts from 0. At level n a
-point is the mean of a cube of 2^n voxels along an edge and lies in the cube's middle; the spacing is 2^n times the
-file's. At the upper ends of the axes the mean is over the voxels that exist. Only the requested extent is decoded. At
-a level, only some rows of finer voxels are held at a time, so that a level of a file larger than memory can be
-opened. If the file has a sidecar, the field data has the sidecar's certificate: "weir_rmse" and "weir_max_abs" in the
-values' own unit and, if anything was lost, "weir_psnr_db".
+The point data has the grid's values, float32, under the grid's name. Each voxel is a point. The voxel that has the
+index (i, j, k) in the file lies at the file's origin + spacing * (i, j, k). The image's extent counts from 0, the
+lowest voxel. At level n a point is the mean of a cube of 2^n voxels along an edge and lies in the cube's middle; the
+spacing is 2^n times the file's. At the upper ends of the axes the mean is over the voxels that exist. Only the
+requested extent is decoded. At a level, only some rows of finer voxels are held at a time, so that a level of a file
+larger than memory can be opened. If the file has a sidecar, the field data has the sidecar's certificate: "weir_rmse"
+and "weir_max_abs" in the values' own unit and, if anything was lost, "weir_psnr_db".
 
 Several files of one extent are the steps of a series, at the times 0, 1, 2, ...
 

@@ -9,8 +9,6 @@ BlockSample::BlockSample(const NodeLattice& leaves) : count_(leaves.count) {
   constexpr std::int64_t kPart = 64;  // one block in so many
   constexpr std::int64_t kLeast = 1024;
   constexpr std::int64_t kMost = 8192;
-  // In blocks. A sample of longer rows has fewer rows and tells less about sparse volumes.
-  constexpr std::int64_t kLongestRow = 64;
   rows_along_x_ = (count_.x + kLongestRow - 1) / kLongestRow;
   row_length_ = ceil_div(count_.x, rows_along_x_);
   const std::int64_t all = rows_along_x_ * count_.y * count_.z;

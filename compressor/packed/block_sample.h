@@ -11,11 +11,17 @@ namespace weir {
 
 class BlockSample {
  public:
+  /// The most blocks of a row. A sample of longer rows has fewer rows and tells less about sparse volumes.
+  static constexpr std::int64_t kLongestRow = 64;
+
   /// Samples a volume with these `leaves`: about one block in 64, at least about 1,000 and at most about 8,000 blocks.
   explicit BlockSample(const NodeLattice& leaves);
 
-  /// Returns whether the sample has the block at lattice position `leaf`.
+  /// Returns whether the sample has the block at lattice position `leaf`. The answer is the same for all blocks of a
+  /// line along x between two neighbouring multiples of row_length().
   bool has(const Index3& leaf) const;
+  /// Returns the blocks of a row. The last row along x may be shorter.
+  std::int64_t row_length() const { return row_length_; }
   /// Returns the sampled blocks as disjoint rows of lattice positions, in the lattice's order.
   std::vector<Box> rows() const;
   std::int64_t size() const;

@@ -93,7 +93,7 @@ struct PackedLadder {
   }
 
   /// Returns the step number of a rung.
-  std::int32_t step(std::size_t rung) const { return rung_step(first_step, static_cast<std::int32_t>(rung)); }
+  std::int32_t step(std::size_t rung) const { return first_step + kRungOffsets[rung]; }
 };
 static_assert(sizeof(PackedLadder) == 144, "ladders are spilled as they are");
 static_assert(std::size_t{kFirstNearLevel} == PackedLadder::kMostRungs + 1, "levels of rungs end where others begin");

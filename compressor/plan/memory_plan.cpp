@@ -19,7 +19,7 @@ namespace {
 constexpr std::uint64_t kWorkerBytes = 4ULL << 20U;
 // Code pages touched later, libraries' heaps, the head, one upper node's image, small layers of macrocells: 1 MiB of
 // these, twice.
-constexpr std::uint64_t kSlackBytes = 8ULL << 20U;
+constexpr std::uint64_t kSlackBytes = 7ULL << 20U;
 constexpr std::uint64_t kMiB = 1ULL << 20U;
 constexpr std::uint64_t kLeastBlockBytes = kMiB;
 // There are two blocks, and each has its rows, a 43rd of its size. A quarter of the remaining memory stays free for

@@ -1,5 +1,6 @@
 #include "compressor/select/cut_search.h"
 
+#include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
@@ -18,6 +19,19 @@ namespace {
 
 // The keys of all purchases that are not required.
 constexpr KeyRange kAllKeys{std::bit_cast<std::uint64_t>(kLastKey), std::bit_cast<std::uint64_t>(kRequiredKey)};
+
+using CountsOfThreads = tbb::enumerable_thread_specific<KeyCounts>;
+
+// Adds the counts of all threads to `total`. One thread would take as long to add the counts of 16 threads as the 16
+// take to count.
+void add_all(const CountsOfThreads& counts, KeyCounts& total) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, total.buckets.size(), 512), [&](const auto& range) {
+    for (const KeyCounts& counted : counts) {
+      for (std::size_t i = range.begin(); i < range.end(); ++i) total.buckets[i] += counted.buckets[i];
+    }
+  });
+  for (const KeyCounts& counted : counts) total.outside += counted.outside;
+}
 
 }  // namespace
 
@@ -74,7 +88,7 @@ KeyCounts CutSearch::count(const KeyRange& range, const PurchaseGoal& goal) cons
 }
 
 void CutSearch::count_steps(const PurchaseGoal& goal, KeyCounts& total) const {
-  tbb::enumerable_thread_specific<KeyCounts> local{KeyCounts(total.range)};
+  CountsOfThreads local{KeyCounts(total.range)};
   const auto begin = [&] {
     return [&, &counted = local.local()](const HeldSteps::Step& step) {
       counted.add(step.key, goal.weight(step.bytes(rule_.region_bytes()), step.gain));
@@ -86,7 +100,7 @@ void CutSearch::count_steps(const PurchaseGoal& goal, KeyCounts& total) const {
   } else {
     for_each_key(begin);
   }
-  for (const KeyCounts& counted : local) total += counted;
+  add_all(local, total);
   rows_.team().sum<PurchaseSum>(total.buckets);
   rows_.team().sum<PurchaseSum>(total.outside.parts);
 }

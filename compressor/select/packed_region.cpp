@@ -209,24 +209,16 @@ RegionStreams::RegionStreams(const MeanRange& means, const PackedRule& rule)
     const std::int32_t step = coarsest_ + static_cast<std::int32_t>(field);
     mean_bits_[field] = static_cast<std::uint8_t>(step > kMostStep ? kNoMeanBits : mean_bits(means, step));
     if (mean_bits_[field] != kNoMeanBits) finest_ = step;
+    if (step >= kLeastStep && step <= kMostStep)
+      mean_errors_[field] = kMeanErrors[static_cast<std::size_t>(step - kLeastStep)];
   }
 }
 
-double RegionStreams::error(const PackedLadder& ladder, KeptLevel level, const LeafRow& row,
-                            std::int64_t voxels) const {
-  if (level == kExactLevel) return 0;
-  if (level >= kFirstNearLevel) return ladder.near[level - kFirstNearLevel].error.value() * row.sse;
-  const std::size_t rung = level - 1U;
-  const std::int32_t written = step(ladder, rung);
-  const double of_values = ladder.rungs[rung].error.value() * row.sse;
-  if (written != ladder.step(rung) && row.finite == kLeafVoxels) {
-    // Codes so far apart may hit the mean of many blocks, or miss it by as much.
-    const float decoded = decode_mean(means_, written, mean_code(means_, written, row.mean));
-    const double off = static_cast<double>(decoded) - static_cast<double>(row.mean);
-    return of_values + off * off * static_cast<double>(voxels);
-  }
-  return of_values + kMeanErrors[static_cast<std::size_t>(written - kLeastStep)] * static_cast<double>(voxels) /
-                         static_cast<double>(kLeafVoxels);
+double RegionStreams::coarse_mean_error(std::int32_t written, const LeafRow& row, std::int64_t voxels) const {
+  // Codes so far apart may hit the mean of many blocks, or miss it by as much.
+  const float decoded = decode_mean(means_, written, mean_code(means_, written, row.mean));
+  const double off = static_cast<double>(decoded) - static_cast<double>(row.mean);
+  return off * off * static_cast<double>(voxels);
 }
 
 PackedKind packed_kind(const PackedLadder& ladder, KeptLevel level) {

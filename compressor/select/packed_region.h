@@ -65,8 +65,25 @@ class RegionStreams {
     const std::int32_t step = ladder.step(rung);
     return ladder.rungs[rung].bits == kMeanAloneBits ? std::min(step, finest_) : step;
   }
+  /// A block's stream.
+  struct Stream {
+    std::uint32_t bytes = 0;  ///< 0: the stream is not available, and has no error
+    double error = 0;         ///< the expected squared error of the block's in-domain voxels
+  };
+  /// Return the stream of a rung and of a near rung.
+  Stream rung(const PackedLadder& ladder, std::size_t rung, const LeafRow& row, std::int64_t voxels) const {
+    const std::uint32_t bytes = bytes_of_rung(ladder, rung);
+    return bytes == 0 ? Stream{} : Stream{bytes, error_of_rung(ladder, rung, row, voxels)};
+  }
+  static Stream near_rung(const PackedLadder& ladder, std::size_t rung, const LeafRow& row) {
+    return {ladder.near[rung].bytes, ladder.near[rung].error.value() * row.sse};
+  }
   /// Returns the expected squared error of a block's in-domain voxels at `level`, which is not 0.
-  double error(const PackedLadder& ladder, KeptLevel level, const LeafRow& row, std::int64_t voxels) const;
+  double error(const PackedLadder& ladder, KeptLevel level, const LeafRow& row, std::int64_t voxels) const {
+    if (level == kExactLevel) return 0;
+    if (level >= kFirstNearLevel) return near_rung(ladder, level - kFirstNearLevel, row).error;
+    return error_of_rung(ladder, level - 1U, row, voxels);
+  }
 
  private:
   // Returns 0 if the rung was not built or is not available.
@@ -76,11 +93,24 @@ class RegionStreams {
     if (bits == 0 || field >= mean_bits_.size() || mean_bits_[field] == kNoMeanBits) return 0;
     return stream_bytes(bits, mean_bits_[field]);
   }
+  double error_of_rung(const PackedLadder& ladder, std::size_t rung, const LeafRow& row, std::int64_t voxels) const {
+    const std::int32_t written = step(ladder, rung);
+    const double of_values = ladder.rungs[rung].error.value() * row.sse;
+    if (written != ladder.step(rung) && row.finite == kLeafVoxels) {
+      return of_values + coarse_mean_error(written, row, voxels);
+    }
+    const auto field = static_cast<std::size_t>(written - coarsest_);
+    return of_values + mean_errors_[field] * static_cast<double>(voxels) / static_cast<double>(kLeafVoxels);
+  }
+  // Returns the squared error of the mean alone, written at a coarser step than its rung's.
+  double coarse_mean_error(std::int32_t written, const LeafRow& row, std::int64_t voxels) const;
 
   MeanRange means_;
   std::int32_t coarsest_;
-  std::int32_t finest_;                                 // finest step at which means have codes
-  std::array<std::uint8_t, kPackedSteps> mean_bits_{};  // by the field of the step
+  std::int32_t finest_;  // finest step at which means have codes
+  // By the field of the step.
+  std::array<std::uint8_t, kPackedSteps> mean_bits_{};
+  std::array<double, kPackedSteps> mean_errors_{};  // squared error of a block's mean
 };
 
 /// The planned streams of a region: bytes and step of each block. 0 bytes: the block has no stream.

@@ -89,18 +89,22 @@ void GainRule::add_packed_steps(const PackedLadder& ladder, const SharedValues& 
   if (nothing_does && !leaf.required) return;
   std::array<PackedPoint, PackedLadder::kMostRungs + PackedLadder::kMostNear> ways;
   std::size_t count = 0;
-  const auto add = [&](KeptLevel first, const RungRange& rungs) {
+  const auto add = [&](KeptLevel first, std::size_t rung, const RegionStreams::Stream& way) {
+    if (way.bytes == 0) return;
+    ways[count++] = {way.bytes + kEndBytes, weights.kept * way.error, static_cast<KeptLevel>(first + rung)};
+  };
+  const auto add_rungs = [&](const RungRange& rungs) {
     for (std::size_t rung = rungs.first; rung < rungs.end; ++rung) {
-      const auto level = static_cast<KeptLevel>(first + rung);
-      const std::uint32_t bytes = stream(level);
-      if (bytes > 0) ways[count++] = {bytes, weights.kept * streams.error(ladder, level, row, voxels), level};
+      add(1, rung, streams.rung(ladder, rung, row, voxels));
     }
   };
   LadderRange range{{PackedLadder::kMeanRungs, ladder.count}, {0, ladder.near_count}};
   if (packed->window) range = range_within(*packed->window, ladder, row);
-  add(1, {0, std::min<std::size_t>(PackedLadder::kMeanRungs, ladder.count)});
-  add(1, range.rungs);
-  add(kFirstNearLevel, range.near);
+  add_rungs({0, std::min<std::size_t>(PackedLadder::kMeanRungs, ladder.count)});
+  add_rungs(range.rungs);
+  for (std::size_t rung = range.near.first; rung < range.near.end; ++rung) {
+    add(kFirstNearLevel, rung, RegionStreams::near_rung(ladder, rung, row));
+  }
   if (range.near.first < range.near.end) {
     std::sort(ways.begin(), ways.begin() + static_cast<std::ptrdiff_t>(count),
               [](const PackedPoint& a, const PackedPoint& b) {

@@ -287,7 +287,7 @@ void BlockSurvey::add(const Block& block, const Box& leaf_box, Sharing sharing) 
   tallies_.local().loss.add(block.loss);
 }
 
-bool BlockSurvey::take(const SurveyedBlock& found, const BlockSummary& summary, const Index3& leaf, Tally& tally,
+bool BlockSurvey::take(const SurveyedBlock& found, const BlockSummary& summary, bool sampled, Tally& tally,
                        LeafRow& row, PackedLadder& ladder) const {
   if (summary.finite < kLeafVoxels) return false;
   row = {};
@@ -295,7 +295,7 @@ bool BlockSurvey::take(const SurveyedBlock& found, const BlockSummary& summary, 
   if (row.uniform()) {
     ladder = LadderBuilder::uniform();
   } else {
-    const NearRungs near = ladders_->near_for(row, sample_.has(leaf));
+    const NearRungs near = ladders_->near_for(row, sampled);
     const auto built = tally.builder(*ladders_).build_from(found, row, near);
     if (!built) return false;
     ladder = *built;
@@ -306,30 +306,40 @@ bool BlockSurvey::take(const SurveyedBlock& found, const BlockSummary& summary, 
   return true;
 }
 
-std::vector<std::uint32_t> BlockSurvey::take(const SurveyedBlocks& found, const Box& leaf_box) {
-  constexpr std::int64_t kRun = 128;  // leaves; their rows and ladders stay in a core's cache
+std::vector<std::uint32_t> BlockSurvey::take(const SurveyedBlocks& found, std::span<const Box> parts, Taken taken) {
   const NodeLattice& lattice = rows_.leaves();
-  const Index3 extent = leaf_box.extent();
-  const Index3 runs{ceil_div(extent.x, kRun), extent.y, extent.z};
+  const Index3 extent = parts.front().extent();
+  // A run is the part of a line along x in which the sample has all leaves or none.
+  const std::int64_t length = sample_.row_length();
+  const Index3 runs{ceil_div(extent.x, length) + 1, extent.y, extent.z};  // one more, as a box may begin within a run
+  const std::int64_t all_runs = volume(runs) * std::ssize(parts);
   tbb::enumerable_thread_specific<std::vector<std::uint32_t>> left;
-  tbb::parallel_for(tbb::blocked_range<std::int64_t>(0, volume(runs), 2), [&](const auto& range) {
+  tbb::parallel_for(tbb::blocked_range<std::int64_t>(0, all_runs, 8), [&](const auto& range) {
     const TraceSpan span(trace_, "survey");
-    std::array<LeafRow, kRun> rows;
-    std::array<PackedLadder, kRun> ladders;
+    std::array<LeafRow, BlockSample::kLongestRow> rows;
+    std::array<PackedLadder, BlockSample::kLongestRow> ladders;
     Tally& tally = tallies_.local();
     for (std::int64_t run = range.begin(); run < range.end(); ++run) {
-      const Index3 place = index_at(run, runs);
-      const Index3 first{place.x * kRun, place.y, place.z};
-      const auto count = static_cast<std::size_t>(std::min(kRun, extent.x - first.x));
-      const auto begin = static_cast<std::size_t>(linear_index(first, extent));
+      const Box& part = parts[static_cast<std::size_t>(run / volume(runs))];
+      const Index3 place = index_at(run % volume(runs), runs);
+      Index3 first = part.lo + Index3{0, place.y, place.z};
+      const std::int64_t begin_x = (part.lo.x / length + place.x) * length;
+      const std::int64_t end_x = std::min(begin_x + length, part.hi.x);
+      first.x = std::max(begin_x, first.x);
+      if (first.x >= end_x) continue;
+      const bool sampled = sample_.has(first);
+      if (sampled && taken == Taken::unsampled) continue;
+      const auto count = static_cast<std::size_t>(end_x - first.x);
+      const std::int64_t before = run / volume(runs) * volume(extent);
+      const auto begin = static_cast<std::size_t>(before + linear_index(first - part.lo, extent));
       for (std::size_t i = 0; i < count; ++i) {
-        const Index3 leaf = leaf_box.lo + first + Index3{static_cast<std::int64_t>(i), 0, 0};
+        const Index3 leaf = first + Index3{static_cast<std::int64_t>(i), 0, 0};
         const std::size_t at = begin + i;
         const bool whole = lattice.voxels(leaf).voxels() == kLeafVoxels;
-        if (whole && take(found.block(at), found.summaries[at], leaf, tally, rows[i], ladders[i])) continue;
+        if (whole && take(found.block(at), found.summaries[at], sampled, tally, rows[i], ladders[i])) continue;
         left.local().push_back(static_cast<std::uint32_t>(at));
       }
-      const std::int64_t linear = lattice.linear(leaf_box.lo + first);
+      const std::int64_t linear = lattice.linear(first);
       rows_.write(linear, std::span(rows).first(count));
       rows_.ladders()->write(linear, std::span(ladders).first(count));
     }

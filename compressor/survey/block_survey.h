@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "compressor/leaf/leaf_summary.h"
@@ -40,11 +41,13 @@ class BlockSurvey {
   /// Surveys all leaves of `leaf_box` (lattice positions). `block` holds their in-domain voxels. Add each leaf once.
   void add(const Block& block, const Box& leaf_box, Sharing sharing);
 
-  /// Stores the rows and ladders of the leaves in `leaf_box` for which a device has `found` enough. Returns the
-  /// positions in the box of the other leaves. Their rows and ladders are undefined until survey_left() is called for
-  /// each leaf with its 512 values in leaf order, in any order and from several threads. Neither function counts
-  /// values: call add_counts() for that.
-  std::vector<std::uint32_t> take(const SurveyedBlocks& found, const Box& leaf_box);
+  /// Which leaves take() stores: all, or only those that are not in the sample.
+  enum class Taken { all, unsampled };
+  /// Stores the rows and ladders of the leaves in `parts`, boxes of one size, for which a device has `found` enough.
+  /// Returns the numbers of the others of them, counted from part to part, x fastest in a part. Their rows and ladders
+  /// are undefined until survey_left() is called for each leaf with its 512 values in leaf order, in any order and from
+  /// several threads. Neither function counts values: call add_counts() for that.
+  std::vector<std::uint32_t> take(const SurveyedBlocks& found, std::span<const Box> parts, Taken taken);
   void survey_left(const Index3& leaf, const float* block);
   /// Adds the counts of all finite values of a volume that a device holds.
   void add_counts(const RangeHistogram& histogram) { tallies_.local().histogram.merge(histogram); }
@@ -77,7 +80,7 @@ class BlockSurvey {
   class Leaves;
   // Makes the row and the ladder of a leaf that lies wholly in the volume from what a device has found. Returns false
   // if that is not enough.
-  bool take(const SurveyedBlock& found, const BlockSummary& summary, const Index3& leaf, Tally& tally, LeafRow& row,
+  bool take(const SurveyedBlock& found, const BlockSummary& summary, bool sampled, Tally& tally, LeafRow& row,
             PackedLadder& ladder) const;
   static ValueTable value_table(const SourceInfo& info);
 

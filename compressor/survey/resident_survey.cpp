@@ -7,12 +7,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "compressor/packed/block_sample.h"
 #include "compressor/packed/block_values.h"
 #include "compressor/survey/one_ahead.h"
 #include "format/process/process_memory.h"
@@ -42,62 +45,121 @@ std::vector<Box> leaf_boxes(const Index3& count) {
   return boxes;
 }
 
+// Returns groups of at most kMostBlocks blocks, each of rows of one length.
+std::vector<std::vector<Box>> equal_rows(std::span<const Box> rows) {
+  std::map<std::int64_t, std::vector<std::vector<Box>>> groups;  // by length
+  for (const Box& row : rows) {
+    const std::int64_t length = row.extent().x;
+    std::vector<std::vector<Box>>& of_length = groups[length];
+    if (of_length.empty() || (std::ssize(of_length.back()) + 1) * length > kMostBlocks) of_length.emplace_back();
+    of_length.back().push_back(row);
+  }
+  std::vector<std::vector<Box>> all;
+  for (auto& [length, of_length] : groups) std::ranges::move(of_length, std::back_inserter(all));
+  return all;
+}
+
 class ResidentSurvey {
  public:
   ResidentSurvey(ResidentVolume& resident, VolumeSource& source, RowStore& rows, const LadderAim& ladders,
-                 const RungAsk& ask, const StreamOptions& options)
+                 const StreamOptions& options)
       : resident_(resident),
         source_(source),
         leaves_(rows.leaves()),
-        ask_(ask),
+        sample_(leaves_),
+        ask_(ladders.rung_ask()),
+        sample_ask_(ask_),
         options_(options),
-        survey_(source.info(), rows, nullptr, false, options.trace, ladders, BlockSurvey::Counting::elsewhere) {}
+        survey_(source.info(), rows, nullptr, false, options.trace, ladders, BlockSurvey::Counting::elsewhere) {
+    if (ladders.near_rungs) sample_ask_.near.blocks = NearBlocks::all;
+  }
 
-  void add(std::span<const Box> boxes) {
-    one_ahead<Begun>(
-        boxes.size(), resident_.most_open(), [&](std::size_t i, Begun& begun) { begin(boxes[i], begun); },
-        [&](Begun& begun) { end(begun); });
+  void add_sampled(std::span<const Box> rows) {
+    std::vector<Task> tasks;
+    add_tasks(rows, tasks);
+    add(tasks);
   }
 
   Survey run() {
-    add(leaf_boxes(leaves_.count));
+    std::vector<Task> tasks;
+    // Sampled blocks have near rungs in any case. If other blocks have none, or only some do, the device looks at the
+    // sampled ones apart.
+    const bool differ = sample_ask_.near.blocks != ask_.near.blocks;
+    const bool apart = differ && sample_.size() <= leaves_.size() / 8;
+    if (apart) add_tasks(sample_.rows(), tasks);
+    for (Task& task : tasks) task.voxels = 0;  // counted with the boxes that the rows cross
+    for (const Box& box : leaf_boxes(leaves_.count)) {
+      tasks.push_back({{box},
+                       apart ? ask_ : sample_ask_,
+                       apart ? BlockSurvey::Taken::unsampled : BlockSurvey::Taken::all,
+                       leaves_.voxels(box).voxels()});
+    }
+    add(tasks);
     count();
     return survey_.result(survey_.tally());
   }
 
  private:
-  // A box that the device works on. Objects are reused to keep their memory.
-  struct Begun {
-    Box leaf_box;
-    std::unique_ptr<ResidentBlocks> blocks{};  // null: the host reads the box from the source
-    std::vector<float> read{};                 // values of leaves that the device cannot copy to the host
+  // Blocks that the device looks at together: a box of lattice positions, or rows of one length along x.
+  struct Task {
+    std::vector<Box> parts;
+    RungAsk ask;
+    BlockSurvey::Taken taken;
+    std::int64_t voxels = 0;  // of the progress
 
-    Index3 leaf(std::size_t at) const {
-      return leaf_box.lo + index_at(static_cast<std::int64_t>(at), leaf_box.extent());
+    Index3 leaf(std::size_t number) const {
+      const Index3 extent = parts.front().extent();
+      const auto at = static_cast<std::int64_t>(number);
+      const Box& part = parts[static_cast<std::size_t>(at / volume(extent))];
+      return part.lo + index_at(at % volume(extent), extent);
     }
   };
+  // A task that the device works on. Objects are reused to keep their memory.
+  struct Begun {
+    const Task* task = nullptr;
+    std::unique_ptr<ResidentBlocks> blocks{};  // null: the host reads the blocks from the source
+    std::vector<float> read{};                 // values of leaves that the device cannot copy to the host
+  };
 
-  void begin(const Box& box, Begun& begun) {
+  void add_tasks(std::span<const Box> rows, std::vector<Task>& tasks) const {
+    for (std::vector<Box>& parts : equal_rows(rows)) {
+      tasks.push_back({std::move(parts), sample_ask_, BlockSurvey::Taken::all});
+    }
+  }
+
+  void add(std::span<const Task> tasks) {
+    one_ahead<Begun>(
+        tasks.size(), resident_.most_open(), [&](std::size_t i, Begun& begun) { begin(tasks[i], begun); },
+        [&](Begun& begun) { end(begun); });
+  }
+
+  void begin(const Task& task, Begun& begun) {
     throw_if_cancelled(options_);
-    begun.leaf_box = box;
-    begun.blocks = resident_.open(leaves_.nodes_box(box));
-    if (begun.blocks) begun.blocks->begin_survey(ask_);
+    begun.task = &task;
+    if (task.parts.size() == 1) {
+      begun.blocks = resident_.open(leaves_.nodes_box(task.parts.front()));
+    } else {
+      std::vector<Box> rows;
+      for (const Box& part : task.parts) rows.push_back(leaves_.nodes_box(part));
+      begun.blocks = resident_.open_rows(rows);
+    }
+    if (begun.blocks) begun.blocks->begin_survey(task.ask);
   }
 
   void end(Begun& begun) {
-    const Box& box = begun.leaf_box;
+    const Task& task = *begun.task;
     if (const auto found = begun.blocks ? begun.blocks->end_survey() : std::nullopt) {
-      const std::vector<std::uint32_t> all_left = survey_.take(*found, box);
+      const std::vector<std::uint32_t> all_left = survey_.take(*found, task.parts, task.taken);
       const std::span<const std::uint32_t> left(all_left);
       for (std::size_t at = 0; at < left.size(); at += kMostLeft) {
         survey_left(begun, left.subspan(at, std::min(kMostLeft, left.size() - at)));
       }
     } else {
-      survey_read(box);
+      for (const Box& part : task.parts) survey_read(part, task.taken);
     }
     begun.blocks.reset();
     const std::lock_guard lock(progress_);
-    done_ += leaves_.voxels(box).voxels();
+    done_ += task.voxels;
     if (options_.progress) options_.progress(done_, leaves_.domain.voxels());
   }
 
@@ -106,7 +168,7 @@ class ResidentSurvey {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, left.size(), 16), [&](const auto& range) {
       const TraceSpan span(options_.trace, "survey");
       for (std::size_t k = range.begin(); k < range.end(); ++k) {
-        survey_.survey_left(begun.leaf(left[k]), values.data() + kLeafVoxels * k);
+        survey_.survey_left(begun.task->leaf(left[k]), values.data() + kLeafVoxels * k);
       }
     });
   }
@@ -114,18 +176,39 @@ class ResidentSurvey {
   std::span<const float> values_of(Begun& begun, std::span<const std::uint32_t> left) {
     const TraceSpan span(options_.trace, "read", kLeafVoxels * sizeof(float) * left.size());
     if (const auto values = begun.blocks->values(left)) return *values;
+    const Task& task = *begun.task;
     begun.read.resize(kLeafVoxels * left.size());
     std::vector<Index3> leaves;
-    for (const std::uint32_t at : left) leaves.push_back(begun.leaf(at));
-    read_blocks(source_, leaves_, begun.leaf_box, leaves, begun.read);
+    for (const std::uint32_t number : left) leaves.push_back(task.leaf(number));
+    if (task.parts.size() == 1) {
+      read_blocks(source_, leaves_, task.parts.front(), leaves, begun.read);
+      return begun.read;
+    }
+    for (std::size_t k = 0; k < leaves.size(); ++k) {
+      const Box alone{leaves[k], leaves[k] + Index3{1, 1, 1}};
+      const std::span<float> values = std::span(begun.read).subspan(kLeafVoxels * k, kLeafVoxels);
+      read_blocks(source_, leaves_, alone, std::span(leaves).subspan(k, 1), values);
+    }
     return begun.read;
   }
 
-  void survey_read(const Box& leaf_box) {
+  void survey_read(const Box& leaf_box, BlockSurvey::Taken taken) {
     const Box voxels = leaves_.voxels(leaf_box);
     std::vector<float> values(static_cast<std::size_t>(voxels.voxels()));
     const ConversionLoss loss = source_.read(voxels, values);
-    survey_.add({0, voxels, values, loss}, leaf_box, BlockSurvey::Sharing::shared);
+    if (taken == BlockSurvey::Taken::all) {
+      return survey_.add({0, voxels, values, loss}, leaf_box, BlockSurvey::Sharing::shared);
+    }
+    std::vector<Box> unsampled;  // runs along x
+    for_each_index(leaf_box, [&](const Index3& leaf) {
+      if (sample_.has(leaf)) return;
+      const Index3 end = leaf + Index3{1, 1, 1};
+      const bool goes_on = !unsampled.empty() && unsampled.back().hi == Index3{leaf.x, end.y, end.z};
+      goes_on ? void(unsampled.back().hi.x = end.x) : unsampled.push_back({leaf, end});
+    });
+    tbb::parallel_for(std::size_t{0}, unsampled.size(), [&](std::size_t i) {
+      survey_.add({0, voxels, values, i == 0 ? loss : ConversionLoss{}}, unsampled[i], BlockSurvey::Sharing::alone);
+    });
   }
 
   // Counts all finite values in the histogram bins of the final range, which is known only now.
@@ -157,7 +240,9 @@ class ResidentSurvey {
   ResidentVolume& resident_;
   VolumeSource& source_;
   const NodeLattice& leaves_;
+  const BlockSample sample_;
   const RungAsk ask_;
+  RungAsk sample_ask_;
   const StreamOptions& options_;
   BlockSurvey survey_;
   std::mutex progress_;
@@ -180,16 +265,14 @@ void make_pages_of(RowStore& rows, tbb::task_group& tasks) {
 
 Survey survey_resident(ResidentVolume& resident, VolumeSource& source, RowStore& rows, const LadderAim& ladders,
                        const StreamOptions& options) {
-  return ResidentSurvey(resident, source, rows, ladders, ladders.rung_ask(), options).run();
+  return ResidentSurvey(resident, source, rows, ladders, options).run();
 }
 
 void survey_resident_sample(ResidentVolume& resident, VolumeSource& source, RowStore& rows, const LadderAim& ladders,
                             std::span<const Box> boxes, const StreamOptions& options) {
-  RungAsk ask = ladders.rung_ask();
-  if (ladders.near_rungs) ask.near.blocks = NearBlocks::all;
   tbb::task_group pages;
   make_pages_of(rows, pages);
-  ResidentSurvey(resident, source, rows, ladders, ask, options).add(boxes);
+  ResidentSurvey(resident, source, rows, ladders, options).add_sampled(boxes);
   pages.wait();
 }
 

@@ -106,6 +106,8 @@ struct WatchView {
   std::optional<JobView> last_done{};  ///< the newest result
   std::uint64_t waiting_bytes = 0;     ///< of the sources of its waiting jobs
   double done_per_min = 0;             ///< conversions, over the last ten minutes
+  /// Whether a file system is mounted at the watch's `output_mount`; none if it has no such key.
+  std::optional<bool> output_mounted{};
 };
 
 /// A file system that outputs are written to.

@@ -110,6 +110,10 @@ void write_watches(MetricsWriter& out, const StatusView& status) {
   for (const WatchView& watch : status.watches) {
     out.sample({{"watch", watch.label}, {"method", watch.method}}, flag(watch.up));
   }
+  out.family("watch_output_mounted", "gauge", "1 while a file system is mounted at the watch's output_mount.");
+  for (const WatchView& watch : status.watches) {
+    if (watch.output_mounted) out.sample({{"watch", watch.label}}, flag(*watch.output_mounted));
+  }
   out.family("watch_jobs", "gauge", "Jobs by watched directory and state.");
   for (const WatchView& watch : status.watches) {
     for (std::size_t i = 0; i < kJobStates; ++i) {

@@ -69,6 +69,8 @@ class JobRunner {
   /// Which file systems jobs wait for, because they are full or not mounted. Jobs on others go on. Empty: none.
   std::string waits_for_disks() const;
   bool paused() const { return scheduler_.paused(); }
+  /// Returns whether a file system was last seen at `output_mount` of a watch.
+  bool is_mounted(const std::string& output_mount) const { return mounts_.mounted(output_mount); }
   /// Returns why the state file cannot be written; empty if it can.
   const std::string& store_fault() const { return writes_.fault(); }
 

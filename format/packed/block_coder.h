@@ -245,6 +245,11 @@ class ResidentVolume {
   /// wholly in the volume. Null if the volume has failed, has no room, or has most_open() boxes open already: the
   /// caller then reads the values.
   virtual std::unique_ptr<ResidentBlocks> open(const Box& blocks) = 0;
+  /// Opens rows of blocks along x as a single set: at least one row, all equally long and one block thick. The blocks
+  /// are numbered row after row. They are only surveyed: no stream may be asked for. Counts as one box. Null as for
+  /// open().
+  virtual std::unique_ptr<ResidentBlocks> open_rows(std::span<const Box> rows) = 0;
+  /// Returns how many boxes may be open at a time.
   virtual std::size_t most_open() const = 0;
 
   /// Returns, for each i < bins, the number of finite values v with floor(v * 2^-exponent) - base = i. Every finite

@@ -1,7 +1,9 @@
 // The steps of the quantiser, and the code of a block's mean (FORMAT.md, "Steps"). For host and device.
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 
 #include "format/base/host_device.h"
@@ -41,10 +43,19 @@ inline constexpr std::int32_t kLadderMeanRungs = 2;
 /// Returns the step number of a rung, for a ladder with the first step `first`. Rungs go by whole octaves until the
 /// first coefficient counts, then by half octaves, by whole ones again, and at last, for nearly lossless steps, by two
 /// octaves.
-WEIR_HOST_DEVICE inline std::int32_t rung_step(std::int32_t first, std::int32_t rung) {
+WEIR_HOST_DEVICE constexpr std::int32_t rung_step(std::int32_t first, std::int32_t rung) {
   const std::int32_t r = rung;
   return first + (r <= 2 ? 2 * r : r <= 10 ? r + 2 : r <= 16 ? 2 * r - 8 : 4 * r - 40);
 }
+
+/// rung_step() less `first`, for each rung.
+inline constexpr std::array<std::int8_t, kLadderRungs> kRungOffsets = [] {
+  std::array<std::int8_t, kLadderRungs> offsets{};
+  for (std::int32_t rung = 0; rung < kLadderRungs; ++rung) {
+    offsets[static_cast<std::size_t>(rung)] = static_cast<std::int8_t>(rung_step(0, rung));
+  }
+  return offsets;
+}();
 
 /// Returns the step number of the first rung for a block with the given largest coefficient: four steps before that
 /// coefficient counts.

@@ -12,11 +12,13 @@
 #include "compressor/push/pushed_volume.h"
 #include "compressor/push/resident_source.h"
 #include "format/base/error.h"
+#include "format/base/text.h"
 #include "gpu/cuda/encode/resident_volume.h"
 #include "tests/compressor/support/hard_cases.h"
 #include "tests/fake_coder/support.h"
 #include "tests/fake_cuda/fake_runtime.h"
 #include "tests/support/message_of_error.h"
+#include "tests/support/row_survey.h"
 
 namespace weir::fake_coder_test {
 namespace {
@@ -90,6 +92,12 @@ TEST_F(Resident, ValuesOfALargerVolumeStayOnTheDevice) {
     EXPECT_EQ(result.file == expected.file, true);
     EXPECT_EQ(source->bytes_read(), 0U);
   }
+}
+
+TEST_F(Resident, RowsOfBlocksAreSurveyedAsInABox) {
+  const MemoryVolume volume = cloud();
+  const auto resident = make_resident_volume(0, volume.values().data(), kOdd, no_failure);
+  test::expect_rows_surveyed_as_in_a_box(*resident);
 }
 
 // A row of blocks is processed in parts. In both parts the device leaves some blocks to the host: those with NaN, and
@@ -207,13 +215,19 @@ TEST_F(Resident, WhereTheDeviceHasNoRoomTheHostDoesItsWorkAndSaysItOnce) {
 
 TEST_F(Resident, ADeviceThatIsGoneEndsTheConversionAndLeavesNothing) {
   MemoryVolume volume = turbulence();
-  for (const int nth : {0, 2, 5}) {
-    SCOPED_TRACE(nth);
+  struct Fault {
+    const char* function;
+    int nth;
+  };
+  for (const Fault& fault :
+       {Fault{"cudaStreamSynchronize", 0}, Fault{"cudaStreamSynchronize", 2}, Fault{"cudaStreamSynchronize", 5},
+        Fault{"cudaEventSynchronize", 0}, Fault{"cudaEventSynchronize", 2}, Fault{"cudaEventRecord", 1}}) {
+    SCOPED_TRACE(cat(fault.function, ", call ", fault.nth));
     runtime().reset();
     std::vector<std::string> said;
     const std::unique_ptr<VolumeSource> source =
         on_device(volume, [&](const Error& error) { said.emplace_back(error.what()); });
-    runtime().fail("cudaStreamSynchronize", nth, cudaErrorIllegalAddress, true);
+    runtime().fail(fault.function, fault.nth, cudaErrorIllegalAddress, true);
     ConversionOptions options = with(budget_of(Budget::Kind::rate, 8));
     options.resume = Resume::off;
     options.output = "out.nvdb";
@@ -224,6 +238,31 @@ TEST_F(Resident, ADeviceThatIsGoneEndsTheConversionAndLeavesNothing) {
     EXPECT_NE(message.find("cudaErrorIllegalAddress"), std::string::npos) << message;
     EXPECT_TRUE(files.names().empty());
     EXPECT_LE(said.size(), 1U);
+  }
+}
+
+// A sample of the blocks is surveyed before the others and apart from them. The second volume has boxes that begin
+// within a row of the sample.
+TEST_F(Resident, OfALargerVolumeTheHostDoesWhatTheDeviceHasNoRoomFor) {
+  for (const Box& domain : {Box{{0, 0, 0}, {256, 136, 136}}, Box{{3, 0, 0}, {65'700, 15, 14}}}) {
+    MemoryVolume volume = turbulence(domain);
+    ConversionOptions options = with(budget_of(Budget::Kind::rate, 20));
+    options.resume = Resume::off;
+    const Result expected = convert_by(nullptr, volume, options);
+    int failures = 0;
+    for (const int nth : {0, 6, 1'000'000}) {
+      SCOPED_TRACE(cat(domain.hi.x, " voxels along x, call ", nth));
+      runtime().reset();
+      int said = 0;
+      const std::unique_ptr<VolumeSource> source = on_device(volume, [&](const Error&) { ++said; });
+      runtime().fail("cudaMallocAsync", nth, cudaErrorMemoryAllocation);
+      const Result result = convert_by(nullptr, *source, options);
+      EXPECT_EQ(result.file == expected.file, true);
+      EXPECT_EQ(result.sidecar.source.digest, expected.sidecar.source.digest);
+      EXPECT_EQ(result.sidecar.error.psnr_db, expected.sidecar.error.psnr_db);
+      failures += said;
+    }
+    EXPECT_GE(failures, 2);
   }
 }
 

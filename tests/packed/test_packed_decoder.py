@@ -21,7 +21,7 @@ from samples import F32, MEANS, UNIFORM, constants, random_numbers, values_of  #
 
 
 class File(unittest.TestCase):
-    """A file of three regions along x. The blocks take all kinds in turn."""
+    """A file of three regions along x, built here. The kind of each block is random; some have no stream."""
 
     LOW, HIGH = (-5, 3, 10), (260, 20, 30)  # the index box, without HIGH
     TWO_BLOCKS = "mean 0, transform 2, lattice 0, raw 0, no stream 0\n"

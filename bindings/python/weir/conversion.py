@@ -105,8 +105,9 @@ def convert(
         ".nvdb" in the source's folder, and names the chosen volume if the source holds several. An existing file is
         replaced only with overwrite=True.
 
-    At most one of rate, size, psnr, max_error and lossless sets the size. Without any of them rate is 8; a volume of
-    less than 128^3 voxels then gets what keeps at least 40 dB:
+    At most one of rate, size, psnr, max_error and lossless sets the size. Without any of them rate is 8, or the
+    smallest possible file if that is larger. A volume of less than 128^3 voxels that rate 8 would leave below 40 dB
+    gets a larger file, of at least 40 dB or lossless, if its encoding can reach that:
 
     rate
         The file has exactly ceil(float32 bytes of the volume / rate) bytes.

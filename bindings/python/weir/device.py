@@ -16,7 +16,7 @@ from .errors import UsageError
 _HOST = (1, 3)  #: host memory, page-locked host memory
 _CUDA = (2, 13)  #: device memory, managed memory
 
-#: CUDA's legacy default stream, which synchronizes with all other streams.
+#: The stream passed to __dlpack__: CUDA's legacy default stream, which then waits for the work that makes the values.
 _DEFAULT_STREAM = 1
 
 #: Exceptions that occur if the answer of an array's protocol does not have the form that the protocol prescribes.
@@ -34,7 +34,7 @@ class DeviceArray:
     type: str  #: numpy's name of the value type, or "bfloat16"
     shape: tuple[int, ...]
     strides: tuple[int, ...]  #: bytes
-    stream: Optional[int]  #: the stream on which the values are computed; None if they are complete
+    stream: Optional[int]  #: its work must end before the values are read; None: nothing to wait for
     owner: Any
 
 

@@ -345,13 +345,15 @@ class Grid:
         range: (low, high), the values that colours and opacity span.
         iso: the value of the surface.
         camera: (azimuth, elevation) in degrees, or (azimuth, elevation, zoom).
-        lod: the level of detail: "auto", "off" or how many levels coarser.
-        lod_scattered: how many levels coarser still for the light that mode "path" scatters.
+        lod: the level of detail: "auto", "off" (the default), or how many levels coarser (negative: finer).
+        lod_scattered: for mode "path" with lod "auto" or a number: further levels coarser for light after its first
+        scattering and on its way from a light source.
         backend: "auto", "cpu" or "cuda".
         devices: the numbers of the CUDA devices that share the samples.
-        threads: the number of threads; 0 means all.
-        memory, device_memory: bytes, or "512MiB", of the CPU and of each device. A packed file that decodes to more
-        is rendered from a cache.
+        threads: the number of threads; 0 means one for each core.
+        memory: the CPU's limit, bytes or a text such as "512MiB"; by default what is available. A packed file that
+        decodes to more is rendered from a cache: the same picture, more slowly.
+        device_memory: the same for each CUDA device and any volume; by default what is free.
         progress: called with "render", the samples done and their total.
 
         Raises UsageError for a keyword that is out of its range and for a memory that is too small.

@@ -252,7 +252,7 @@ class HttpFile(RemoteFile):
 
 
 def _parsed(url: str, shown: str) -> urllib3.util.Url:
-    """Returns the parts of a URL as urllib3 parses them, so that both agree on the server. Raises UsageError."""
+    """Parses a URL with urllib3, so that checks see the server that urllib3 connects to. Raises UsageError."""
     import urllib3
 
     try:
@@ -313,7 +313,7 @@ def _version(response: urllib3.HTTPResponse) -> Optional[str]:
 
 
 def _tag(response: urllib3.HTTPResponse) -> Optional[str]:
-    """Returns the ETag of an answer, weak or strong: if it differs, the bytes differ."""
+    """Returns the ETag of an answer without "W/", weak or strong. A different tag is taken for a changed file."""
     tag = response.headers.get("ETag")
     return None if tag is None else tag.removeprefix("W/")
 

@@ -95,7 +95,8 @@ def _attribute(array: xarray.DataArray, shown: str, key: str) -> str:
 
 
 def _known_axes(array: xarray.DataArray) -> dict[str, Any]:
-    """Returns the names of the axes known to be x, y or z. If several claim the same, the first longer than 1."""
+    """Returns {"x": name of the axis, ...} for the axes known to be x, y or z. If several claim the same, the first
+    longer than 1 counts, otherwise the first."""
     axis_of: dict[str, Any] = {}
     for name in array.dims:
         said = str(array.coords[name].attrs.get("axis", "")) if name in array.coords else ""

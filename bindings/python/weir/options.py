@@ -75,7 +75,8 @@ def shown_urls(text: str) -> str:
 
 
 def described(value: Any, longest: int = 40) -> str:
-    """Describes `value` for a message: an array by type and shape, a text longer than `longest` by its type alone."""
+    """Describes `value` for a message: an array by type and shape, anything else by repr(), or only by its type if
+    repr() is longer than `longest` or has unprintable characters."""
     if isinstance(value, numpy.ndarray):
         return f"an array of {value.dtype} with the shape {value.shape}"
     text = repr(value)

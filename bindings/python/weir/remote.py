@@ -85,7 +85,7 @@ class RemoteGrid(Grid):
 
     @property
     def requests(self) -> int:
-        """How many requests were made so far."""
+        """How many requests returned bytes so far. Redirects, failed attempts and missing sidecars are not counted."""
         return self._file.requests
 
     @property
@@ -95,7 +95,7 @@ class RemoteGrid(Grid):
 
     @property
     def sidecar(self) -> Optional[dict[str, Any]]:
-        """What weir.convert returned, read once from the URL with ".json" appended. None if there is no sidecar.
+        """What weir.convert returned, read once from the URL with ".json" after its path. None if there is no sidecar.
 
         Raises InputError if the sidecar is damaged or belongs to another file.
         """
@@ -110,5 +110,5 @@ class RemoteGrid(Grid):
         return self._sidecar
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Pickles the grid as its URL. Unpickling in another process opens the URL there."""
+        """Pickles the grid as its whole URL, with cache and storage_options, secrets too. Unpickling opens the URL."""
         return RemoteGrid, (self._url, self._cache, self._storage_options)

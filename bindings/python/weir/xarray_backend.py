@@ -29,7 +29,8 @@ _UNNAMED = "values"
 #: Listed positions at most this far apart are read together with the voxels between them, because they lie in one
 #: block of 8^3 voxels or in two neighbouring ones.
 _GAP = 8
-#: The largest number of boxes that are read by separate calls. With more, one larger box is faster.
+#: The largest number of boxes that are read by separate calls. If there are more, near ones are joined: the gap is
+#: doubled until at most this many remain.
 _MOST_BOXES = 64
 #: The cost of looking up one voxel, in voxels of a decoded box.
 _LOOK_UP = 8
@@ -213,8 +214,8 @@ class WeirBackendEntrypoint(BackendEntrypoint):  # type: ignore[misc]
         remote_cache: Union[int, str] = "256MiB",
     ) -> xarray.Dataset:
         """Opens a file for xarray. `level` is as for Grid.to_numpy: means over cubes of 2^level voxels along an edge.
-        `storage_options` is as for weir.open. `remote_cache` is the `cache` of weir.open; xarray uses that name
-        otherwise.
+        `storage_options` is as for weir.open. `remote_cache` is the `cache` of weir.open; xarray's own `cache` says
+        whether xarray keeps values that were used.
         """
         from .grid import open as open_grid
 

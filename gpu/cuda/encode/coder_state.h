@@ -14,6 +14,7 @@
 #include "gpu/cuda/encode/encode_call.h"
 #include "gpu/cuda/encode/encoder_tables.h"
 #include "gpu/cuda/encode/reused_memory.h"
+#include "gpu/cuda/load/copy_event.h"
 #include "gpu/cuda/push/background_stream.h"
 #include "gpu/cuda/runtime/current_device.h"
 #include "gpu/cuda/runtime/device_array.h"
@@ -23,12 +24,14 @@ namespace weir {
 /// The memory of a loaded box.
 struct BoxMemory {
   BackgroundStream stream;
+  CopyEvent done;  // the results of the last call have arrived
   GrowingArray<float> values;
   GrowingArray<BlockFigures> figures;
   GrowingArray<RungCost> costs;
   GrowingArray<NearCost> near;
   GrowingPinned pinned;
   // Only for resident blocks.
+  GrowingArray<BlockRow> rows;
   GrowingArray<BlockSummary> summaries;
   GrowingArray<std::uint32_t> wanted;
   GrowingPinned wanted_values;
@@ -37,6 +40,7 @@ struct BoxMemory {
 /// The memory of a call that encodes.
 struct StreamMemory {
   BackgroundStream stream;
+  CopyEvent done;  // the results have arrived
   GrowingArray<StreamAsk> asks;
   GrowingArray<StreamState> states;
   GrowingArray<std::uint32_t> coded;

@@ -90,12 +90,13 @@ class DeviceStreams final : public PendingStreams {
     }
     copy_back(made, call.made, stream, what);
     copy_back(streams, call.out, stream, what);
+    memory_->done.record(stream);
     found_ = {streams, decoded, made, records, sources};
   }
 
   std::optional<MadeStreams> wait() override {
     return coder_->attempt([&]() -> std::optional<MadeStreams> {
-      check_cuda(cudaStreamSynchronize(memory_->stream.get()), "encoding on the device");
+      memory_->done.wait("encoding on the device");
       return found_;
     });
   }
@@ -125,6 +126,17 @@ std::optional<BlockBox> block_box(const Box& voxels, const Box& blocks) {
   return box;
 }
 
+std::vector<BlockRow> block_rows(const Box& voxels, const NodeLattice& lattice, std::span<const Box> rows) {
+  std::vector<BlockRow> places;
+  for (const Box& row : rows) {
+    const std::optional<BlockBox> box = block_box(voxels, row);
+    if (!box) return {};
+    const Index3 first{floor_div(row.lo.x, kLeafDim), floor_div(row.lo.y, kLeafDim), floor_div(row.lo.z, kLeafDim)};
+    places.push_back({lattice.linear(first - lattice.first), {box->corner[0], box->corner[1], box->corner[2]}, 0});
+  }
+  return places;
+}
+
 DeviceBlocks::DeviceBlocks(std::shared_ptr<CoderState> coder, std::unique_ptr<BoxMemory> memory,
                            std::span<const float> values, const BlockBox& box)
     : coder_(std::move(coder)), memory_(coder_->context, coder_->boxes, std::move(memory)), box_(box) {
@@ -140,6 +152,17 @@ DeviceBlocks::DeviceBlocks(std::shared_ptr<CoderState> coder, std::unique_ptr<Bo
 DeviceBlocks::DeviceBlocks(std::shared_ptr<CoderState> coder, std::unique_ptr<BoxMemory> memory, const BlockBox& box,
                            const BlockPlace& place)
     : coder_(std::move(coder)), memory_(coder_->context, coder_->boxes, std::move(memory)), box_(box), place_(place) {}
+
+DeviceBlocks::DeviceBlocks(std::shared_ptr<CoderState> coder, std::unique_ptr<BoxMemory> memory, const BlockBox& box,
+                           std::span<const BlockRow> rows)
+    : DeviceBlocks(std::move(coder), std::move(memory), box, BlockPlace{}) {
+  BlockRow* const to = memory_->rows.at_least(rows.size());
+  box_.rows = to;
+  const char* const what = "copying to the device";
+  const cudaStream_t stream = memory_->stream.get();
+  check_cuda(cudaMemcpyAsync(to, rows.data(), rows.size_bytes(), cudaMemcpyHostToDevice, stream), what);
+  check_cuda(cudaStreamSynchronize(stream), what);  // the caller may change its copy
+}
 
 void DeviceBlocks::begin_survey(const RungAsk& ask) {
   begun_ = coder_->attempt([&]() -> std::optional<SurveyedBlocks> {
@@ -175,6 +198,7 @@ void DeviceBlocks::begin_survey(const RungAsk& ask) {
       launch_summaries({box_, *place_, coder_->digests.data(), found}, stream);
       copy_back(summaries, found, stream, what);
     }
+    memory_->done.record(stream);
     return SurveyedBlocks{figures, costs, near, summaries};
   });
 }
@@ -182,7 +206,7 @@ void DeviceBlocks::begin_survey(const RungAsk& ask) {
 std::optional<SurveyedBlocks> DeviceBlocks::end_survey() {
   if (!begun_) return std::nullopt;
   return coder_->attempt([&]() -> std::optional<SurveyedBlocks> {
-    check_cuda(cudaStreamSynchronize(memory_->stream.get()), "surveying on the device");
+    memory_->done.wait("surveying on the device");
     return begun_;
   });
 }
@@ -208,7 +232,8 @@ std::optional<std::span<const float>> DeviceBlocks::values(std::span<const std::
         reinterpret_cast<float*>(memory_->wanted_values.at_least(512 * blocks.size() * sizeof(float))),
         512 * blocks.size());
     copy_back(values, found, stream, what);
-    check_cuda(cudaStreamSynchronize(stream), what);
+    memory_->done.record(stream);
+    memory_->done.wait(what);
     return values;
   });
 }

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "format/base/index.h"
 #include "format/packed/block_coder.h"
@@ -17,6 +18,10 @@ namespace weir {
 /// device's integers.
 std::optional<BlockBox> block_box(const Box& voxels, const Box& blocks);
 
+/// Returns the positions of rows of blocks, all equally long, within the box `voxels`, which has `lattice` as its
+/// blocks; empty if the numbers do not fit the device's integers.
+std::vector<BlockRow> block_rows(const Box& voxels, const NodeLattice& lattice, std::span<const Box> rows);
+
 class DeviceBlocks final : public ResidentBlocks {
  public:
   /// `memory` comes from coder->boxes. Copies `values` from the host to the device. Throws Error(io).
@@ -25,6 +30,9 @@ class DeviceBlocks final : public ResidentBlocks {
   /// For a box whose values are on the device already, at `place` of their volume.
   DeviceBlocks(std::shared_ptr<CoderState> coder, std::unique_ptr<BoxMemory> memory, const BlockBox& box,
                const BlockPlace& place);
+  /// For rows of blocks whose values are on the device already. `box` has no rows yet. Throws Error(io).
+  DeviceBlocks(std::shared_ptr<CoderState> coder, std::unique_ptr<BoxMemory> memory, const BlockBox& box,
+               std::span<const BlockRow> rows);
 
   void begin_survey(const RungAsk& ask) override;
   std::optional<SurveyedBlocks> end_survey() override;

@@ -16,16 +16,28 @@ struct DigestTables;
 /// Most voxels along an axis that fit the device's integers.
 inline constexpr std::int64_t kLongestAxis = std::numeric_limits<std::int32_t>::max() / 8;
 
-/// Values on the device, x fastest, and the blocks that they belong to.
+/// The place of a row of blocks along x.
+struct BlockRow {
+  std::int64_t linear = 0;     ///< position of the row's first block in the volume, x fastest
+  std::int32_t first[3] = {};  ///< first voxel of that block, relative to the volume's first voxel
+  std::int32_t unused = 0;
+};
+
+/// Values on the device, x fastest, and blocks of them: a box of blocks, or rows of blocks along x.
 struct BlockBox {
   const float* values = nullptr;
-  std::int32_t extent[3] = {};  ///< voxels
-  std::int32_t corner[3] = {};  ///< of the first block, relative to the first voxel: 0 or less
-  std::uint32_t blocks[3] = {};
+  std::int32_t extent[3] = {};     ///< voxels
+  std::int32_t corner[3] = {};     ///< of a box's first block, relative to the first voxel
+  std::uint32_t blocks[3] = {};    ///< along each axis; for rows: length of each row, number of rows, 1
+  const BlockRow* rows = nullptr;  ///< on the device; null: the blocks are a box
 
   WEIR_HOST_DEVICE std::uint32_t count() const { return blocks[0] * blocks[1] * blocks[2]; }
   /// Returns the first voxel of a block along an axis.
   WEIR_HOST_DEVICE std::int32_t first(std::uint32_t block, unsigned axis) const {
+    if (rows != nullptr) {
+      const std::uint32_t along = axis == 0 ? 8 * (block % blocks[0]) : 0U;
+      return rows[block / blocks[0]].first[axis] + static_cast<std::int32_t>(along);
+    }
     const std::uint32_t layer = blocks[0] * blocks[1];
     const std::uint32_t at = axis == 0   ? block % layer % blocks[0]
                              : axis == 1 ? block % layer / blocks[0]
@@ -49,6 +61,7 @@ struct BlockPlace {
 
   /// Returns the position in the volume, x fastest, of the box's block number `block`.
   WEIR_HOST_DEVICE std::int64_t linear(const BlockBox& box, std::uint32_t block) const {
+    if (box.rows != nullptr) return box.rows[block / box.blocks[0]].linear + block % box.blocks[0];
     const std::uint32_t column = block % (box.blocks[0] * box.blocks[1]);
     const std::int64_t x = first[0] + column % box.blocks[0];
     const std::int64_t y = first[1] + column / box.blocks[0];

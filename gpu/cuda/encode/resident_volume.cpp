@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -36,6 +37,20 @@ class DeviceVolume final : public ResidentVolume {
       std::unique_ptr<BoxMemory> memory = state_->boxes.take();
       if (!memory) return nullptr;
       return std::make_unique<DeviceBlocks>(state_, std::move(memory), *box, place_of(blocks));
+    });
+  }
+
+  std::unique_ptr<ResidentBlocks> open_rows(std::span<const Box> rows) override {
+    std::optional<BlockBox> box = block_box(voxels_, rows.front());
+    const std::vector<BlockRow> places = block_rows(voxels_, make_lattice(voxels_, kLeafDim), rows);
+    if (!box || places.empty()) return nullptr;
+    assert(box->blocks[1] == 1 && box->blocks[2] == 1);
+    box->values = values_;
+    box->blocks[1] = static_cast<std::uint32_t>(places.size());
+    return state_->attempt([&]() -> std::unique_ptr<ResidentBlocks> {
+      std::unique_ptr<BoxMemory> memory = state_->boxes.take();
+      if (!memory) return nullptr;
+      return std::make_unique<DeviceBlocks>(state_, std::move(memory), *box, places);
     });
   }
 

@@ -113,7 +113,7 @@ class RangeServer:
                         return self.answer(404)
                     tag = f'"{owner.versions[path]}"'
                     found = re.fullmatch(r"bytes=(\d+)-(\d+)", self.headers.get("Range", ""))
-                    same = self.headers.get("If-Range", tag) == tag  # If-Range never has a weak tag
+                    same = self.headers.get("If-Range", tag) == tag  # a weak tag never matches
                     headers = {"ETag": f"W/{tag}" if owner.weak else tag} if owner.tags else {}
                     if owner.dated is not None:
                         headers["Last_Modified"] = owner.dated

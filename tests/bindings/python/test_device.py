@@ -181,7 +181,7 @@ def cuda():
 
 
 def without_a_device():
-    """Tests the messages about an array on a device that does not exist, in builds with and without CUDA."""
+    """Returns the messages about an array on a device that does not exist: of a build with CUDA, of one without."""
     return (
         "source lies on a CUDA device, and none answers here; copy it to a numpy array first",
         "source lies on a CUDA device, and this weir was built without CUDA; copy it to a numpy array first",

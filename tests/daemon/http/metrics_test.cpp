@@ -79,6 +79,18 @@ TEST(Metrics, EscapeLabels) {
   EXPECT_EQ(lines_with(text, "weir_watch_up"), "weir_watch_up{watch=\"/in \\\"x\\\"\\\\y\\nz\",method=\"poll\"} 1\n");
 }
 
+TEST(Metrics, ShowWhetherAnOutputIsMountedIfTheWatchNamesAMountPoint) {
+  StatusView status = sample_status();
+  status.watches[0].label = "run";
+  EXPECT_EQ(lines_with(metrics_text(status, {}, {}), "weir_watch_output"), "");
+  status.watches[0].output_mounted = true;
+  EXPECT_EQ(lines_with(metrics_text(status, {}, {}), "weir_watch_output"),
+            "weir_watch_output_mounted{watch=\"run\"} 1\n");
+  status.watches[0].output_mounted = false;
+  EXPECT_EQ(lines_with(metrics_text(status, {}, {}), "weir_watch_output"),
+            "weir_watch_output_mounted{watch=\"run\"} 0\n");
+}
+
 TEST(Metrics, ShowTheNewestResultOfAWatch) {
   StatusView status = sample_status();
   status.watches[0].label = "run";

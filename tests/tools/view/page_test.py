@@ -67,7 +67,7 @@ def canvas_bytes(browser):
 
 
 def pixels(browser):
-    """Returns the canvas at a quarter of its width, as [r, g, b] of each pixel."""
+    """Returns the pixels of the whole canvas as one flat list of bytes: r, g, b, a of each pixel."""
     return browser.script("""
         const canvas = document.querySelector('#canvas');
         return [...canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data]""")
