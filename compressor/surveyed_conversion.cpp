@@ -2,8 +2,6 @@
 
 #include <tbb/parallel_invoke.h>
 
-#include <algorithm>
-#include <cmath>
 #include <future>
 #include <string>
 #include <thread>
@@ -18,7 +16,6 @@
 #include "compressor/encode/tree_writer.h"
 #include "compressor/file_digest.h"
 #include "compressor/outlook/budget_outlook.h"
-#include "compressor/packed/exact_block.h"
 #include "compressor/plan/own_threads.h"
 #include "compressor/refused_values.h"
 #include "compressor/result_notices.h"
@@ -36,7 +33,6 @@
 #include "format/layout/nvdb_type.h"
 #include "format/output/written_volume.h"
 #include "format/packed/block_coder.h"
-#include "format/packed/block_encode.h"
 #include "format/process/process_memory.h"
 #include "ingest/files/file_state.h"
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "compressor/packed/exact_block.h"
 #include "compressor/packed/ladder_builder.h"
