@@ -87,7 +87,6 @@ class ResidentSurvey {
     const bool differ = sample_ask_.near.blocks != ask_.near.blocks;
     const bool apart = differ && sample_.size() <= leaves_.size() / 8;
     if (apart) add_tasks(sample_.rows(), tasks);
-    for (Task& task : tasks) task.voxels = 0;  // counted with the boxes that the rows cross
     for (const Box& box : leaf_boxes(leaves_.count)) {
       tasks.push_back({{box},
                        apart ? ask_ : sample_ask_,
@@ -105,7 +104,7 @@ class ResidentSurvey {
     std::vector<Box> parts;
     RungAsk ask;
     BlockSurvey::Taken taken;
-    std::int64_t voxels = 0;  // of the progress
+    std::int64_t voxels = 0;  // of the progress; 0 for rows, whose voxels are counted with their boxes
 
     Index3 leaf(std::size_t number) const {
       const Index3 extent = parts.front().extent();
@@ -204,7 +203,11 @@ class ResidentSurvey {
       if (sample_.has(leaf)) return;
       const Index3 end = leaf + Index3{1, 1, 1};
       const bool goes_on = !unsampled.empty() && unsampled.back().hi == Index3{leaf.x, end.y, end.z};
-      goes_on ? void(unsampled.back().hi.x = end.x) : unsampled.push_back({leaf, end});
+      if (goes_on) {
+        unsampled.back().hi.x = end.x;
+      } else {
+        unsampled.push_back({leaf, end});
+      }
     });
     tbb::parallel_for(std::size_t{0}, unsampled.size(), [&](std::size_t i) {
       survey_.add({0, voxels, values, i == 0 ? loss : ConversionLoss{}}, unsampled[i], BlockSurvey::Sharing::alone);
