@@ -272,7 +272,7 @@ TEST_F(Mpi, PushOfMissingOrRepeatedVoxels_IsRefused) {
   refused("differing",
           "begin: 2 memory: process 2 of 3 has extent 20,30,39 where process 0 has extent 20,30,40" + remedy);
   refused("elsewhere", "begin: 2 memory: process 2 of 3 has origin 100,0,0 where process 0 has origin 0,0,0" + remedy);
-  refused("memory", "begin: 2 memory 1 B is too small for this volume with 1 thread; give at least 20MiB\n");
+  refused("memory", "begin: 2 memory 1 B is too small for this volume with 1 thread; give at least 19MiB\n");
   refused("options", cat("begin: 2 weir_convert_options: struct_size is 0, and must be at least ",
                          offsetof(weir_convert_options, preview), "; set it up with weir_convert_options_init\n"));
   refused("null",
