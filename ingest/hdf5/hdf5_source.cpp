@@ -51,13 +51,6 @@ class ChunkedSource final : public VolumeSource {
   ChunkReader reader_;
 };
 
-// Returns the file that holds a dataset; an external link may have led to another file than the opened one.
-std::string file_of(hid_t dataset) {
-  std::array<char, 4096> name{};
-  const ssize_t length = H5Fget_name(dataset, name.data(), name.size());
-  return length > 0 && static_cast<std::size_t>(length) < name.size() ? name.data() : "";
-}
-
 /// A dataset that is being opened: the common input of all the ways to read it.
 struct Opening {
   Hdf5Object object;
@@ -148,27 +141,6 @@ std::unique_ptr<VolumeSource> open_by_library(Opening opening) {
                                                std::move(place), opening.object.where()));
 }
 
-std::unique_ptr<VolumeSource> open_chunked(Opening opening) {
-  const hid_t dataset = opening.object.handle.get();
-  // If a chunk holds only some of the components, the library must join the chunks.
-  const bool whole = opening.slice.components.count == 1 ||
-                     std::cmp_equal(opening.facts.storage->chunk.back(), opening.slice.components.count);
-  if (!whole || !ChunkReader::decodes(dataset)) {
-    return open_by_library(std::move(opening));
-  }
-  ChunkedSlice slice{dataset,
-                     opening.object.where(),
-                     opening.slice.positions,
-                     opening.facts.type->scalar,
-                     opening.facts.type->big_endian,
-                     opening.info.mapping,
-                     opening.facts.storage->fill,
-                     opening.slice.components,
-                     opening.all_stored};
-  return std::make_unique<ChunkedSource>(std::move(opening.object.handle), std::move(slice), std::move(opening.info),
-                                         opening.options.memory);
-}
-
 void refuse_where_all_must_be(const Opening& opening, const AbsentValues& absent) {
   if (opening.options.missing_chunks != MissingChunks::error) return;
   throw input_error(
@@ -236,7 +208,8 @@ std::unique_ptr<StoredBoxes> open_mapped(Opening& opening, const std::string& pa
   return std::move(mapped.boxes);
 }
 
-// Opens vectors with components in volumes one behind the other, to read their magnitude.
+// Opens vectors to read their magnitude, of which each component is read apart: they lie in volumes one behind the
+// other, or in chunks of their own.
 std::unique_ptr<VolumeSource> open_planar(Opening opening) {
   const StorageKind kind = opening.facts.storage->kind;
   const std::string parent = file_of(opening.object.handle.get());
@@ -260,7 +233,8 @@ std::unique_ptr<VolumeSource> open_planar(Opening opening) {
       unwritten.add(part.unwritten);
       parts.push_back(std::move(part.boxes));
     } else {
-      parts.push_back(make_library_boxes(std::move(dataset), *opening.facts.storage, ArrayPlace::behind(index), where));
+      ArrayPlace place{opening.slice.roles.volume, index};
+      parts.push_back(make_library_boxes(std::move(dataset), *opening.facts.storage, std::move(place), where));
     }
   }
   note_unmapped(opening, unmapped);
@@ -270,6 +244,31 @@ std::unique_ptr<VolumeSource> open_planar(Opening opening) {
   files.push_back(parent);
   opening.note_files(files);
   return opening.from_boxes(std::move(boxes));
+}
+
+std::unique_ptr<VolumeSource> open_chunked(Opening opening) {
+  const hid_t dataset = opening.object.handle.get();
+  if (!ChunkReader::decodes(dataset)) {
+    const VoxelComponents components = opening.slice.components;
+    const bool split = components.count > 1 && std::cmp_less(opening.facts.storage->chunk.back(), components.count);
+    if (split && components.choice.magnitude) return open_planar(std::move(opening));
+    if (split) {  // reads the chunks of this component alone
+      opening.slice.positions.push_back(components.choice.position);
+      opening.slice.components = {};
+    }
+    return open_by_library(std::move(opening));
+  }
+  ChunkedSlice slice{dataset,
+                     opening.object.where(),
+                     opening.slice.positions,
+                     opening.facts.type->scalar,
+                     opening.facts.type->big_endian,
+                     opening.info.mapping,
+                     opening.facts.storage->fill,
+                     opening.slice.components,
+                     opening.all_stored};
+  return std::make_unique<ChunkedSource>(std::move(opening.object.handle), std::move(slice), std::move(opening.info),
+                                         opening.options.memory);
 }
 
 // Opens a volume with a time axis between or after the axes of space. The library gathers the scattered values.

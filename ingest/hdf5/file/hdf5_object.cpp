@@ -1,11 +1,19 @@
 #include "ingest/hdf5/file/hdf5_object.h"
 
+#include <array>
+
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "ingest/hdf5/file/hdf5_attribute.h"
 #include "ingest/hdf5/file/hdf5_error.h"
 
 namespace weir {
+
+std::string file_of(hid_t object) {
+  std::array<char, 4096> name{};
+  const ssize_t length = H5Fget_name(object, name.data(), name.size());
+  return length > 0 && static_cast<std::size_t>(length) < name.size() ? name.data() : "";
+}
 
 std::vector<Hdf5Handle> enclosing_groups(hid_t file, const std::string& name) {
   std::vector<Hdf5Handle> groups;

@@ -17,6 +17,10 @@ struct Hdf5Object {
   std::string where() const { return path + ": " + name; }
 };
 
+/// Returns the path of the file that holds an open object; an external link may have led to another file than the
+/// opened one. Empty if the path has 4096 bytes or more. The caller holds Hdf5Lock.
+std::string file_of(hid_t object);
+
 /// Returns the groups around an object, innermost first, the root last: for "/a/b/c" these are "/a/b", "/a" and "/".
 /// Leaves out groups that cannot be opened. The caller holds Hdf5Lock.
 std::vector<Hdf5Handle> enclosing_groups(hid_t file, const std::string& name);

@@ -46,10 +46,9 @@ struct Group {
 };
 
 Error too_deep(const Group& group) {
-  std::array<char, 4096> file{};
-  H5Fget_name(group.handle.get(), file.data(), file.size() - 1);
-  return input_error(file.data(), compose("groups are nested more than ", kMaxGroupDepth, " deep in ",
-                                          in_quotes(group.name), "; name a dataset with ", option("dataset")));
+  return input_error(file_of(group.handle.get()),
+                     compose("groups are nested more than ", kMaxGroupDepth, " deep in ", in_quotes(group.name),
+                             "; name a dataset with ", option("dataset")));
 }
 
 class GroupWalk {

@@ -35,7 +35,6 @@ Index3 volume_axes(const ChunkedSlice& slice, const std::vector<hsize_t>& elemen
 void check_slice(const ChunkedSlice& slice, const std::vector<hsize_t>& chunk) {
   const bool vectors = slice.components.count > 1;
   if (chunk.size() == slice.index.size() + kSpaceAxes + (vectors ? 1 : 0) &&
-      (!vectors || std::cmp_equal(chunk.back(), slice.components.count)) &&
       slice.fill.size() == scalar_bytes(slice.type)) {
     return;
   }
@@ -45,28 +44,42 @@ void check_slice(const ChunkedSlice& slice, const std::vector<hsize_t>& chunk) {
 }
 
 /// Returns the bytes before the slice in a chunk that is several elements thick along leading axes.
-std::size_t slice_offset(const ChunkedSlice& slice, const std::vector<hsize_t>& chunk) {
+std::size_t slice_offset(const ChunkedSlice& slice, const std::vector<hsize_t>& chunk,
+                         const ChunkComponents& components) {
   std::size_t position = 0;
   for (std::size_t axis = 0; axis < slice.index.size(); ++axis) {
     position = position * chunk[axis] + static_cast<std::size_t>(slice.index[axis]) % chunk[axis];
   }
-  return position * static_cast<std::size_t>(volume(volume_axes(slice, chunk))) * slice.voxel_bytes();
+  return position * static_cast<std::size_t>(volume(volume_axes(slice, chunk)) * components.in_chunk) *
+         scalar_bytes(slice.type);
 }
 
-ScratchSize scratch_size(const FilterPipeline& pipeline, std::size_t chunk_bytes) {
-  return {chunk_bytes, most_stored_bytes(pipeline, chunk_bytes), needs_other_buffer(pipeline), 0};
+/// Checks the slice, too.
+ChunkComponents components_of(const ChunkedSlice& slice, const std::vector<hsize_t>& chunk) {
+  check_slice(slice, chunk);
+  return chunk_components(slice.components, slice.components.count > 1 ? static_cast<std::int64_t>(chunk.back()) : 1);
 }
 
-/// Checks the slice and returns its chunked volume.
-ChunkedVolume chunked_volume(const ChunkedSlice& slice, const ChunkLayout& layout) {
-  check_slice(slice, layout.chunk);
+std::size_t gathered_bytes(const ChunkedSlice& slice, const ChunkStore& store, const ChunkComponents& components) {
+  if (!components.gathers()) return 0;
+  const auto voxels = static_cast<std::size_t>(volume(volume_axes(slice, store.layout().chunk)));
+  return voxels * components.voxel_bytes(scalar_bytes(slice.type));
+}
+
+ScratchSize scratch_size(const ChunkedSlice& slice, const ChunkStore& store, const ChunkComponents& components,
+                         std::size_t chunk_bytes) {
+  return {chunk_bytes, most_stored_bytes(store.pipeline(), chunk_bytes), needs_other_buffer(store.pipeline()), 0,
+          gathered_bytes(slice, store, components)};
+}
+
+ChunkedVolume chunked_volume(const ChunkedSlice& slice, const ChunkLayout& layout, const ChunkComponents& components) {
   return {slice.name,
           volume_axes(slice, layout.extent),
           volume_axes(slice, layout.chunk),
           slice.type,
           slice.big_endian,
           slice.mapping,
-          slice.components,
+          components.read,
           slice.fill};
 }
 
@@ -80,14 +93,15 @@ bool ChunkReader::decodes(hid_t dataset) {
 ChunkReader::ChunkReader(ChunkedSlice slice, std::uint64_t memory)
     : slice_(std::move(slice)),
       store_(slice_.dataset, slice_.name),
+      components_(components_of(slice_, store_.layout().chunk)),
       chunk_bytes_(chunk_bytes_of(store_, slice_.type)),
-      scratch_(scratch_size(store_.pipeline(), chunk_bytes_), memory, slice_.name),
-      boxes_(chunked_volume(slice_, store_.layout()), *this, scratch_),
-      first_byte_(slice_offset(slice_, store_.layout().chunk)) {}
+      scratch_(scratch_size(slice_, store_, components_, chunk_bytes_), memory, slice_.name),
+      boxes_(chunked_volume(slice_, store_.layout(), components_), *this, scratch_),
+      first_byte_(slice_offset(slice_, store_.layout().chunk, components_)) {}
 
 ChunkCounts ChunkReader::counts() const { return {decoded_, unallocated_, bytes_read_}; }
 
-std::vector<hsize_t> ChunkReader::corner_of(const Index3& chunk) const {
+std::vector<hsize_t> ChunkReader::corner_of(const Index3& chunk, std::int64_t component) const {
   const std::vector<hsize_t>& elements = store_.layout().chunk;
   const Index3& voxels = boxes_.volume().chunk;
   std::vector<hsize_t> corner(elements.size());
@@ -99,11 +113,23 @@ std::vector<hsize_t> ChunkReader::corner_of(const Index3& chunk) const {
   corner[first] = static_cast<hsize_t>(chunk.z * voxels.z);
   corner[first + 1] = static_cast<hsize_t>(chunk.y * voxels.y);
   corner[first + 2] = static_cast<hsize_t>(chunk.x * voxels.x);
+  if (slice_.components.count > 1) corner.back() = static_cast<hsize_t>(component);
   return corner;
 }
 
 std::span<const std::byte> ChunkReader::decode(const Index3& chunk, ChunkScratch& scratch) {
-  const std::vector<hsize_t> corner = corner_of(chunk);
+  if (!components_.gathers()) return decode_part(chunk, components_.first, scratch);
+  const std::size_t bytes = gathered_bytes(slice_, store_, components_);
+  ComponentGathering gathering(components_, slice_.fill, scratch.gathered.bytes().first(bytes));
+  for (std::int64_t c = 0; c < components_.read.count; c += components_.in_chunk) {
+    gathering.add(decode_part(chunk, c, scratch));
+  }
+  return gathering.gathered();
+}
+
+std::span<const std::byte> ChunkReader::decode_part(const Index3& chunk, std::int64_t component,
+                                                    ChunkScratch& scratch) {
+  const std::vector<hsize_t> corner = corner_of(chunk, component);
   const std::optional<ChunkStore::Chunk> stored = store_.fetch(corner, scratch.buffer.bytes());
   if (!stored && slice_.all_stored) {
     throw Error(ErrorKind::input, cat(slice_.name, ": chunk at ", corner_text(corner),

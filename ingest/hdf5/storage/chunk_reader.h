@@ -15,6 +15,7 @@
 #include "format/base/index.h"
 #include "format/base/scalar_type.h"
 #include "ingest/chunks/chunk_boxes.h"
+#include "ingest/hdf5/storage/chunk_components.h"
 #include "ingest/hdf5/storage/chunk_store.h"
 #include "ingest/source/component_choice.h"
 #include "ingest/source/stored_value.h"
@@ -32,10 +33,8 @@ struct ChunkedSlice {
   bool big_endian = false;
   ValueMapping mapping;
   std::vector<std::byte> fill;      ///< one stored value, read for voxels of chunks that the file does not hold
-  VoxelComponents components = {};  ///< if several: along the last axis, all in each chunk
+  VoxelComponents components = {};  ///< if several: along the last axis, some or all in each chunk
   bool all_stored = false;          ///< the file says that it holds every chunk, so a missing chunk is damage
-
-  std::size_t voxel_bytes() const { return scalar_bytes(type) * static_cast<std::size_t>(components.count); }
 };
 
 /// What reading has done so far.
@@ -63,16 +62,21 @@ class ChunkReader final : private StoredChunks {
   ChunkCounts counts() const;
 
   /// Reads `box` (voxels counted from the slice's first, inside the slice, not empty) into `values`, x fastest.
-  /// Decodes every chunk that the box touches once. Throws Error(input), naming dataset and chunk, if a chunk cannot
-  /// be fetched, fails its checksum, or decodes to more or fewer bytes than a chunk has.
+  /// Decodes every chunk that the box touches and that holds a wanted component once. Throws Error(input), naming
+  /// dataset and chunk, if a chunk cannot be fetched, fails its checksum, or decodes to more or fewer bytes than a
+  /// chunk has.
   ConversionLoss read(const Box& box, std::span<float> values) { return boxes_.read(box, values); }
 
  private:
   std::span<const std::byte> decode(const Index3& chunk, ChunkScratch& scratch) override;
-  std::vector<hsize_t> corner_of(const Index3& chunk) const;
+  /// Decodes the chunk at `chunk` that holds the components from `component` on. Returns its slice, or an empty span
+  /// if the file does not hold the chunk.
+  std::span<const std::byte> decode_part(const Index3& chunk, std::int64_t component, ChunkScratch& scratch);
+  std::vector<hsize_t> corner_of(const Index3& chunk, std::int64_t component) const;
 
   ChunkedSlice slice_;
   ChunkStore store_;
+  ChunkComponents components_;
   std::size_t chunk_bytes_;  ///< unfiltered, all leading axes
   ScratchPool scratch_;
   ChunkBoxes boxes_;

@@ -38,15 +38,20 @@ with h5py.File("a.h5", "w") as f:
     f.create_dataset("gzip", data=v, chunks=(2, 3, 4, 3), compression="gzip", shuffle=True)
     f.create_dataset("planes", data=v, chunks=(1, 7, 9, 3), compression="gzip")
     f.create_dataset("separate", data=v, chunks=(5, 7, 9, 1), compression="gzip")
+    f.create_dataset("pairs", data=v, chunks=(2, 3, 4, 2), compression="gzip", shuffle=True)
+    f.create_dataset("plain_pairs", data=v, chunks=(2, 3, 4, 2))
+    f.create_dataset("five", data=v, chunks=(2, 3, 4, 5), maxshape=SHAPE + (None,), compression="gzip")
     f.create_dataset("szip", data=v, chunks=(2, 7, 9, 3), compression="szip")
+    f.create_dataset("szip_pairs", data=v, chunks=(2, 7, 9, 2), compression="szip")
+    f.create_dataset("szip_separate", data=v, chunks=(2, 7, 8, 1), compression="szip")
     f.create_dataset("external", SHAPE + (3,), "f4", external="outside")
     f.create_dataset("spread", SHAPE + (3,), "f4", external=[("part1", 0, 700), ("part2", 0, h5py.h5f.UNLIMITED)])
     layout = h5py.VirtualLayout(SHAPE + (3,), "f4")
     for z in range(5): layout[z] = h5py.VirtualSource("a.h5", "gzip", SHAPE + (3,))[z]
     f.create_virtual_dataset("virtual", layout)
 )");
-  for (const char* name :
-       {"contiguous", "big", "gzip", "planes", "separate", "szip", "external", "spread", "virtual"}) {
+  for (const char* name : {"contiguous", "big", "gzip", "planes", "separate", "pairs", "plain_pairs", "five", "szip",
+                           "szip_pairs", "szip_separate", "external", "spread", "virtual"}) {
     for (const std::int64_t c : {0, 1, 2}) {
       expect_reads(scratch_, "a.h5", options_for(name, {false, c}), "c" + std::to_string(c));
     }
@@ -54,16 +59,70 @@ with h5py.File("a.h5", "w") as f:
   }
 }
 
+// The stored bytes of these chunks are those of their values.
+TEST_F(Hdf5Components, OnlyChunksOfTheComponentAreRead) {
+  write_by_h5py(scratch_, R"(
+v = np.zeros((16, 16, 16, 3), "f4")
+with h5py.File("a.h5", "w") as f:
+    f.create_dataset("separate", data=v, chunks=(8, 8, 8, 1))
+    f.create_dataset("pairs", data=v, chunks=(8, 8, 8, 2))
+    f.create_dataset("szip", data=v, chunks=(8, 8, 8, 1), compression="szip")
+)");
+  const auto bytes_read = [&](const std::string& dataset, const ComponentChoice& component) {
+    const auto source = open_source(scratch_.path("a.h5"), options_for(dataset, component));
+    all_values(*source);
+    return source->bytes_read();
+  };
+  constexpr std::uint64_t kOfOne = std::uint64_t{4} * 16 * 16 * 16;
+  for (const std::int64_t c : {0, 1, 2}) {
+    EXPECT_EQ(bytes_read("separate", {false, c}), kOfOne) << c;
+    EXPECT_EQ(bytes_read("pairs", {false, c}), 2 * kOfOne) << c;
+    EXPECT_EQ(bytes_read("szip", {false, c}), kOfOne) << c;
+  }
+  EXPECT_EQ(bytes_read("separate", {true, 0}), 3 * kOfOne);
+  EXPECT_EQ(bytes_read("pairs", {true, 0}), 4 * kOfOne) << "the second chunk has a number that no voxel has";
+}
+
+TEST_F(Hdf5Components, UnwrittenChunksOfOneComponent_ReadAsTheFillValue) {
+  write_by_h5py(scratch_, R"(
+v = values("f4", SHAPE + (3,)); v[:, :3, 4:8, 2] = -2.5; v[4:, 6:, :4, :] = -2.5
+for c in range(3): expect("c%d" % c, v[..., c])
+w = v.astype("f8"); expect("m", np.sqrt(w[..., 0] ** 2 + w[..., 1] ** 2 + w[..., 2] ** 2))
+with h5py.File("a.h5", "w") as f:
+    for name, unit in (("separate", 1), ("pairs", 2)):
+        d = f.create_dataset(name, SHAPE + (3,), "f4", chunks=(2, 3, 4, unit), compression="gzip", fillvalue=-2.5)
+        for at in np.ndindex(3, 3, 3, -(-3 // unit)):
+            part = tuple(slice(i * n, i * n + n) for i, n in zip(at, (2, 3, 4, unit)))
+            if not (v[part] == -2.5).all(): d[part] = v[part]
+)");
+  for (const char* name : {"separate", "pairs"}) {
+    for (const std::int64_t c : {0, 1, 2}) {
+      expect_reads(scratch_, "a.h5", options_for(name, {false, c}), "c" + std::to_string(c));
+    }
+    expect_reads(scratch_, "a.h5", options_for(name, {true, 0}), "m");
+  }
+  const auto note = [&](const ComponentChoice& component) {
+    return open_source(scratch_.path("a.h5"), options_for("separate", component))->info().details.chunks_note;
+  };
+  EXPECT_EQ(note({false, 0}), "1 of its 27 chunks was never written and reads as its fill value, -2.5");
+  EXPECT_EQ(note({false, 2}), "4 of its 27 chunks were never written and read as its fill value, -2.5");
+}
+
 TEST_F(Hdf5Components, LeadingAxesAreChosenByIndexBesides) {
   write_by_h5py(scratch_, R"(
 v = values("f8", (4,) + SHAPE + (2,))
 expect("v", v[2, ..., 1])
+expect("m", np.sqrt(v[2, ..., 0] ** 2 + v[2, ..., 1] ** 2))
 with h5py.File("a.h5", "w") as f:
     f["contiguous"] = v
     f.create_dataset("gzip", data=v, chunks=(3, 2, 3, 4, 2), compression="gzip")
+    f.create_dataset("separate", data=v, chunks=(3, 2, 3, 4, 1), compression="gzip")
+    f.create_dataset("szip", data=v, chunks=(3, 2, 7, 9, 1), compression="szip")
 )");
-  expect_reads(scratch_, "a.h5", options_for("contiguous", {false, 1}, {2}), "v");
-  expect_reads(scratch_, "a.h5", options_for("gzip", {false, 1}, {2}), "v");
+  for (const char* name : {"contiguous", "gzip", "separate", "szip"}) {
+    expect_reads(scratch_, "a.h5", options_for(name, {false, 1}, {2}), "v");
+    expect_reads(scratch_, "a.h5", options_for(name, {true, 0}, {2}), "m");
+  }
 }
 
 TEST_F(Hdf5Components, LeadingAxisOfComponentsIsChosenFromToo) {
