@@ -220,6 +220,7 @@ StatusView ServiceControl::status() {
   StatusView view;
   view.version = state_.version;
   view.config = state_.config;
+  runner_.look_at_mounts();
   const std::string hold = runner_.hold();
   view.reason = hold.empty() ? runner_.waits_for_disks() : hold;
   view.state = state_.stopping ? "stopping" : hold.empty() ? "running" : "paused";

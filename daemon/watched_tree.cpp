@@ -261,6 +261,7 @@ void WatchedTree::look(const std::string& path, Time now) {
   } else if (seen.change ==
              JobStore::Change::changed) {  // the job may be running, or its thumbnails are being rendered
     superseded_.push_back(seen.job.id);
+    tracked_.at(path).completion.source_before();
   }
   if (seen.job.state == JobState::running && tracked_.at(path).written && may_hide_a_write(seen.job)) {
     track_until(path, now + kAfterRun);

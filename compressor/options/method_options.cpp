@@ -108,7 +108,8 @@ constexpr ConversionOption kMethodOptions[] = {
     {{.key = "max-error",
       .argument = "ABS",
       .unit = "the values'",
-      .help = "the smallest file in which every voxel is within that of its value, checked on decoded values",
+      .help =
+          "the smallest file in which every voxel is within that of its value as float32, checked on decoded values",
       .group = "budget"},
      read_max_error},
     {{.key = "lossless",

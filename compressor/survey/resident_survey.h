@@ -20,7 +20,7 @@ Survey survey_resident(ResidentVolume& resident, VolumeSource& source, RowStore&
                        const StreamOptions& options);
 
 /// Does the same for `boxes` of blocks (lattice positions) only, and does not compute the figures of the whole volume.
-/// All blocks of `boxes` must be in the sample (BlockSample).
+/// Each box is a row of blocks along x, one block thick, and all its blocks are in the sample (BlockSample).
 void survey_resident_sample(ResidentVolume& resident, VolumeSource& source, RowStore& rows, const LadderAim& ladders,
                             std::span<const Box> boxes, const StreamOptions& options);
 

@@ -18,9 +18,9 @@ enum class IoClass { none, best_effort, idle };  ///< none: the class of the dae
 struct ServiceConfig {
   std::string state;                        ///< SQLite file; default: weir.db, see load_config
   ListenAddress listen{"127.0.0.1", 8470};  ///< port 0: any free port, see port_file
-  std::string control_socket;  ///< path of a Unix socket; empty: none. If set, POST is answered there alone
+  std::string control_socket;  ///< path of a Unix socket; empty: none. If set, only it serves POST and viewers
   std::string port_file;       ///< file to which the bound port is written; empty: none
-  std::string token_file;      ///< file that `token` was read from; empty: none, the configuration has it
+  std::string token_file;      ///< file that `token` was read from; empty: the key `token` gave it, or there is none
   std::string token;           ///< bearer token; never empty if other machines may connect to `listen`
   std::uint64_t memory = std::uint64_t{1} << 30;           ///< bytes for the daemon, all jobs and the viewer together
   std::uint64_t viewer_memory = std::uint64_t{192} << 20;  ///< the viewer's bytes of `memory`; 0: no viewer

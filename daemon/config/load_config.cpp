@@ -11,6 +11,7 @@
 #include "daemon/config/config_names.h"
 #include "daemon/config/duration.h"
 #include "daemon/config/own_files.h"
+#include "daemon/config/regular_file.h"
 #include "daemon/config/token_file.h"
 #include "daemon/config/watch_conflicts.h"
 #include "daemon/config/watch_options.h"
@@ -24,6 +25,8 @@ namespace weir {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::uint64_t kMostConfigBytes = 16 << 20;  // a thousand watches take less than one MiB
 
 /// Reads one table of the configuration file into the daemon's own types.
 class ConfigReader {
@@ -101,16 +104,6 @@ class ConfigReader {
 
   fs::path directory_;
 };
-
-std::string read_whole(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::string text;
-  std::array<char, 4096> piece{};
-  while (in.read(piece.data(), piece.size()), in.gcount() > 0)
-    text.append(piece.data(), static_cast<std::size_t>(in.gcount()));
-  if (!in.is_open() || in.bad()) throw refused_open(path, "read", errno);
-  return text;
-}
 
 // Returns the token of the file. Throws at the key token_file, but with the kind of the file's error: a file that this
 // user may not read does not make the configuration wrong.
@@ -289,7 +282,7 @@ WatchConfig read_watch(const toml::table& table, const std::string& path) {
 DaemonConfig load_config(const std::string& path) {
   DaemonConfig config;
   config.path = fs::absolute(path).lexically_normal().string();
-  const toml::table document = parse_toml(read_whole(config.path), config.path);
+  const toml::table document = parse_toml(read_regular_file(config.path, kMostConfigBytes), config.path);
   TomlReader reader(document, "the configuration", config.path);
   const toml::node* service = reader.find("service");
   if (service != nullptr && !service->is_table()) reader.fail(*service, "service must be a table: [service]");

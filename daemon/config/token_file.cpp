@@ -6,23 +6,26 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <fstream>
-#include <iterator>
+#include <cstdint>
 
+#include "daemon/config/regular_file.h"
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "format/io/refused_open.h"
 
 namespace weir {
+namespace {
+
+constexpr std::uint64_t kMostTokenBytes = 4096;
+
+}  // namespace
 
 std::string read_token_file(const std::string& path) {
   struct stat status {};
   if (stat(path.c_str(), &status) != 0) throw refused_open(path, "read the token", errno);
   if (S_ISDIR(status.st_mode)) throw input_error(path, "is a directory; name a file with the token");
   if ((status.st_mode & S_IROTH) != 0) throw input_error(path, "can be read by everybody; chmod o-r it");
-  std::ifstream in(path, std::ios::binary);
-  const std::string text(std::istreambuf_iterator<char>(in), {});
-  if (!in.is_open() || in.bad()) throw refused_open(path, "read", errno);
+  const std::string text = read_regular_file(path, kMostTokenBytes);
   return text.substr(0, text.find_last_not_of(" \t\r\n") + 1);
 }
 

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "compressor/options/conversion_request.h"
+#include "daemon/config/regular_file.h"
 #include "format/base/exact_text.h"
 
 namespace weir {
@@ -76,6 +77,7 @@ std::vector<std::string> read_watch_options(TomlReader& reader, const toml::tabl
     nodes[option] = node;
   }
   try {
+    if (const auto scene = given.find("scene"); scene != given.end()) require_regular_file(scene->second);
     read_conversion_request(given);
   } catch (const Error& error) {
     const auto scene = nodes.find("scene");

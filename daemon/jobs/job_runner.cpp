@@ -235,7 +235,8 @@ std::int64_t JobRunner::settle_ms(const Job& job) const {
   return std::max<std::int64_t>(1, std::llround(settle_s * 1000));
 }
 
-// The job is waiting. If its source exists, it is discovered again with the new identity; if not, it is removed.
+// The job is waiting. If its source can be identified, the job gets the new identity. If the source is certainly gone,
+// the job is removed; while that cannot be known, it stays as it is.
 void JobRunner::source_changed(const Job& job) {
   const WatchConfig* watch = watch_of(job.watch);
   if (const auto now =

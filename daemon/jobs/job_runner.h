@@ -69,6 +69,9 @@ class JobRunner {
   /// Which file systems jobs wait for, because they are full or not mounted. Jobs on others go on. Empty: none.
   std::string waits_for_disks() const;
   bool paused() const { return scheduler_.paused(); }
+  /// Looks whether the file systems of `output_mount` are mounted, as each start of a job does: an idle service looks
+  /// at nothing by itself.
+  void look_at_mounts() { mounts_.look(); }
   /// Returns whether a file system was last seen at `output_mount` of a watch.
   bool is_mounted(const std::string& output_mount) const { return mounts_.mounted(output_mount); }
   /// Returns why the state file cannot be written; empty if it can.

@@ -102,11 +102,7 @@ void check_ours(const Database& database, const std::string& path) {
                 cat(path, ": is a database of another program; name another file as state in [service]"));
   }
   const std::int64_t version = number(database, "PRAGMA user_version");
-  if (version > kStateVersion) {
-    throw Error(ErrorKind::input,
-                cat(path, ": has version ", version, ", this weir knows versions up to ", kStateVersion,
-                    "; run the newer weir or name another file as state in [service]"));
-  }
+  if (version > kStateVersion) throw newer_state(path, version);
 }
 
 Database open_whole(const std::string& path) {

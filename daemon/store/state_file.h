@@ -8,9 +8,6 @@
 
 namespace weir {
 
-/// PRAGMA user_version. A change of the tables raises this number, and open_state_file updates older files.
-inline constexpr int kStateVersion = 5;
-
 /// Opens `path` for this process alone, durable at every commit; creates the file if it is missing. A damaged file is
 /// moved aside to PATH.corrupt-N (with its journal), and an empty one is created; `notice` then says so in one line,
 /// otherwise it is unchanged. Throws Error(input) for a newer version, another program's database or any other file

@@ -116,12 +116,14 @@ void FileCompletion::happened(FileEventKind kind, Time now) {
   found_open_ = found_open_ && (of_writer || kind == FileEventKind::found);
   switch (kind) {
     case FileEventKind::found:  // a look also sees changes of a writer whose close will still be seen
+      set_named(true);
       if (writer_ != Writer::open) writer_ = Writer::unknown;
       break;
     case FileEventKind::overflow:  // the close may be among the lost events
       writer_ = Writer::unknown;
       break;
     case FileEventKind::created:
+      set_named(false);
       writer_ = Writer::begun;
       break;
     case FileEventKind::written:
@@ -133,6 +135,7 @@ void FileCompletion::happened(FileEventKind kind, Time now) {
       unchanged_since_ = now;
       break;
     case FileEventKind::moved_in:
+      set_named(true);
       writer_ = Writer::renamed;
       break;
     case FileEventKind::permitted:
@@ -142,6 +145,15 @@ void FileCompletion::happened(FileEventKind kind, Time now) {
     case FileEventKind::root_back:
       break;
   }
+}
+
+void FileCompletion::source_before() {
+  if (!created_) named_ = true;
+}
+
+void FileCompletion::set_named(bool named) {
+  named_ = named;
+  created_ = !named;
 }
 
 CompletionAnswer FileCompletion::look(const FileSample& sample, Time now) {
@@ -215,15 +227,16 @@ CompletionAnswer FileCompletion::by_policy(const FileSample& sample, Time now) {
 
 CompletionAnswer FileCompletion::when_renamed(Time now) {
   if (writer_ == Writer::renamed) return whole();
-  if (writer_ != Writer::unknown && !found_open_) {
+  const bool written = writer_ != Writer::unknown;
+  if (written && !found_open_ && !named_) {
     return {State::waiting, Time::max(), "it has not got its name by a rename"};
   }
-  // The file was there when the watch found it.
+  // The file was there when the watch found it, or had its name before it was written to.
   if (rules_.has_writer && rules_.has_writer()) {
     found_open_ = true;
     return {State::waiting, asked_again(now), kHasWriter};
   }
-  return when_unchanged(found_open_ ? rules_.settle : std::chrono::nanoseconds(0), now);
+  return when_unchanged(found_open_ || written ? rules_.settle : std::chrono::nanoseconds(0), now);
 }
 
 CompletionAnswer FileCompletion::when_unchanged(std::chrono::nanoseconds settle, Time now) const {

@@ -6,7 +6,8 @@
 //           unchanged for settle
 //   rename  the file got its name by a rename. Found without its writer: complete at once; but if a program has it
 //           open for writing (it may have begun before its directory was watched), complete when no program has and
-//           it is unchanged for settle. Created or linked: not before a rename
+//           it is unchanged for settle. Rewritten in place after a rename or after it was found: complete likewise.
+//           Created or linked: not before a rename
 //   marker  NAME.done is beside the file, and the file is unchanged for kCloseSettle
 //   size    the file has its expected size and is unchanged for kCloseSettle. Shorter and closed: unchanged for
 //           settle. A directory has no expected size: as stable
@@ -99,11 +100,14 @@ class FileCompletion {
   /// the state "found while a writer had it open". look() must be called at once with a new sample.
   void happened(FileEventKind kind, Time now);
   CompletionAnswer look(const FileSample& sample, Time now);
+  /// Tells that the file was a source before and has changed. Unless it was created anew since, it has its name.
+  void source_before();
 
  private:
   // begun: the file was created or linked, and not written to.
   enum class Writer { unknown, begun, open, closed, renamed };
 
+  void set_named(bool named);
   CompletionAnswer by_policy(const FileSample& sample, Time now);
   // Returns when to check again for a change that no event reports.
   Time asked_again(Time now) const;
@@ -113,6 +117,8 @@ class FileCompletion {
 
   CompletionRules rules_;
   Writer writer_ = Writer::unknown;
+  bool created_ = false;  ///< under this name, by the last event that says how it got its name
+  bool named_ = false;    ///< it has its name by a rename, or was found with it
   // The file was found while a writer had it open. Events of that writer say nothing about its name.
   bool found_open_ = false;
   std::optional<FileIdentity> seen_;

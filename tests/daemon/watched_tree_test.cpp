@@ -106,7 +106,7 @@ TEST_F(WatchedTreeTest, JobsOfFilesThatAreGone_AreForgotten) {
   EXPECT_TRUE(store_.job(done)) << "the record of its result";
 }
 
-// A cancelled job stays for the time of `history` if its source goes away, even while no service runs.
+// A cancelled job is kept when its source goes away; a waiting job is removed then.
 TEST_F(WatchedTreeTest, ACancelledJob_IsKeptWhenItsSourceGoes) {
   std::filesystem::create_directory(watch().directory);
   const auto path = [&](const char* name) { return watch().directory + '/' + name; };

@@ -1,6 +1,6 @@
-// libFuzzer target for the headers of AMReX plotfiles. The first byte selects the kind of header and the size of the
-// pieces in which its text arrives. Any bytes must parse to a header with consistent parts, or throw Error(input) with
-// a message of one line.
+// libFuzzer target for the headers of AMReX plotfiles. The first byte selects the kind of header and, for Header and
+// Cell_H, the size of the pieces in which the text arrives; a FAB header is parsed whole. Any bytes must parse to a
+// header with consistent parts, or throw Error(input) with a message of one line.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>

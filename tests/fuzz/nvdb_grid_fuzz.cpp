@@ -1,8 +1,9 @@
 // libFuzzer target for the reader of NanoVDB files. For any bytes, `open` must throw Error(input) or return a grid that
 // can be walked, decoded and sampled in bounded time and without a read outside the bytes.
 //
-// The first byte of an input selects one of two modes. Either the rest of the input damages a small valid file of one
-// grid type field by field, because random bytes hardly ever get past the first offsets. Or the rest is the file.
+// The first byte of an input selects a grid type or none. With a type, the rest of the input damages a small valid file
+// of this type field by field, because random bytes hardly ever get past the first offsets. With none, the rest is the
+// file.
 #include <array>
 #include <cstdint>
 #include <cstdlib>

@@ -1,8 +1,8 @@
 // libFuzzer target for packed data. For any bytes, `open` must throw Error(input) or return a grid. Its blocks can be
 // looked up and decoded in bounded time and without a read outside the file.
 //
-// An input either damages a small valid file field by field (header, region table, directory and streams), or is the
-// stream of one block.
+// The first byte of an input selects what the rest does: it damages a small valid file field by field (header, region
+// table, directory and streams), or it is the stream of the file's first block.
 #include <array>
 #include <cstdint>
 #include <cstdlib>

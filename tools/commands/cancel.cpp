@@ -37,7 +37,7 @@ void add_cancel(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "cancel", "Has a running weir watch give jobs up, and remove what they had begun; weir retry begins them anew");
   const auto a = std::make_shared<CancelArguments>();
-  command->add_option("id", a->ids, "jobs, as weir jobs lists them")->required();
+  add_job_ids(*command, a->ids)->required();
   command->add_flag("--json", a->json, "one JSON object on stdout");
   add_service_options(*command, a->service);
   add_log_level(*command);

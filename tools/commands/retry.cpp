@@ -53,7 +53,7 @@ void run(const RetryArguments& a) {
 void add_retry(CLI::App& app) {
   CLI::App* command = app.add_subcommand("retry", "Has a running weir watch try jobs again");
   const auto a = std::make_shared<RetryArguments>();
-  command->add_option("id", a->ids, "jobs, as weir jobs lists them");
+  add_job_ids(*command, a->ids);
   command->add_flag("--all-failed", a->all_failed, "every failed and quarantined one");
   command->add_flag("--force", a->force, "of jobs given by ID: convert them even where their outputs are done");
   command->add_flag("--json", a->json, "one JSON object on stdout");

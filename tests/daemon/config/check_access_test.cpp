@@ -2,6 +2,7 @@
 #include "daemon/config/check_access.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -88,6 +89,30 @@ TEST_F(CheckAccess, StateThatIsAnotherFile_IsRefusedAndUnchanged) {
   EXPECT_EQ(result.exit_code, 3);
   EXPECT_EQ(result.err, cat("weir: ", state, ": is no state file of weir; name another file as state in [service]\n"));
   EXPECT_EQ(read_file(state), "\x89HDF\r\n\x1a\n and volumes");
+}
+
+TEST_F(CheckAccess, StateThatTheStartCouldNotOpen_IsRefused) {
+  for (const char* name : {"in", "out", "state"}) allow(name, true);
+  const std::string state = directory_ / "state/weir.db";
+  const auto expect_said = [&](const std::string& what) {
+    const CommandResult result = check();
+    EXPECT_EQ(result.exit_code, 3);
+    EXPECT_EQ(result.err, cat("weir: ", state, ": ", what, " another file as state in [service]\n"));
+    fs::remove(state);
+  };
+  ASSERT_EQ(::mkfifo(state.c_str(), 0666), 0);
+  fs::permissions(state, fs::perms::all);
+  expect_said("is no regular file; name");
+  fs::create_symlink("nowhere/x", state);
+  expect_said(
+      cat("is a link to ", directory_ / "state/nowhere/x", ", whose directory does not exist; make it or name"));
+  std::string page(4096, '\0');
+  page.replace(0, 16, std::string_view("SQLite format 3\0", 16));
+  page[63] = 10;
+  page.replace(68, 4, "weir");
+  write_file(state, page);
+  fs::permissions(state, fs::perms::all);
+  expect_said("has version 10, this weir knows versions up to 5; run the newer weir or name");
 }
 
 TEST_F(CheckAccess, OutputNotWritable_IsRefused) {

@@ -1,6 +1,7 @@
 #include "daemon/config/watch_options.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 
@@ -55,6 +56,15 @@ TEST(WatchOptions, RelativeScenesStartAtTheConfigurationFile) {
   EXPECT_EQ(read("scene = 'looks/a.toml'", directory / "c.toml"), Arguments{"--scene=" + (directory / "looks/a.toml")});
   EXPECT_EQ(read("scene = '../a.toml'", directory / "looks/c.toml"), Arguments{"--scene=" + (directory / "a.toml")});
   EXPECT_EQ(read("scene = '" + (directory / "a.toml") + "'"), Arguments{"--scene=" + (directory / "a.toml")});
+}
+
+TEST(WatchOptions, SceneThatIsAPipe_IsRefused) {
+  const TemporaryDirectory directory;
+  const std::string pipe = directory / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_EQ(refusal("rate = 4\nscene = '" + pipe + "'"),
+            "/etc/weir/c.toml:2:9: " + pipe +
+                ": is no regular file, and weir watch reads it again at each reload; name a file");
 }
 
 TEST(WatchOptions, NumbersKeepAllTheirDigits) {

@@ -1,5 +1,6 @@
 // Tests faults around the service, and its messages and actions.
 #include <gtest/gtest.h>
+#include <sys/mount.h>
 
 #include <filesystem>
 #include <fstream>
@@ -138,6 +139,9 @@ TEST(WatchFaults, OutputNotMounted_JobsWaitAndNothingIsWrittenBelowTheMountPoint
   ASSERT_TRUE(service.eventually_done(1)) << service.log();
   EXPECT_EQ(service.difference(name + ".raw", name + ".nvdb"), "");
   EXPECT_EQ(service.logged(" output-mounted "), 1U);
+  EXPECT_EQ(service.get("/api/status")["reason"], "");
+  ASSERT_TRUE(ServiceHarness::eventually([&] { return ::umount(service.out().c_str()) == 0; }));
+  EXPECT_EQ(service.get("/api/status")["reason"], status["reason"]) << "an idle service looks when it is asked";
   EXPECT_EQ(service.stop(), 0);
 }
 

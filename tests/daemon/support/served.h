@@ -47,7 +47,8 @@ class Served {
   void close() {
     run([this] { server_.reset(); });
   }
-  /// Stops listening and closes all connections from the server's own thread, after its present work.
+  /// Like close(), but returns at once: the server's thread closes after its present work. May be called on that
+  /// thread.
   void close_soon() {
     boost::asio::post(io_, [this] { server_.reset(); });
   }

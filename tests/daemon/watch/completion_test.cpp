@@ -174,6 +174,32 @@ TEST_F(CompletionTest, Rename_FileThatWasCreated_WaitsForItsRename) {
   EXPECT_EQ(at(7, Kind::found).state, State::complete) << "after a restart, say";
 }
 
+TEST_F(CompletionTest, Rename_FileRewrittenAfterItsRename_IsCompleteWhenItHasNoWriterAndIsUnchanged) {
+  rules.policy = Completion::rename;
+  bool open = true;
+  rules.has_writer = [&] { return open; };
+  EXPECT_EQ(at(0, Kind::moved_in).state, State::complete);
+  grow(200);
+  const CompletionAnswer answer = at(1, Kind::written);
+  EXPECT_DOUBLE_EQ(again(answer), 3);
+  EXPECT_EQ(answer.reason, kOpen);
+  open = false;
+  EXPECT_DOUBLE_EQ(again(at(4, Kind::closed)), 6);
+  EXPECT_EQ(at(6).state, State::complete);
+}
+
+TEST_F(CompletionTest, Rename_ChangedSource_IsCompleteWithoutARenameUnlessItWasCreatedAnew) {
+  rules.policy = Completion::rename;
+  expect_event_is_awaited(at(0, Kind::closed), "it has not got its name by a rename");
+  file().source_before();
+  EXPECT_DOUBLE_EQ(again(at(1)), 2) << "unchanged since 0";
+  EXPECT_EQ(at(2).state, State::complete);
+  at(3, Kind::created);
+  grow(300);
+  file().source_before();
+  expect_event_is_awaited(at(4, Kind::closed), "it has not got its name by a rename");
+}
+
 TEST_F(CompletionTest, Rename_FileThatWasFoundWithAWriter_IsCompleteWhenItHasNoneAndIsUnchanged) {
   rules.policy = Completion::rename;
   bool open = true;

@@ -1,5 +1,5 @@
-// Measures the memory that own_parts() takes to find a level's own cells, by the kernel's figures. It holds only the
-// positions of the boxes of finer levels, and frees them when it returns.
+// Measures, by the kernel's figures, the peak memory that own_parts() takes to find a level's own cells. It must not
+// exceed kBytesPerFinerBox for each box of finer levels.
 #include <gtest/gtest.h>
 
 #include <string>

@@ -88,7 +88,7 @@ TEST(TimeAxis, DimensionThatGrowsIsATimeInUnitsThatSayNothing) {
   }
 }
 
-// A dimension that grows is no time axis if its unit is not of time.
+// A dimension that grows is no time axis if its unit measures something else. Units that say nothing do not count.
 TEST(TimeAxis, DimensionThatGrowsInAnotherUnitIsNone) {
   for (const char* units : {"GeV", "Hz", "cm-1", "km/s", "kelvin", "kg m-3", "percent", "R_sun", "c/omega_pe", "a"}) {
     EXPECT_FALSE(is_time_axis({"slice", units, {}, {}, true})) << units;

@@ -241,7 +241,8 @@ TEST(NrrdSource, TimeAmongTheFirstThreeAxes_IsRefused) {
   EXPECT_EQ(refused("dimension: 5\nsizes: 1 4 2 3 1\nkinds: scalar space time space space"),
             ": axis 2 of 2 values and kind 'time' is no axis of space; take one time step with `unu slice -a 2 -p 0`, "
             "or make it the last axis with `unu permute -p 0 1 3 4 2`");
-  // Among three axes, the axis in the way would be taken for z wherever it stands.
+  // Of only three axes, a time axis that is moved to the end would be taken for z. So the message offers no
+  // permutation.
   EXPECT_EQ(refused("dimension: 3\nsizes: 4 3 2\nkinds: space space time"),
             ": axis 2 of 2 values and kind 'time' is no axis of space; take one time step with `unu slice -a 2 -p 0`");
 }

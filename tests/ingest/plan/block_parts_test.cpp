@@ -12,7 +12,8 @@ namespace {
 
 const Box kDomain{{-5, 3, 16}, {37, 40, 41}};
 
-/// A source with one value for each 4 x 2 x 1 voxels in the leaves of the domain that lie below `kSplit` along x.
+/// A source with one value for each 4 x 2 x 1 voxels where 0 <= x < kSplit and y >= 8. The other voxels each have a
+/// value of their own.
 class CoarseSource final : public VolumeSource {
  public:
   CoarseSource() {

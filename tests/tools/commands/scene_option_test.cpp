@@ -1,5 +1,5 @@
 // Tests weir convert --scene as a user runs it: the certificates of all voxels and of the visible voxels, and the
-// refusal of every scene that does not say what is visible.
+// refusal, with the scene's name, of scenes that are missing, malformed or do not say what is visible.
 #include <nlohmann/json.hpp>
 
 #include "format/base/text.h"

@@ -1,4 +1,4 @@
-// Tests that weir.toml(5) has exactly the keys that load_config() accepts and that docs/operations.md explains.
+// Tests that weir.toml(5) has exactly the keys that docs/operations.md explains, and that load_config() knows each.
 #include "tools/describe/config_page.h"
 
 #include <gtest/gtest.h>

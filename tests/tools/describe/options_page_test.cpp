@@ -15,7 +15,7 @@ TEST(OptionsPage, IsTheOneInDocs) {
 TEST(OptionsPage, NamesAnOptionInEveryWay) {
   EXPECT_NE(
       options_page().find("| `--max-error` `ABS` | `max_error` | the values' |  | the smallest file in which every "
-                          "voxel is within that of its value, checked on decoded values |\n"),
+                          "voxel is within that of its value as float32, checked on decoded values |\n"),
       std::string::npos);
 }
 

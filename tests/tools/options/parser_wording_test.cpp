@@ -65,5 +65,18 @@ TEST(ParserWording, EveryWrongValue_IsNamedWithWhatItMustBe) {
   EXPECT_EQ(refused({"convert", "a.raw", "--again"}), "weir: --again needs --skip-done");
 }
 
+// The parser would take the nearest number that it can hold.
+TEST(ParserWording, IdOutOfRange_IsRefusedAsItWasGiven) {
+  const auto said = [](const std::vector<std::string>& words) {
+    const CommandResult result = run_weir(words);
+    EXPECT_EQ(result.exit_code, 2) << result.err;
+    return result.err;
+  };
+  const std::string range = "\", it must be a number from 1 to 9223372036854775807\n";
+  EXPECT_EQ(said({"retry", "99999999999999999999"}), "weir: id is \"99999999999999999999" + range);
+  EXPECT_EQ(said({"cancel", "--", "-9223372036854775809"}), "weir: id is \"-9223372036854775809" + range);
+  EXPECT_EQ(said({"cancel", "3", "0"}), "weir: id is \"0" + range);
+}
+
 }  // namespace
 }  // namespace weir::parser_wording_test

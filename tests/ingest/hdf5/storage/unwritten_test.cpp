@@ -88,7 +88,8 @@ with h5py.File("a.h5", "w") as f:
             "value, 3");
 }
 
-// The writer did not choose the fill value, or it means no data, or the library would leave what is in memory.
+// Each dataset is refused for a reason: nobody chose its fill value (`default`), the value means no data (`nan`,
+// `missing`, `netcdf` and a.nc), or the library would leave what is in memory (`never`).
 TEST_F(Hdf5Unwritten, IsRefusedWhereItsFillValueIsNoData) {
   write_by_h5py(scratch_, R"(
 import netCDF4
