@@ -119,8 +119,7 @@ TEST(ZarrSource, DamagedChunks_AreNamedByFileAndPosition) {
   EXPECT_EQ(files.message(ErrorKind::input), "run.zarr/c/0/0/1: is empty (0 bytes); copy it again, or write it anew");
   files.write("zarr.json", zarr_json("[2,2,4]", "[2,2,2]", R"([{"name":"bytes"},{"name":"crc32c"}])"));
   files.write("c/0/0/0", std::string(12, '\0'));
-  // Only one chunk may be damaged: of two, the order of the threads would decide which is named.
-  std::filesystem::remove(files.path("c/0/0/1"));
+  std::filesystem::remove(files.path("c/0/0/1"));  // of two, the order of threads would decide which is named
   EXPECT_EQ(files.message(ErrorKind::input),
             "run.zarr/c/0/0/0: chunk at 0, 0, 0: its crc32c is 00000000, its bytes give 8c28b28a; the file is damaged");
   files.write("zarr.json", zarr_json("[2,2,4]", "[2,2,2]", R"([{"name":"bytes"},{"name":"gzip"}])"));
