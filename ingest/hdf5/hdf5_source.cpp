@@ -18,6 +18,7 @@
 #include "ingest/hdf5/meaning/volume_slice.h"
 #include "ingest/hdf5/storage/absent_values.h"
 #include "ingest/hdf5/storage/chunk_reader.h"
+#include "ingest/hdf5/storage/chunked_source.h"
 #include "ingest/hdf5/storage/constant_source.h"
 #include "ingest/hdf5/storage/external_files.h"
 #include "ingest/hdf5/storage/planar_boxes.h"
@@ -32,24 +33,6 @@
 
 namespace weir {
 namespace {
-
-/// A source of chunks that weir decodes itself.
-class ChunkedSource final : public VolumeSource {
- public:
-  ChunkedSource(Hdf5Handle dataset, ChunkedSlice slice, SourceInfo info, std::uint64_t memory)
-      : dataset_(std::move(dataset)), info_(std::move(info)), reader_(std::move(slice), memory) {}
-
-  const SourceInfo& info() const override { return info_; }
-  AccessShape access() const override { return reader_.access(); }
-  std::uint64_t working_bytes() const override { return reader_.working_bytes() + kHdf5MetadataBytes; }
-  std::uint64_t bytes_read() const override { return reader_.counts().bytes_read; }
-  ConversionLoss read(const Box& box, std::span<float> values) override { return reader_.read(box, values); }
-
- private:
-  Hdf5Handle dataset_;
-  SourceInfo info_;
-  ChunkReader reader_;
-};
 
 /// A dataset that is being opened: the common input of all the ways to read it.
 struct Opening {
@@ -267,13 +250,28 @@ std::unique_ptr<VolumeSource> open_chunked(Opening opening) {
                      opening.facts.storage->fill,
                      opening.slice.components,
                      opening.all_stored};
-  return std::make_unique<ChunkedSource>(std::move(opening.object.handle), std::move(slice), std::move(opening.info),
-                                         opening.options.memory);
+  return make_chunked_source(std::move(opening.object.handle), std::move(slice), std::move(opening.info),
+                             opening.options.memory);
 }
 
-// Opens a volume with a time axis between or after the axes of space. The library gathers the scattered values.
+// Returns whether the time is the last axis, behind those of space, and weir itself decodes the chunks.
+bool has_chunks_of_times(const Opening& opening) {
+  const AxisRoles& roles = opening.slice.roles;
+  const std::size_t last = opening.facts.axes.size() - 1;
+  return opening.facts.storage->kind == StorageKind::chunked && opening.slice.components.count == 1 &&
+         roles.others.back() == last && roles.volume[0] + kVolumeRank == last && opening.facts.axes[last].extent > 1 &&
+         ChunkReader::decodes(opening.object.handle.get());
+}
+
+// Opens a volume with a time axis between or after the axes of space. The library gathers the scattered values, except
+// if the times of a voxel lie side by side in chunks, as components do.
 std::unique_ptr<VolumeSource> open_interleaved(Opening opening) {
   const StorageKind kind = opening.facts.storage->kind;
+  if (has_chunks_of_times(opening)) {
+    opening.slice.components = {opening.facts.axes.back().extent, {false, opening.slice.positions.back()}};
+    opening.slice.positions.pop_back();
+    return open_chunked(std::move(opening));
+  }
   if (kind != StorageKind::external && kind != StorageKind::mapped) return open_by_library(std::move(opening));
   throw Error(ErrorKind::input, cat(opening.object.where(), ": its axes are ", axes_text(opening.facts.axes),
                                     ", the time not before those of space, and its values lie in other files; write "

@@ -214,11 +214,13 @@ with h5py.File("a.h5", "w") as f:
     label(f.create_dataset("big", data=second.astype(">f4")), ["z", "time", "y", "x"])
     label(f.create_dataset("gzip", data=second, chunks=(2, 2, 3, 4), compression="gzip"), ["z", "time", "y", "x"])
     label(f.create_dataset("last", data=last, chunks=(2, 3, 4, 3), compression="gzip", shuffle=True), ["z", "y", "x", "time"])
+    label(f.create_dataset("pairs", data=last, chunks=(2, 3, 4, 2), compression="gzip"), ["z", "y", "x", "time"])
+    label(f.create_dataset("szip", data=last, chunks=(2, 3, 4, 2), compression="szip"), ["z", "y", "x", "time"])
     label(f.create_dataset("vectors", data=np.moveaxis(w, 0, 1)), ["z", "time", "y", "x", "component"])
     outside = f.create_dataset("outside", second.shape, "f4", external="values"); outside[:] = second
     label(outside, ["z", "time", "y", "x"])
 )");
-  for (const char* name : {"second", "big", "gzip", "last"}) {
+  for (const char* name : {"second", "big", "gzip", "last", "pairs", "szip"}) {
     expect_reads(scratch_, "a.h5", dataset_options(name, {1}), "v1");
     SourceOptions named = dataset_options(name);
     named.index_choices = {{"time", false, 1, {}}};
@@ -232,6 +234,25 @@ with h5py.File("a.h5", "w") as f:
       scratch_.path("a.h5") +
           ": /outside: its axes are z=5 x time=3 x y=7 x x=9, the time not before those of space, and its values "
           "lie in other files; write it with the time first, or into one file");
+}
+
+// The stored bytes of these chunks are those of their values.
+TEST_F(Hdf5Time, TimeAfterTheAxesOfSpace_OnlyItsChunksAreRead) {
+  write_by_h5py(scratch_, R"(
+v = values("f4", (2,) + SHAPE + (5,))
+expect("v", v[1, ..., 3])
+with h5py.File("a.h5", "w") as f:
+    for name, times in (("one", 1), ("two", 2)):
+        d = f.create_dataset(name, data=v, chunks=(1,) + SHAPE + (times,))
+        for axis, name in enumerate(["run", "z", "y", "x", "time"]): d.dims[axis].label = name
+)");
+  constexpr std::uint64_t kOfOneTime = std::uint64_t{4} * 5 * 7 * 9;
+  for (const auto& [name, times] : {std::pair("one", 1U), std::pair("two", 2U)}) {
+    expect_reads(scratch_, "a.h5", dataset_options(name, {1, 3}), "v");
+    const auto source = open_source(scratch_.path("a.h5"), dataset_options(name, {1, 3}));
+    all_values(*source);
+    EXPECT_EQ(source->bytes_read(), times * kOfOneTime) << name;
+  }
 }
 
 // The unlimited dimension `cycle` has no unit. `time` is in microseconds, which is not the shortest name in UDUNITS.
