@@ -39,9 +39,12 @@ void require_place(FileSystem& files, const std::string& path, std::size_t besid
   }
 }
 
+Error existing_output(const std::string& path) {
+  return usage_error(compose(path, ": exists; choose another output or pass ", option("overwrite")));
+}
+
 void refuse_existing(FileSystem& files, const std::string& path) {
-  if (!files.exists(path)) return;
-  throw Error(ErrorKind::usage, compose(path, ": exists; choose another output or pass ", option("overwrite")));
+  if (files.exists(path)) throw existing_output(path);
 }
 
 void require_volume_name(const std::string& path) {

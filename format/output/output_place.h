@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <string>
 
+#include "format/base/error.h"
 #include "format/io/file_system.h"
 
 namespace weir {
@@ -13,7 +14,10 @@ namespace weir {
 /// is at `path`, or if its name is too long for weir's own names beside it, which are up to `beside` bytes longer.
 void require_place(FileSystem& files, const std::string& path, std::size_t beside);
 
-/// Throws Error(usage) if `path` exists: without --overwrite nothing is replaced.
+/// Returns Error(usage) for an output that exists and must not be replaced.
+Error existing_output(const std::string& path);
+
+/// Throws existing_output() if `path` exists: without --overwrite nothing is replaced.
 void refuse_existing(FileSystem& files, const std::string& path);
 
 /// Throws Error(usage) for a name that is not meant for a NanoVDB file: "-", a stream, and names with the extension of

@@ -8,6 +8,7 @@
 #include "format/base/text.h"
 #include "format/io/file_id.h"
 #include "format/io/real_path.h"
+#include "format/output/output_place.h"
 #include "ingest/source/extent.h"
 #include "ingest/source_registry.h"
 #include "tools/report/finished_output.h"
@@ -24,7 +25,7 @@ void check_outputs(std::span<const SeriesStep> steps, std::span<const std::strin
     check_output(steps[i].path, outputs[i]);
     require_not_input(inputs, outputs[i]);
     if (steps.size() > 1 && !may_exist && std::filesystem::exists(outputs[i], ignored)) {
-      throw usage_error(compose(outputs[i], ": exists; choose another output or pass ", option("overwrite")));
+      throw existing_output(outputs[i]);
     }
   }
 }
