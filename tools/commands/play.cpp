@@ -85,17 +85,21 @@ void refuse_inputs(const PlayArguments& arguments, const PictureRequest& request
 }
 
 // Returns the writer of the frames. The directory is tried before the work.
-FrameWriter open_output(const PlayArguments& arguments, FileSystem& files, std::size_t frames) {
+FrameWriter open_output(const PlayArguments& arguments, FileSystem& files) {
   if (!arguments.raw.empty()) {
     return [](std::size_t, const Picture& picture) { write_stdout(encode_rgb24(picture.image, picture.tone)); };
   }
   { const ImageFile tried(files, frame_path(arguments.output, 0), true); }
-  if (const std::string next = frame_path(arguments.output, frames); files.exists(next)) {
-    spdlog::warn("{}: is from a longer series; this one ends before it", next);
-  }
   return [&arguments, &files](std::size_t frame, const Picture& picture) {
     ImageFile(files, frame_path(arguments.output, frame), true).commit(picture.image, picture.tone);
   };
+}
+
+void warn_of_longer_series(const PlayArguments& arguments, FileSystem& files, std::size_t frames) {
+  if (!arguments.raw.empty()) return;
+  if (const std::string next = frame_path(arguments.output, frames); files.exists(next)) {
+    spdlog::warn("{}: is from a longer series; this one ends before it", next);
+  }
 }
 
 // Fixes one look for all steps: transfer function, background and framing must not change from step to step.
@@ -179,7 +183,7 @@ void play_series(const PlayArguments& arguments) {
     directory.emplace(*files, arguments.output);
     refuse_inputs(arguments, request, volumes);
   }
-  const FrameWriter write = open_output(arguments, *files, volumes.size());
+  const FrameWriter write = open_output(arguments, *files);
   fix_look(request, volumes);
   if (const std::string line = opacity_warning(request.scene); !line.empty()) {
     spdlog::warn("{}: {}", arguments.picture.at("scene"), line);
@@ -218,6 +222,7 @@ void play_series(const PlayArguments& arguments) {
     throw Error(ErrorKind::interrupted, cat("interrupted; ", written, " of ", volumes.size(), " frames were written"));
   }
   progress.finish();
+  warn_of_longer_series(arguments, *files, volumes.size());
   if (arguments.json) {
     std::cout << json_text(to_json(arguments, request, report, backend->name(), bar_width), 2) << '\n';
   } else {

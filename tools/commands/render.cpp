@@ -154,7 +154,7 @@ void write_report(const RenderArguments& arguments, const PictureRequest& reques
 void render(const RenderArguments& arguments) {
   PictureRequest request = read_picture_request(arguments.picture);
   request.sampling.cancel = &interrupt_flag();
-  const auto threads = limit_threads(0);
+  const auto threads = limit_threads(static_cast<std::size_t>(request.backend.threads));
   const std::unique_ptr<FileSystem> files = make_posix_file_system();
   std::vector<std::string> inputs = picture_inputs(arguments.picture, request);
   inputs.push_back(arguments.input);

@@ -179,6 +179,9 @@ TEST_F(Play, FramesLeftByALongerSeries_GiveAWarning) {
             std::string::npos)
       << result.err;
   EXPECT_EQ(frame("frame_00001.png"), "old");
+  const CommandResult failed = run_weir(with({"play", volume + ".none", "-o", out_}, {}));
+  EXPECT_EQ(failed.exit_code, 3);
+  EXPECT_EQ(failed.err.find("longer series"), std::string::npos) << failed.err;
 }
 
 TEST_F(Play, BrokenFile_EndsPlayAfterTheFramesBefore) {

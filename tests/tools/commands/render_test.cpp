@@ -285,6 +285,10 @@ TEST_F(Render, ExistingPicture_IsReplacedWithOverwriteOnly) {
   EXPECT_EQ(read_file(picture).substr(1, 3), "PNG");
 }
 
+TEST_F(Render, MoreThreadsThanProcessors_AreTakenWithoutAWord) {
+  EXPECT_EQ(run_weir({"render", volume_, "-o", out_ + "/a.png", "--size", "8x6", "-q", "--threads", "7"}).err, "");
+}
+
 TEST_F(Render, MissingOrForeignInput) {
   EXPECT_EQ(run_weir({"render", directory_ / "no.nvdb", "-o", out_ + "/a.png"}).exit_code, 3);
   const std::string raw = directory_ / "c_70x60x50_float32.raw";
