@@ -232,9 +232,9 @@ typedef struct weir_input_options {
   double spacing[3];   /* replaces the file's; all 0: the file's */
   double origin[3];    /* replaces the file's if has_origin is set */
   int64_t roi_min[3];  /* only the voxels from roi_min to before roi_max, by the file's own indices, which count from
-                          the lowest coordinate even if coordinates fall. A number below 0 counts from the end as in
-                          Python (-3 is the third last), unless the file's indices begin below 0. Both all 0: the
-                          whole volume */
+                          the lowest coordinate even if coordinates fall, and in AMReX from the domain's lower corner.
+                          A number below 0 counts from the end as in Python (-3 is the third last), unless the file's
+                          indices begin below 0. Both all 0: the whole volume */
   int64_t roi_max[3];
   int32_t type;   /* scalar type of a raw file, WEIR_UINT8 ...; 0: from its name */
   int32_t endian; /* byte order of a raw file, WEIR_ENDIAN_...; AUTO: from its name, otherwise little */

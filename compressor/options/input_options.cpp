@@ -264,8 +264,8 @@ constexpr ConversionOption kInputOptions[] = {
       .standard = "the whole volume",
       .help =
           "only this box of voxels, x0 inclusive, x1 exclusive, by the file's own indices, which count from the lowest "
-          "coordinate where coordinates fall; an end left out is the volume's, one below 0 counts from its end unless "
-          "the file's indices begin below 0",
+          "coordinate where coordinates fall, and in AMReX from the domain's lower corner; an end left out is the "
+          "volume's, one below 0 counts from its end unless the file's indices begin below 0",
       .group = "region"},
      read_roi},
     {{.key = "ghost",

@@ -72,6 +72,12 @@ ComponentAxis component_axis(std::span<const AxisPlace> axes) {
   return by_extent(axes);
 }
 
+bool components_before_time(std::span<const AxisPlace> axes) {
+  const std::size_t all = axes.size();
+  while (!axes.empty() && axes.back().is_time) axes = axes.first(axes.size() - 1);
+  return !axes.empty() && axes.size() < all && is_named(axes.back());
+}
+
 namespace {
 
 ComponentAxis asked_anywhere(std::span<const AxisPlace> axes) {

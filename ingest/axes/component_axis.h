@@ -28,6 +28,9 @@ struct ComponentAxis {
 /// because its components already are volumes.
 ComponentAxis component_axis(std::span<const AxisPlace> axes);
 
+/// Returns whether the last axis that is no time has the name of components, and times are behind it.
+bool components_before_time(std::span<const AxisPlace> axes);
+
 /// Returns the component axis if the user says that there is one. Tries, after component_axis(): the axis before the
 /// last three, by its name; a last axis of 2, 3, 4 or 9 that is no axis of space, unless the axis before it is
 /// shorter; the last axis, then the axis before the last three, if the file says nothing about it, it has 2 to

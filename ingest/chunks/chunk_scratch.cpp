@@ -5,6 +5,7 @@
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "ingest/plan/conversion_bytes.h"
 
 namespace weir {
 namespace {
@@ -24,7 +25,7 @@ ScratchPool::ScratchPool(const ScratchSize& size, std::uint64_t memory, const st
     throw Error(ErrorKind::usage,
                 compose(name, ": decoding one of its chunks of ", format_bytes(size.chunk_bytes), " takes ",
                         format_bytes(scratch_bytes_), ", more than half of ", option("memory", format_bytes(memory)),
-                        "; give at least ", (2 * scratch_bytes_ >> 20U) + 1, "MiB"));
+                        "; give at least ", memory_beside_conversion(scratch_bytes_)));
   }
   const std::uint64_t cores = std::max(1U, std::thread::hardware_concurrency());
   const std::uint64_t count = std::clamp<std::uint64_t>(memory / kScratchShare / scratch_bytes_, 1, cores);

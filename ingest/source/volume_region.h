@@ -10,8 +10,8 @@
 namespace weir {
 
 /// Per axis [first, end), half open, by the file's own indices. An absent end is the volume's own. A value below 0
-/// counts from the volume's end, unless the volume's indices begin below 0 on this axis (possible in OpenVDB grids,
-/// VTK's WholeExtent and AMReX domains): then it is an index.
+/// counts from the volume's end, unless the volume's indices begin below 0 on this axis (possible in OpenVDB grids and
+/// VTK's WholeExtent): then it is an index. Cells of AMReX count from the domain's lower corner.
 struct VolumeRegion {
   std::array<std::optional<std::int64_t>, 3> first;
   std::array<std::optional<std::int64_t>, 3> end;

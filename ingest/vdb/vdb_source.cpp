@@ -8,6 +8,7 @@
 #include "ingest/files/input_file.h"
 #include "ingest/headers/header_text.h"
 #include "ingest/headers/named_choice.h"
+#include "ingest/plan/conversion_bytes.h"
 #include "ingest/source/extent.h"
 #include "ingest/streams/file_stream.h"
 #include "ingest/values/axis_placement.h"
@@ -21,9 +22,6 @@
 
 namespace weir {
 namespace {
-
-/// The memory of a small conversion besides the tree. A larger conversion reports its own lack of memory.
-constexpr std::uint64_t kConversionBytes = std::uint64_t{64} << 20U;
 
 // Returns the grid with the tree that an instance shares, or the grid itself if it has its own tree; null if the
 // shared grid is missing.

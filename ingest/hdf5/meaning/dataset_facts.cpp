@@ -65,6 +65,12 @@ std::string time_obstacle(const DatasetFacts& facts) {
              "); a volume has three axes of space");
 }
 
+std::string component_obstacle(const DatasetFacts& facts) {
+  if (facts.axes.size() <= kVolumeRank || !components_before_time(facts.axes)) return {};
+  return cat("its components come before its time (", axes_text(facts.axes),
+             "); write it with the components as the last axis");
+}
+
 // Returns whether a dataset that was never written reads as a real value, and not as a value that stands for missing
 // data.
 bool reads_as_data(hid_t object, const DatasetFacts& facts) {
@@ -130,7 +136,7 @@ DatasetFacts dataset_facts(hid_t file, const Hdf5Object& object) {
   if (reads_as_data(handle, facts)) facts.storage->obstacle.clear();
   for (const std::string& obstacle :
        {type_obstacle(facts), shape_obstacle(facts), facts.storage ? facts.storage->obstacle : std::string(),
-        facts.meaning.obstacle, openpmd_obstacle(handle, groups)}) {
+        facts.meaning.obstacle, openpmd_obstacle(handle, groups), component_obstacle(facts)}) {
     if (facts.obstacle.empty()) facts.obstacle = obstacle;
   }
   if (facts.obstacle.empty()) {

@@ -7,6 +7,7 @@
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "ingest/plan/conversion_bytes.h"
 #include "ingest/plan/page_buffer.h"
 #include "ingest/source/extent.h"
 #include "ingest/values/decode_component.h"
@@ -116,7 +117,7 @@ std::unique_ptr<VolumeSource> make_stored_box_source(std::unique_ptr<StoredBoxes
   if (needed > memory / 2) {
     throw Error(ErrorKind::usage,
                 compose(where, ": reading one of its chunks takes ", format_bytes(needed), ", more than half of ",
-                        option("memory", format_bytes(memory)), "; give at least ", (2 * needed >> 20U) + 1, "MiB"));
+                        option("memory", format_bytes(memory)), "; give at least ", memory_beside_conversion(needed)));
   }
   return std::make_unique<StoredBoxSource>(std::move(boxes), std::move(info), big_endian, components,
                                            static_cast<std::size_t>(buffer_bytes), of_chunks);

@@ -37,22 +37,25 @@ std::string shape_obstacle(const ZarrArray& array, const ArrayMeaning& meaning) 
 }
 
 // A series of planes over time must not pass for a volume, with its time steps as a spacing.
-std::string time_obstacle(const ArrayMeaning& meaning) {
-  const VolumeAxes of_space = meaning.volume_axes();
-  const auto times =
-      std::count_if(of_space.begin(), of_space.end(), [](const AxisPlace* axis) { return axis->is_time; });
-  if (times == 0) return {};
-  return cat(static_cast<std::int64_t>(kSpaceRank) - times, " axes of space and a time at its end (",
-             meaning.axes.text(), "); a volume has three of space");
+void find_time_obstacle(ArrayMeaning& meaning) {
+  const VolumeAxes last = meaning.volume_axes();
+  const auto times = std::count_if(last.begin(), last.end(), [](const AxisPlace* axis) { return axis->is_time; });
+  if (times == 0) return;
+  const auto axes = std::span(meaning.axes.places).first(meaning.end_of_space());
+  const auto others = std::count_if(axes.begin(), axes.end(), [](const AxisPlace& axis) { return !axis.is_time; });
+  meaning.over_time = others < static_cast<std::ptrdiff_t>(kSpaceRank);
+  meaning.obstacle = meaning.over_time
+                         ? cat(static_cast<std::int64_t>(kSpaceRank) - times, " axes of space and a time at its end (",
+                               meaning.axes.text(), "); a volume has three of space")
+                         : cat("its time does not come before its axes of space (", meaning.axes.text(),
+                               "); write it with the time as the first axis");
 }
 
 void find_obstacle(const ZarrArray& array, ArrayMeaning& meaning) {
   meaning.over_time = false;
   meaning.obstacle = shape_obstacle(array, meaning);
   if (meaning.obstacle.empty()) meaning.obstacle = meaning.values.obstacle;
-  if (!meaning.obstacle.empty()) return;
-  meaning.obstacle = time_obstacle(meaning);
-  meaning.over_time = !meaning.obstacle.empty();
+  if (meaning.obstacle.empty()) find_time_obstacle(meaning);
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ struct ArrayMeaning {
   ArrayValues values;
   ComponentAxis components;  ///< the axis that --component chooses on
   std::string obstacle;      ///< why the array is no volume; empty if it is one
-  bool over_time = false;    ///< the obstacle is that one of its axes of space is a time
+  bool over_time = false;    ///< the obstacle is that it is a series of planes over time
 
   /// Returns the end of the axes of space: before the last axis, if that has the components of each voxel.
   std::size_t end_of_space() const { return axes.places.size() - (components.found() && !components.leading ? 1 : 0); }

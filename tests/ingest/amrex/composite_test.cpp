@@ -60,6 +60,26 @@ TEST(AmrexComposite, GeneratedPlotfiles_HaveTheValueOfTheFinestLevelInEachCell) 
   }
 }
 
+TEST(AmrexComposite, DomainThatBeginsBelowZero_CountsFromItsLowerCorner) {
+  const Scratch scratch;
+  PlotfilePlan plan;
+  plan.domain = {{-5, -4, -2}, {3, 4, 6}};
+  plan.boxes = {{plan.domain}};
+  const std::string path = scratch.path("plt00042");
+  test::write_plotfile(path, plan);
+  SourceOptions options;
+  options.roi = VolumeRegion(Box{{-3, 0, 0}, {8, 1, 1}});
+  const auto region = [&] {
+    const auto source = open_source(path, options);
+    return expected_values(plan, 0, 0, source->info().domain()) == read_box(*source, source->info().domain())
+               ? source->info().domain()
+               : Box{};
+  };
+  EXPECT_EQ(region(), (Box{{5, 0, 0}, {8, 1, 1}})) << "-3 is the third last";
+  options.roi = VolumeRegion(Box{{1, 2, 3}, {3, 4, 5}});
+  EXPECT_EQ(region(), (Box{{1, 2, 3}, {3, 4, 5}}));
+}
+
 bool covers_leaves(const RepeatedPart& part, const Box& box) {
   const auto on_leaf = [](std::int64_t at, std::int64_t end) { return at % kLeafDim == 0 || at == end; };
   return on_leaf(part.box.lo.x, box.lo.x) && on_leaf(part.box.hi.x, box.hi.x) && on_leaf(part.box.lo.y, box.lo.y) &&

@@ -34,7 +34,7 @@ TEST(ChunkScratch, AnEighthOfTheMemoryOrOneChunk) {
 TEST(ChunkScratch, AChunkBeyondHalfTheMemoryIsRefused) {
   EXPECT_EQ(message_of_error(ErrorKind::usage, [] { pool_for(kGzip, 16 * kMiB); }),
             "run.h5: d: decoding one of its chunks of 4.0 MiB takes 8.1 MiB, more than half of --memory 16.0 MiB; give "
-            "at least 17MiB");
+            "at least 73MiB");
 }
 
 TEST(ChunkScratch, NeverLendsMoreThanThePoolHolds) {

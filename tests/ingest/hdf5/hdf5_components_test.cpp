@@ -108,6 +108,22 @@ with h5py.File("a.h5", "w") as f:
   EXPECT_EQ(note({false, 2}), "4 of its 27 chunks were never written and read as its fill value, -2.5");
 }
 
+TEST_F(Hdf5Components, ComponentsBeforeATime_AreRefused) {
+  write_by_h5py(scratch_, R"(
+with h5py.File("a.h5", "w") as f:
+    d = f.create_dataset("v", data=values("f4", SHAPE + (3, 2)))
+    for axis, name in enumerate(["z", "y", "x", "component", "time"]): d.dims[axis].label = name
+)");
+  const std::string expected = scratch_.path("a.h5") +
+                               ": /v: its components come before its time (z=5 x y=7 x x=9 x component=3 x time=2); "
+                               "write it with the components as the last axis";
+  const auto refused = [&](const SourceOptions& options) {
+    return message_of_error(ErrorKind::input, [&] { open_source(scratch_.path("a.h5"), options); });
+  };
+  EXPECT_EQ(refused(options_for("v", {false, 1}, {1})), expected);
+  EXPECT_EQ(refused(dataset_options("v", {0, 0})), expected);
+}
+
 TEST_F(Hdf5Components, LeadingAxesAreChosenByIndexBesides) {
   write_by_h5py(scratch_, R"(
 v = values("f8", (4,) + SHAPE + (2,))

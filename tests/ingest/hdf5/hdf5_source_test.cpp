@@ -358,7 +358,7 @@ with h5py.File("a.h5", "w") as f:
   EXPECT_EQ(refused("a.h5", options, ErrorKind::usage),
             scratch_.path("a.h5") +
                 ": /v: reading one of its chunks takes 52.0 MiB, more than half of --memory 32.0 "
-                "MiB; give at least 105MiB");
+                "MiB; give at least 117MiB");
 }
 
 TEST_F(Hdf5Source, LibraryErrorsAreNotPrintedToStderr) {

@@ -211,6 +211,24 @@ TEST_F(ZarrCoordinates, OfATimeAmongTheLastThree_MakeNoVolume) {
   EXPECT_EQ(open_source(files_.path(), options)->info().dataset, "run/T");
 }
 
+TEST_F(ZarrCoordinates, OfATimeBehindAnAxisOfSpace_AreRefusedEvenWithASpacing) {
+  const std::pair<const char*, const char*> orders[] = {
+      {R"("z","time","lat","lon")", "z 2, time 2, lat 3, lon 4"},
+      {R"("z","lat","time","lon")", "z 2, lat 2, time 3, lon 4"},
+      {R"("z","lat","lon","time")", "z 2, lat 2, lon 3, time 4"},
+  };
+  SourceOptions options;
+  options.dataset = "run/T";
+  options.index = {1};
+  options.spacing = {1, 1, 1};
+  for (const auto& [names, axes] : orders) {
+    files_.write("run/T/.zattrs", cat(R"({"_ARRAY_DIMENSIONS":[)", names, "]}"));
+    EXPECT_EQ(message_of_error(ErrorKind::input, [&] { open_source(files_.path(), options); }),
+              cat(files_.path("run/T"), ": its time does not come before its axes of space (", axes,
+                  "); write it with the time as the first axis"));
+  }
+}
+
 // xarray writes such a time for a timedelta, and yt for a cosmology.
 TEST_F(ZarrCoordinates, OfATimeInAnyUnitButOneOfSpace_MakeNoVolumeAndSayWhenItIs) {
   files_.write("run/rain/.zarray", zarray("[2,3,4]", "[2,3,4]", "|u1", "null"));
