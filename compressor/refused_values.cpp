@@ -42,6 +42,8 @@ std::string stored_text(const StoredValue& value, ScalarType type) {
   return {text.data(), end};
 }
 
+}  // namespace
+
 void refuse_missing(const Survey& survey, const SourceInfo& info) {
   if (survey.missing == 0) return;
   const std::string dataset = info.dataset.empty() ? "" : cat(", dataset ", info.dataset);
@@ -59,6 +61,8 @@ void refuse_missing(const Survey& survey, const SourceInfo& info) {
                       option("missing-policy", "background"), " or, to take ", values, " for data, ",
                       option("missing-policy", "keep")));
 }
+
+namespace {
 
 // What float32 lost is in no error that a file is made by.
 void refuse_rounding(const Budget& budget, const Survey& survey, const SourceInfo& info) {

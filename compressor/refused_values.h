@@ -13,4 +13,7 @@ namespace weir {
 /// by more than the largest error that `options` allow.
 void refuse_values(const ConversionOptions& options, const Survey& survey, const SourceInfo& info);
 
+/// Throws Error(input) with count, first place and the options to choose from if voxels hold no data.
+void refuse_missing(const Survey& survey, const SourceInfo& info);
+
 }  // namespace weir

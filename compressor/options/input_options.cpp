@@ -256,7 +256,8 @@ constexpr ConversionOption kInputOptions[] = {
       .help =
           "what becomes of voxels that hold no data, which --missing or the file's _FillValue or missing_value marks. "
           "error: they are refused. background: they get the background. keep: they keep the fill value, as data. "
-          "auto: as --nonfinite says, whose default is error; with --nonfinite keep they become NaN"},
+          "auto: as --nonfinite says, whose default is error; with --nonfinite keep they become NaN; in a picture of a "
+          "source, background"},
      read_missing_policy},
     {{.key = "roi",
       .argument = "x0:x1,y0:y1,z0:z1",

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <utility>
 
 #include "format/leaf/leaf_decode.h"
 #include "gpu/volume/level_bounds.h"
@@ -182,6 +183,7 @@ void MeanPyramid::fill(const Blocks& blocks, int threads) {
   arena.execute([&] {
     fill_finest(blocks);
     for (int l = first_ + 1; l < first_ + count; ++l) reduce_level(l);
+    for (int l = first_; l < first_ + count; ++l) fill_beside_finite(l);
   });
 }
 
@@ -210,6 +212,25 @@ void MeanPyramid::reduce_level(int level) {
       }
     }
   });
+}
+
+void MeanPyramid::fill_beside_finite(int level) {
+  std::vector<float>& texels = levels_[static_cast<std::size_t>(level - first_)];
+  const Int3 n = lattice_.texels(level);
+  std::vector<std::vector<std::pair<std::size_t, float>>> filled(static_cast<std::size_t>(n.z));  // for each plane
+  oneapi::tbb::parallel_for(0, n.z, [&](std::int32_t z) {
+    for (std::int32_t y = 0; y < n.y; ++y) {
+      for (std::int32_t x = 0; x < n.x; ++x) {
+        const std::size_t i = table_index({x, y, z}, n);
+        if (is_finite(texels[i])) continue;
+        const float value = texel_beside_finite(texels.data(), n, {x, y, z});
+        if (is_finite(value)) filled[static_cast<std::size_t>(z)].emplace_back(i, value);
+      }
+    }
+  });
+  for (const auto& plane : filled) {
+    for (const auto& [i, value] : plane) texels[i] = value;
+  }
 }
 
 LevelsView<DenseSampler> MeanPyramid::view() const {

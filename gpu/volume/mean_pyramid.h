@@ -36,6 +36,8 @@ class MeanPyramid {
   void fill_finest(const Blocks& blocks);
   /// Makes `level` from the next finer level.
   void reduce_level(int level);
+  /// Replaces NaN texels as texel_beside_finite() says.
+  void fill_beside_finite(int level);
 
   LevelLattice lattice_;
   int first_;

@@ -52,4 +52,20 @@ WEIR_HOST_DEVICE inline float coarser_texel(const LevelLattice& lattice, int lev
   return mean.value();
 }
 
+/// Returns texel `i` of a level as look-ups read it: a NaN texel beside finite ones, at a corner too, has their mean. A
+/// blend of a finite and a NaN texel is NaN, and half of each finite cube between others would not be seen.
+WEIR_HOST_DEVICE inline float texel_beside_finite(const float* texels, const Int3& n, const Int3& i) {
+  const float own = texels[table_index(i, n)];
+  if (is_finite(own)) return own;
+  const Int3 low{greater(i.x - 1, 0), greater(i.y - 1, 0), greater(i.z - 1, 0)};
+  const Int3 high{lesser(i.x + 1, n.x - 1), lesser(i.y + 1, n.y - 1), lesser(i.z + 1, n.z - 1)};
+  VoxelMean mean;
+  for (std::int32_t z = low.z; z <= high.z; ++z) {
+    for (std::int32_t y = low.y; y <= high.y; ++y) {
+      for (std::int32_t x = low.x; x <= high.x; ++x) mean.add(texels[table_index({x, y, z}, n)], 1.0);
+    }
+  }
+  return mean.value();
+}
+
 }  // namespace weir

@@ -143,6 +143,7 @@ nlohmann::json to_json(const PlayArguments& arguments, const PictureRequest& req
           {"frames", report.frames},
           {"width", request.options.width + bar_width},
           {"height", request.options.height},
+          {"colorbar_width", bar_width},
           {"mode", render_mode_name(request.scene.mode)},
           {"filter", filter_name(request.options.filter)},
           {"backend", backend},

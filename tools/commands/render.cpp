@@ -81,7 +81,8 @@ LoadedInput load_file(Backend& backend, const RenderArguments& arguments) {
 
 LoadedInput load_dense(Backend& backend, const RenderArguments& arguments, std::optional<std::uint64_t> ceiling,
                        Progress& progress) {
-  const auto source = open_source(arguments.input, command_request(arguments.source).source);
+  const ConversionRequest request = command_request(arguments.source);
+  const auto source = open_source(arguments.input, request.source);
   require_not_input(source_file_ids(source->info()), arguments.output);
   progress.start("read", static_cast<std::uint64_t>(source->info().domain().voxels()) * sizeof(float));
   StreamOptions options;
@@ -89,7 +90,8 @@ LoadedInput load_dense(Backend& backend, const RenderArguments& arguments, std::
   options.progress = [&](std::int64_t done, std::int64_t) {
     progress.update(static_cast<std::uint64_t>(done) * sizeof(float));
   };
-  std::unique_ptr<LoadedVolume> volume = backend.load_dense(read_dense(*source, options, ceiling), 0);
+  std::unique_ptr<LoadedVolume> volume =
+      backend.load_dense(read_dense(*source, options, request.conversion.missing, ceiling), 0);
   const MinMax range = volume->info().range;
   return {std::move(volume), quantity_title(source->info()), range};
 }
@@ -114,7 +116,8 @@ struct RenderFigures {
   std::string_view backend;
   const LoadSummary& loaded;
   double load_s;
-  std::uint64_t bytes;  // bytes of the image file
+  std::uint64_t bytes;     // bytes of the image file
+  std::int32_t bar_width;  // of the colour bar in pixels; 0: none
 };
 
 // Prints the report on stdout with --json, otherwise logs most of it.
@@ -130,6 +133,7 @@ void write_report(const RenderArguments& arguments, const PictureRequest& reques
                               {"bytes", figures.bytes},
                               {"width", picture.image.width},
                               {"height", picture.image.height},
+                              {"colorbar_width", figures.bar_width},
                               {"mode", render_mode_name(request.scene.mode)},
                               {"filter", filter_name(request.options.filter)},
                               {"volume", arguments.volume},
@@ -188,7 +192,7 @@ void render(const RenderArguments& arguments) {
   progress.finish();
   if (!picture.memory_note.empty()) spdlog::warn("{}: {}", arguments.input, picture.memory_note);
   const std::uint64_t bytes = image_file.commit(picture.image, picture.tone);
-  write_report(arguments, request, picture, {backend->name(), loaded, load_s, bytes});
+  write_report(arguments, request, picture, {backend->name(), loaded, load_s, bytes, bar ? bar->width : 0});
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <utility>
 
+#include "compressor/refused_values.h"
 #include "compressor/survey/background.h"
 #include "compressor/survey/survey.h"
 #include "format/base/error.h"
@@ -85,13 +86,14 @@ class MemorySource final : public VolumeSource {
   const float* values_;
 };
 
-float find_background(const SourceInfo& info, const float* values) {
+float find_background(const SourceInfo& info, const float* values, MissingPolicy missing) {
   constexpr std::uint64_t kBlockBytes = std::uint64_t{1} << 20U;
   MemorySource source(info, values);
   const BlockPlan plan = plan_blocks(info.domain(), source.access(), kBlockBytes);
   const auto files = make_posix_file_system();
   RowStore rows(files->create_unnamed(temporary_directory()), plan.lattice, {});
   const Survey survey = survey_volume(source, plan, rows, {}, {.reading = Reading::in_place});
+  if (missing == MissingPolicy::error) refuse_missing(survey, info);
   return weir::find_background(survey, rows, source, plan, {}).value;
 }
 
@@ -105,7 +107,7 @@ void fill_missing(float* values, std::int64_t count, float background) {
 
 }  // namespace
 
-std::shared_ptr<const DenseVolume> read_dense(VolumeSource& source, const StreamOptions& options,
+std::shared_ptr<const DenseVolume> read_dense(VolumeSource& source, const StreamOptions& options, MissingPolicy missing,
                                               std::optional<std::uint64_t> ceiling) {
   check_memory(source, ceiling);
   const SourceInfo& info = source.info();
@@ -113,7 +115,7 @@ std::shared_ptr<const DenseVolume> read_dense(VolumeSource& source, const Stream
   // Not initialised, so that pages are first touched when values are read into them.
   auto values = std::make_unique_for_overwrite<float[]>(static_cast<std::size_t>(count));
   read_layers(source, options, values.get());
-  const float background = find_background(info, values.get());
+  const float background = find_background(info, values.get(), missing);
   fill_missing(values.get(), count, background);
   return std::make_shared<const DenseVolume>(GridFrame{info.domain(), info.spacing, info.origin}, std::move(values),
                                              background);

@@ -1,3 +1,4 @@
+#include "gpu/cuda/bricks/brick_texels.h"
 #include "gpu/cuda/bricks/device_machine.cuh"
 #include "gpu/cuda/bricks/device_pyramid.h"
 #include "gpu/cuda/bricks/level_builder.h"
@@ -8,7 +9,7 @@ namespace weir {
 namespace {
 
 // Reads a level's texels unfiltered, because a filtered look-up next to a NaN is NaN.
-struct SurfaceTexels {
+struct LevelTexels {
   cudaSurfaceObject_t surface;
 
   __device__ float voxel(const Int3& i) const {
@@ -18,7 +19,7 @@ struct SurfaceTexels {
 
 }  // namespace
 
-// While a level is copied to its texture, it is in memory twice.
+// While a level is written to its texture, it is in memory twice.
 int DevicePyramid::finest_within(const LevelLattice& lattice, int wanted, std::uint64_t bytes) {
   return finest_level_within(lattice, wanted, bytes > kDecodedRegionBytes ? (bytes - kDecodedRegionBytes) / 2 : 0,
                              kMaxTextureEdge);
@@ -34,7 +35,7 @@ DevicePyramid::DevicePyramid(BlockSource& source, std::span<const RegionEntry> r
   for (int i = 0; i < count; ++i) {
     if (i > 0) level = coarser_level_of(machine, lattice_, first + i - 1, level.data());
     levels_.emplace_back(lattice_.texels(first + i));
-    levels_.back().copy(level.data(), cudaStreamPerThread);
+    write_level(machine, lattice_.texels(first + i), level.data(), SurfaceTexels<float>{levels_.back().surface()});
   }
   machine.wait();
 }
@@ -51,7 +52,7 @@ LevelsView<TextureSampler> DevicePyramid::view() const {
 DeviceArray<MinMax> DevicePyramid::bounds(const CellLattice& cells, const MinMax* voxels, const LevelChoice& choice,
                                           bool drafts) const {
   DeviceArray<MinMax> result(static_cast<std::size_t>(cells.size()));
-  LevelBounds<SurfaceTexels> step;
+  LevelBounds<LevelTexels> step;
   step.lattice = lattice_;
   step.first = first_;
   step.count = static_cast<int>(levels_.size());

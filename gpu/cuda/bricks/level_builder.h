@@ -83,4 +83,16 @@ typename Machine::template Array<float> coarser_level_of(const Machine& machine,
   return texels;
 }
 
+/// Writes the `size` texels of a level to `out` as look-ups read them (texel_beside_finite).
+template <class Machine, class Out>
+void write_level(const Machine& machine, const Int3& size, const float* texels, const Out& out) {
+  constexpr std::uint32_t kMostTogether = std::uint32_t{1} << 30U;  // a large level has more texels than a step counts
+  const std::uint32_t plane = static_cast<std::uint32_t>(size.x) * static_cast<std::uint32_t>(size.y);
+  const auto planes = static_cast<std::int32_t>(std::max(kMostTogether / plane, std::uint32_t{1}));
+  for (std::int32_t z = 0; z < size.z; z += planes) {
+    const auto some = static_cast<std::uint32_t>(std::min(planes, size.z - z));
+    machine.each(plane * some, WritePlanes<Out>{size, texels, z, out});
+  }
+}
+
 }  // namespace weir

@@ -91,6 +91,14 @@ struct FillFinestPlain {
   }
 };
 
+/// Returns the i-th of `n` texels, x fastest.
+WEIR_HOST_DEVICE inline Int3 texel_at(std::uint32_t i, const Int3& n) {
+  const auto nx = static_cast<std::uint32_t>(n.x);
+  const auto ny = static_cast<std::uint32_t>(n.y);
+  return {static_cast<std::int32_t>(i % nx), static_cast<std::int32_t>(i / nx % ny),
+          static_cast<std::int32_t>(i / nx / ny)};
+}
+
 /// Makes level `level` + 1. Runs for each of its texels.
 struct FillCoarser {
   LevelLattice levels;
@@ -99,12 +107,23 @@ struct FillCoarser {
   float* coarser = nullptr;
 
   WEIR_HOST_DEVICE void operator()(std::uint32_t i) const {
-    const Int3 n = levels.texels(level + 1);
-    const auto nx = static_cast<std::uint32_t>(n.x);
-    const auto ny = static_cast<std::uint32_t>(n.y);
-    coarser[i] = coarser_texel(levels, level, finer,
-                               {static_cast<std::int32_t>(i % nx), static_cast<std::int32_t>(i / nx % ny),
-                                static_cast<std::int32_t>(i / nx / ny)});
+    coarser[i] = coarser_texel(levels, level, finer, texel_at(i, levels.texels(level + 1)));
+  }
+};
+
+/// Writes planes of a level's texels as look-ups read them. Runs for each texel of these. `Out` has write(texel,
+/// value).
+template <class Out>
+struct WritePlanes {
+  Int3 size;  ///< of the level
+  const float* texels = nullptr;
+  std::int32_t first_plane = 0;
+  Out out;
+
+  WEIR_HOST_DEVICE void operator()(std::uint32_t i) const {
+    Int3 texel = texel_at(i, size);
+    texel.z += first_plane;
+    out.write(texel, texel_beside_finite(texels, size, texel));
   }
 };
 

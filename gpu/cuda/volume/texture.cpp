@@ -66,32 +66,16 @@ std::uint64_t Texture::bytes() const {
          static_cast<std::uint64_t>(size_.z) * texel_bytes(type_);
 }
 
-namespace {
-
-/// Returns copy parameters for `depth` planes of floats.
-cudaMemcpy3DParms planes_of(const float* planes, const Int3& size, std::int32_t depth) {
-  cudaMemcpy3DParms copy{};
-  copy.srcPtr = make_cudaPitchedPtr(const_cast<float*>(planes), static_cast<std::size_t>(size.x) * sizeof(float),
-                                    static_cast<std::size_t>(size.x), static_cast<std::size_t>(size.y));
-  copy.extent = {static_cast<std::size_t>(size.x), static_cast<std::size_t>(size.y), static_cast<std::size_t>(depth)};
-  return copy;
-}
-
-}  // namespace
-
 void Texture::upload(const float* planes, std::int32_t z, std::int32_t depth) {
-  cudaMemcpy3DParms copy = planes_of(planes, size_, depth);
+  const auto width = static_cast<std::size_t>(size_.x);
+  const auto height = static_cast<std::size_t>(size_.y);
+  cudaMemcpy3DParms copy{};
+  copy.srcPtr = make_cudaPitchedPtr(const_cast<float*>(planes), width * sizeof(float), width, height);
+  copy.extent = {width, height, static_cast<std::size_t>(depth)};
   copy.dstArray = array_;
   copy.dstPos.z = static_cast<std::size_t>(z);
   copy.kind = cudaMemcpyHostToDevice;
   check_cuda(cudaMemcpy3D(&copy), "copying planes to a texture");
-}
-
-void Texture::copy(const float* texels, cudaStream_t stream) {
-  cudaMemcpy3DParms copy = planes_of(texels, size_, size_.z);
-  copy.dstArray = array_;
-  copy.kind = cudaMemcpyDeviceToDevice;
-  check_cuda(cudaMemcpy3DAsync(&copy, stream), "filling a texture");
 }
 
 }  // namespace weir

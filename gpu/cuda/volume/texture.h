@@ -34,8 +34,6 @@ class Texture {
   std::uint64_t bytes() const;
   /// Copies planes [z, z + depth) of floats from dense host memory, x fastest.
   void upload(const float* planes, std::int32_t z, std::int32_t depth);
-  /// Copies all texels, which are floats, from dense device memory, x fastest, in the order of `stream`.
-  void copy(const float* texels, cudaStream_t stream);
 
  private:
   Int3 size_;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -120,6 +121,33 @@ TEST_F(LevelsOfDetail, ThinVolumes_AreAsOpaqueAsTheirVoxels) {
       const Float3 expected = voxels.image.pixels[centre];
       EXPECT_GT(length(expected), 0.1F);
       EXPECT_LT(length(seen - expected), 0.02F * length(expected)) << thickness << ' ' << render_mode_name(mode);
+    }
+  }
+}
+
+// A pixel is about ten voxels wide, and a layer may look half a pixel wider at each side.
+TEST_F(LevelsOfDetail, LayersBesideNaN_AreSeenAsTheirVoxelsAre) {
+  const auto backend = make_cpu_backend(2, {.levels = true});
+  for (const auto& [thickness, widest] : {std::pair{8, 2.25F}, std::pair{32, 1.3F}}) {
+    const test::TestGrid made({{0, 0, 0}, {256, 256, 256}}, [end = 128 + thickness](const Index3& i) {
+      return i.z >= 128 && i.z < end ? 1.0F : std::numeric_limits<float>::quiet_NaN();
+    });
+    const auto volume = backend->load(file(made.file()), 0, nullptr);
+    for (const RenderMode mode : {RenderMode::dvr, RenderMode::mip}) {
+      Scene scene = scene_of(mode);
+      scene.volume.opacity = {{0, 1}, {1, 1}};
+      scene.camera.elevation = 5;
+      const Picture voxels = picture(*backend, *volume, scene, std::nullopt);
+      const Picture means = picture(*backend, *volume, scene, LevelOfDetail{0, 0});
+      EXPECT_GE(means.finest_level, 1);
+      const auto sum = [](const Image& image) {
+        float all = 0;
+        for (const Float3& pixel : image.pixels) all += pixel.x + pixel.y + pixel.z;
+        return all;
+      };
+      EXPECT_GT(sum(voxels.image), 1.0F);
+      EXPECT_GT(sum(means.image), 0.95F * sum(voxels.image)) << thickness << ' ' << render_mode_name(mode);
+      EXPECT_LT(sum(means.image), widest * sum(voxels.image)) << thickness << ' ' << render_mode_name(mode);
     }
   }
 }

@@ -133,6 +133,23 @@ TEST(LevelsView, ALinearFunction_IsTheSameOnEveryLevel) {
   EXPECT_EQ(pyramid.view().at({5, 5, 5}, 40), pyramid.view().at({60, 3, 9}, 40));
 }
 
+// Voxels 16 to 31 along x are 3, all others NaN. They are seen up to half a texel beyond.
+TEST(LevelsView, FiniteTexelsBesideNaN_AreSeenInTheirWholeWidth) {
+  const Box domain{{0, 0, 0}, {64, 64, 64}};
+  const std::vector<float> values =
+      values_of(domain, [](const Index3& i) { return i.x >= 16 && i.x < 32 ? 3.0F : kNaN; });
+  const MeanPyramid pyramid(domain, view_of(values, domain), 1, 1);
+  for (const float level : {1.0F, 2.0F, 3.0F}) {
+    for (const float x : {16.1F, 17.0F, 20.3F, 24.0F, 29.0F, 31.9F}) {
+      EXPECT_FLOAT_EQ(pyramid.view().at({x, 20, 30}, level), 3.0F) << level << ' ' << x;
+    }
+    const float half = std::exp2(level - 1);
+    for (const float x : {0.0F, 15.9F - half, 32.1F + half, 64.0F}) {
+      EXPECT_FALSE(std::isfinite(pyramid.view().at({x, 20, 30}, level))) << level << ' ' << x;
+    }
+  }
+}
+
 TEST(LevelChoice, CubesAreAsWideAsAPixel) {
   LevelChoice choice;
   choice.eye = {-100, 0, 0};

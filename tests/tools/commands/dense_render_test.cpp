@@ -133,6 +133,12 @@ TEST_F(DenseRender, Refusals) {
                  raw +
                      ": --volume dense holds all 40 x 30 x 20 voxels and needs 132.1 MiB of memory, --memory allows "
                      "1.0 MiB; show a part with --roi, or convert it and render the file");
+  const std::string first = (std::filesystem::path(raw).parent_path() / "m_2x2x1_uint8.raw").string();
+  write_file(first, std::string("\x05\x07\x05\x05", 4));
+  expect_refused({"render", first, "-o", image, "--volume", "dense", "--missing", "7", "--missing-policy", "error"}, 3,
+                 first +
+                     ": 1 of 4 voxels (25 %) holds no data (stored as 7), the first at 1,0,0; choose --missing-policy "
+                     "background or, to take 7 for data, --missing-policy keep");
   EXPECT_FALSE(std::filesystem::exists(image));
 }
 

@@ -148,11 +148,12 @@ TEST_F(Render, ColorBar_StandsRightOfThePictureThatIsAsWithoutIt) {
     EXPECT_EQ(result.exit_code, 0) << result.err;
     return nlohmann::json::parse(result.out);
   };
-  rendered("a.png", {});
+  EXPECT_EQ(rendered("a.png", {})["colorbar_width"], 0);
   const nlohmann::json report = rendered("b.png", {"--colorbar"});
   const Image plain = read_png(out_ + "/a.png");
   const Image both = read_png(out_ + "/b.png");
   EXPECT_EQ(report["width"], both.width);
+  EXPECT_EQ(report["colorbar_width"], both.width - 40);
   ASSERT_GT(both.width, 56);
   for (std::int32_t y = 0; y < 80; ++y) {
     for (std::int32_t x = 0; x < 40; ++x) ASSERT_EQ(both.at(x, y), plain.at(x, y));
