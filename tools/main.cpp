@@ -6,6 +6,7 @@
 #include <string>
 
 #include "format/base/error.h"
+#include "format/process/fault.h"
 #include "ingest/drivers/hdf5_crash.h"
 #include "tools/command.h"
 #include "tools/interrupt.h"
@@ -13,7 +14,6 @@
 #include "tools/options/parse_command_line.h"
 #include "tools/options/parse_message.h"
 #include "tools/report/error_line.h"
-#include "tools/report/fault.h"
 #include "tools/report/standard_output.h"
 
 namespace {
@@ -68,8 +68,8 @@ int run(int argc, char** argv) {
   } catch (const weir::Error& error) {
     return fail(weir::command_message(app, error), weir::exit_code_of(error));
   } catch (const std::exception& error) {
-    const weir::Fault fault = weir::fault_of(error, "--memory, or a smaller --size of a picture");
-    return fail(fault.message, fault.exit_code);
+    const weir::Error fault = weir::fault_of(error, "--memory, or a smaller --size of a picture");
+    return fail(fault.what(), fault.exit_code());
   }
 }
 

@@ -15,6 +15,7 @@
 #include "bindings/cuda/resident_choice.h"
 #include "compressor/push/resident_source.h"
 #include "format/base/scalar_type.h"
+#include "format/process/fault.h"
 #include "gpu/cuda/encode/resident_volume.h"
 #include "gpu/cuda/push/device_slabs.h"
 #include "gpu/cuda/push/resident_planes.h"

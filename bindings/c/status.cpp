@@ -6,6 +6,7 @@
 
 #include "bindings/c/wording.h"
 #include "format/base/printable.h"
+#include "format/process/fault.h"
 
 namespace weir::c {
 
@@ -25,19 +26,35 @@ weir_status end_call(weir_error* error, weir_status status, const char* message)
   return status;
 }
 
+namespace {
+
+weir_status end_with_error(weir_error* error, const Error& e) {
+  try {
+    return end_call(error, e.exit_code(), one_line(e.message().worded(c_wording)).c_str());
+  } catch (const std::bad_alloc&) {  // no memory for the worded message
+    return end_call(error, e.exit_code(), e.what());
+  }
+}
+
+weir_status end_with_fault(weir_error* error, const std::exception& e) {
+  try {
+    return end_with_error(error, fault_of(e));
+  } catch (const std::bad_alloc&) {
+    return end_call(error, WEIR_ERROR_INTERNAL, e.what());
+  }
+}
+
+}  // namespace
+
 weir_status end_with_exception(weir_error* error) noexcept {
   try {
     throw;
   } catch (const Error& e) {
-    try {
-      return end_call(error, e.exit_code(), one_line(e.message().worded(c_wording)).c_str());
-    } catch (const std::bad_alloc&) {  // no memory for the worded message
-      return end_call(error, e.exit_code(), e.what());
-    }
+    return end_with_error(error, e);
   } catch (const std::bad_alloc&) {
     return end_call(error, WEIR_ERROR_INTERNAL, "out of memory; give less memory to weir, or free some");
   } catch (const std::exception& e) {
-    return end_call(error, WEIR_ERROR_INTERNAL, e.what());
+    return end_with_fault(error, e);
   } catch (...) {
     return end_call(error, WEIR_ERROR_INTERNAL, "a callback let an exception out, which none may");
   }

@@ -50,7 +50,7 @@ enum {
   WEIR_ERROR_USAGE = 2,    /* a wrong argument or option, or a call out of order */
   WEIR_ERROR_INPUT = 3,    /* bad input, or none */
   WEIR_ERROR_BUDGET = 4,   /* the requested size cannot be met; the message names the smallest */
-  WEIR_ERROR_IO = 5,       /* disk full, permission, device failure */
+  WEIR_ERROR_IO = 5,       /* disk full, permission, device failure, a limit of threads, open files or file size */
   WEIR_INTERRUPTED = 130   /* the cancel callback asked to stop */
 };
 

@@ -19,6 +19,7 @@
 #include "format/base/error.h"
 #include "format/base/text.h"
 #include "format/io/output_names.h"
+#include "format/process/fault.h"
 #include "ingest/source_registry.h"
 #include "tools/command.h"
 #include "tools/command_request.h"
@@ -30,7 +31,6 @@
 #include "tools/options/run_options.h"
 #include "tools/options/table_options.h"
 #include "tools/report/error_line.h"
-#include "tools/report/fault.h"
 #include "tools/report/progress.h"
 #include "tools/report/standard_output.h"
 
@@ -163,8 +163,8 @@ int main(int argc, char** argv) {
   try {
     code = run(argc, argv, rank);
   } catch (const std::exception& error) {  // only this process fails: the others would wait for it
-    const weir::Fault fault = weir::fault_of(error, "--memory");
-    MPI_Abort(MPI_COMM_WORLD, fail(weir::cat("process ", rank, ": ", fault.message), fault.exit_code, true));
+    const weir::Error fault = weir::fault_of(error);
+    MPI_Abort(MPI_COMM_WORLD, fail(weir::cat("process ", rank, ": ", fault.what()), fault.exit_code(), true));
   }
   try {
     weir::finish_stdout();

@@ -5,6 +5,7 @@
 #include "bindings/python/interpreter_end.h"
 #include "format/base/error.h"
 #include "format/base/printable.h"
+#include "format/process/fault.h"
 
 namespace weir::python {
 
@@ -56,6 +57,9 @@ void translate_errors() {
       std::rethrow_exception(std::move(thrown));
     } catch (const Error& error) {
       raise(error);
+    } catch (const std::exception& other) {
+      if (!says_no_thread(other)) throw;  // pybind11 has an exception of Python for each type
+      raise(fault_of(other));
     }
   });
 }

@@ -12,6 +12,7 @@
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "format/process/fault.h"
 #include "ingest/plan/staging.h"
 
 namespace weir {

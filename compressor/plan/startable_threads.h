@@ -8,11 +8,6 @@
 
 namespace weir {
 
-/// The message of an error when a thread cannot be started.
-inline constexpr const char* kNoMoreThreads =
-    "no more threads can be started; raise the limit of processes (ulimit -u) or of address space (ulimit -v), or end "
-    "some";
-
 /// How long the result of startable_threads() stays valid. A program that pushes step after step asks before each step.
 inline constexpr std::chrono::seconds kStartableFor{1};
 

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "format/base/index.h"
+#include "format/process/fault.h"
 
 namespace weir {
 namespace {

@@ -57,14 +57,4 @@ std::string reason_of(const Error& error, const std::string& where) {
   return text.starts_with(begin) ? text.substr(begin.size()) : text;
 }
 
-Error error_in_flight() {
-  try {
-    throw;
-  } catch (const Error& error) {
-    return error;
-  } catch (const std::exception& other) {
-    return {ErrorKind::internal, other.what()};
-  }
-}
-
 }  // namespace weir

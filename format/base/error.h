@@ -70,7 +70,4 @@ Error io_error(const std::string& path, const Message& action, int errno_value);
 /// place.
 std::string reason_of(const Error& error, const std::string& where);
 
-/// Returns the exception that is being handled; one of another type becomes an Error of kind internal.
-Error error_in_flight();
-
 }  // namespace weir

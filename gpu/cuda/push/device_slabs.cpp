@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "format/base/text.h"
+#include "format/process/fault.h"
 #include "gpu/cuda/push/gather_planes.h"
 #include "gpu/cuda/runtime/caller_stream.h"
 #include "gpu/cuda/runtime/check.h"

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "format/base/error.h"
+#include "format/process/fault.h"
 #include "tests/compressor/support/failing_allocation.h"
 
 namespace weir::slice_intake_test {
@@ -236,7 +237,7 @@ TEST_F(SliceIntakeTest, ReportsOtherExceptionsOfItsSink) {
     intake.add(slab(0, 8));  // already throws if a worker was quick
     intake.finish();
   };
-  EXPECT_EQ(message_of(both), std::bad_alloc().what());
+  EXPECT_EQ(message_of(both), fault_of(std::bad_alloc()).what());
 }
 
 // The planes of the slab count as given. If the intake did not end, the volume would lack them without an error.
@@ -251,7 +252,7 @@ TEST_F(SliceIntakeTest, SlabThatFindsNoMemory_EndsTheIntake) {
     }();
     taken = message == "no error";
     if (taken) break;
-    EXPECT_EQ(message, std::bad_alloc().what()) << before;
+    EXPECT_EQ(message, fault_of(std::bad_alloc()).what()) << before;
     EXPECT_EQ(message_of([&] { intake.check(); }), message) << before;
     EXPECT_EQ(message_of([&] { intake.finish(); }), message) << before;
     ASSERT_LT(before, 1000);
