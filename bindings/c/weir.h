@@ -16,6 +16,9 @@
  * that is forked while a conversion runs can convert only after exec, and gets WEIR_ERROR_USAGE before; any other
  * child may convert. oneTBB's threads go on after a conversion, so dlclose leaves the library loaded.
  *
+ * Signals: the library changes no signal's action. A file that would grow beyond the limit of file size (ulimit -f) is
+ * WEIR_ERROR_IO, without the signal SIGXFSZ.
+ *
  * Structs: set up every struct with its _init function and its sizeof, then change members; 0 or NULL is always a
  * member's default. A program built with an older weir.h runs with a newer library. A program built with a newer weir.h
  * runs with an older library if it sets nothing that the library does not know. Strings end with a zero; paths are as

@@ -15,6 +15,7 @@
 
 #include "format/base/error.h"
 #include "format/base/text.h"
+#include "format/io/file_size_signal.h"
 #include "format/io/file_system.h"
 
 namespace weir {
@@ -37,6 +38,7 @@ class PosixFile final : public File {
   const std::string& path() const override { return path_; }
 
   void write_at(std::uint64_t offset, std::span<const std::byte> bytes) override {
+    const NoFileSizeSignal no_signal;
     while (!bytes.empty()) {
       const ssize_t done = ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
       if (done < 0 && errno == EINTR) continue;
@@ -59,6 +61,7 @@ class PosixFile final : public File {
   }
 
   bool preallocate(std::uint64_t bytes) override {
+    const NoFileSizeSignal no_signal;
     // fallocate() instead of posix_fallocate(): the latter writes zeros if the file system cannot reserve.
     int status = 0;
     do {

@@ -1,4 +1,5 @@
-/* Calls on a machine that gives no more: threads. Each is tried in a child of its own, because limits stay. */
+/* Calls on a machine that gives no more: threads, bytes of a file. Each is tried in a child of its own, because limits
+ * stay. */
 #include "check.h"
 
 #include <pthread.h>
@@ -35,6 +36,19 @@ static int limit(int resource, rlim_t most) {
   return setrlimit(resource, &limits) == 0;
 }
 
+static int ends_with(const char* text, const char* end) {
+  const size_t length = strlen(text);
+  return length >= strlen(end) && strcmp(text + length - strlen(end), end) == 0;
+}
+
+#define CHECK_END(wanted, found)                                                                       \
+  do {                                                                                                 \
+    if (!ends_with((found), (wanted))) {                                                               \
+      ++failures;                                                                                      \
+      fprintf(stderr, "%s:%d: expected \"...%s\", found \"%s\"\n", __FILE__, __LINE__, wanted, found); \
+    }                                                                                                  \
+  } while (0)
+
 static void no_threads(void) {
   static const char kMessage[] =
       "no more threads can be started; raise the limit of processes (ulimit -u) or of address space (ulimit -v), or "
@@ -53,12 +67,40 @@ static void no_threads(void) {
   CHECK_TEXT(kMessage, error.message);
 }
 
+/* In a file of 16 KiB no volume has room. The signal, whose default ends the program, must neither come nor be changed.
+ */
+static void small_files(void) {
+  static const char kRemedy[] =
+      ": File too large; raise the limit of file size (ulimit -f) or choose another file system";
+  struct sigaction before;
+  struct sigaction after;
+  CHECK(sigaction(SIGXFSZ, NULL, &before) == 0 && before.sa_handler == SIG_DFL);
+  CHECK(limit(RLIMIT_FSIZE, 16384));
+  weir_convert_options options = default_options();
+  options.budget_kind = WEIR_BUDGET_LOSSLESS;
+  CHECK_STATUS(WEIR_ERROR_IO, weir_convert(&volume, values, NULL, &options, path_of("b.nvdb"), &error));
+  CHECK_END(kRemedy, error.message);
+  weir_push* push = NULL;
+  CHECK_OK(weir_push_begin(&volume, &options, path_of("b.nvdb"), &push, &error));
+  weir_status status = weir_push_slab(push, 0, NZ, values, NULL, &error);
+  if (status == WEIR_OK) status = weir_push_end(push, &error);
+  CHECK(status == WEIR_ERROR_IO);
+  CHECK_END(kRemedy, error.message);
+  weir_push_free(push);
+  CHECK(!exists(path_of("b.nvdb")) && !exists(path_of("b.nvdb.partial")));
+  sigset_t signals;
+  CHECK(sigaction(SIGXFSZ, NULL, &after) == 0 && after.sa_handler == SIG_DFL);
+  CHECK(sigpending(&signals) == 0 && sigismember(&signals, SIGXFSZ) == 0);
+  CHECK(pthread_sigmask(SIG_BLOCK, NULL, &signals) == 0 && sigismember(&signals, SIGXFSZ) == 0);
+}
+
 int main(void) {
   make_directory();
   volume = pattern_volume(WEIR_FLOAT32);
   values = pattern_floats();
   if (!SANITIZED) {
     in_a_child(no_threads);
+    in_a_child(small_files);
   }
   free(values);
   return finish();
