@@ -4,8 +4,10 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <system_error>
 
 #include "format/base/error.h"
+#include "format/base/text.h"
 #include "format/io/descriptor.h"
 
 namespace weir {
@@ -17,7 +19,10 @@ constexpr std::uint32_t kEvents = IN_CREATE | IN_MODIFY | IN_CLOSE_WRITE | IN_MO
 class SystemInotify final : public Inotify {
  public:
   SystemInotify() : queue_(::inotify_init1(IN_NONBLOCK | IN_CLOEXEC)) {
-    if (!queue_) throw io_error("inotify", "open a queue (fs.inotify.max_user_instances limits them)", errno);
+    if (queue_) return;
+    // Not as io_error() says it: the limit may be another than that of open files.
+    throw Error(ErrorKind::io, cat("inotify: cannot open a queue (fs.inotify.max_user_instances limits them): ",
+                                   std::generic_category().message(errno)));
   }
 
   int descriptor() const override { return queue_.get(); }

@@ -30,6 +30,9 @@ const char* remedy_of(int errno_value) {
       return "; correct the symbolic links of its path, which lead in a circle";
     case ENAMETOOLONG:
       return "; choose a shorter name";
+    case EMFILE:
+    case ENFILE:
+      return "; raise the limit of open files (ulimit -n)";
     case EIO:
     case ESTALE:
       return "; check the disk or the file server";

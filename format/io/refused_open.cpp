@@ -13,8 +13,7 @@ bool is_fault_of_name(int errno_value) {
 }
 
 Error refused_open(const std::string& path, const char* action, int errno_value) {
-  const char* remedy = errno_value == EMFILE || errno_value == ENFILE ? "; raise the limit of open files (ulimit -n)"
-                       : errno_value == EACCES || errno_value == EPERM
+  const char* remedy = errno_value == EACCES || errno_value == EPERM
                            ? "; give this user the right to read it and to enter its directories"
                            : remedy_of(errno_value);
   return {is_fault_of_name(errno_value) ? ErrorKind::input : ErrorKind::io,

@@ -1,5 +1,5 @@
-/* Calls on a machine that gives no more: threads, bytes of a file. Each is tried in a child of its own, because limits
- * stay. */
+/* Calls on a machine that gives no more: threads, bytes of a file, open files. Each is tried in a child of its own,
+ * because limits stay. */
 #include "check.h"
 
 #include <pthread.h>
@@ -94,6 +94,12 @@ static void small_files(void) {
   CHECK(pthread_sigmask(SIG_BLOCK, NULL, &signals) == 0 && sigismember(&signals, SIGXFSZ) == 0);
 }
 
+static void few_files(void) {
+  CHECK(limit(RLIMIT_NOFILE, 3));
+  CHECK_STATUS(WEIR_ERROR_IO, weir_convert(&volume, values, NULL, NULL, path_of("c.nvdb"), &error));
+  CHECK_END(": Too many open files; raise the limit of open files (ulimit -n)", error.message);
+}
+
 int main(void) {
   make_directory();
   volume = pattern_volume(WEIR_FLOAT32);
@@ -101,6 +107,7 @@ int main(void) {
   if (!SANITIZED) {
     in_a_child(no_threads);
     in_a_child(small_files);
+    in_a_child(few_files);
   }
   free(values);
   return finish();

@@ -22,5 +22,15 @@ TEST(Error, PathThatTheSystemRefuses_IsSaidWithItsRemedy) {
   EXPECT_EQ(said(ENAMETOOLONG), "a/b: cannot create: File name too long; choose a shorter name");
 }
 
+TEST(Error, LimitOfTheSystem_IsSaidWithItsRemedy) {
+  const auto said = [](int errno_value) { return std::string(io_error("a/b", "create", errno_value).what()); };
+  EXPECT_EQ(said(EMFILE), "a/b: cannot create: Too many open files; raise the limit of open files (ulimit -n)");
+  EXPECT_EQ(said(ENFILE),
+            "a/b: cannot create: Too many open files in system; raise the limit of open files (ulimit -n)");
+  EXPECT_EQ(said(EFBIG),
+            "a/b: cannot create: File too large; raise the limit of file size (ulimit -f) or choose another file "
+            "system");
+}
+
 }  // namespace
 }  // namespace weir::error_test
