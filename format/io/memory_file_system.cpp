@@ -32,7 +32,7 @@ class MemoryFileSystem::Pages {
     std::shared_lock reading(mutex_);
     if (offset + bytes.size() > size_) {
       reading.unlock();
-      grow(path, offset + bytes.size(), true);
+      grow(offset + bytes.size(), true);
       reading.lock();
     }
     std::memcpy(begin_ + offset, bytes.data(), bytes.size());
@@ -48,7 +48,7 @@ class MemoryFileSystem::Pages {
 
   /// Grows the file to at least `bytes`. With `ahead` it reserves room for more, so that a file written piece by piece
   /// is not moved for each piece.
-  void grow(const std::string& path, std::uint64_t bytes, bool ahead) {
+  void grow(std::uint64_t bytes, bool ahead) {
     const std::scoped_lock lock(mutex_);
     if (bytes > capacity_) {
       constexpr std::uint64_t kLeast = std::uint64_t{1} << 20U;
@@ -61,7 +61,10 @@ class MemoryFileSystem::Pages {
       void* const moved = begin_ == nullptr ? ::mmap(nullptr, capacity, PROT_READ | PROT_WRITE,
                                                      MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0)
                                             : ::mremap(begin_, capacity_, capacity, MREMAP_MAYMOVE);
-      if (moved == MAP_FAILED) throw io_error(path, cat("get ", capacity, " bytes of memory for it"), errno);
+      if (moved == MAP_FAILED) {  // the path is a name that only weir knows
+        throw Error(ErrorKind::internal, cat("out of memory: a file made in it needs ", capacity,
+                                             " bytes; free some, or ask for a smaller file"));
+      }
       begin_ = static_cast<std::byte*>(moved);
       capacity_ = capacity;
       // Large pages cause fewer page faults. They are used only for files so large that a page more does not count.
@@ -118,7 +121,7 @@ class MemoryFileSystem::PagesFile final : public File {
   }
   void read_at(std::uint64_t offset, std::span<std::byte> bytes) override { pages_->read_at(path_, offset, bytes); }
   bool preallocate(std::uint64_t bytes) override {
-    pages_->grow(path_, bytes, false);
+    pages_->grow(bytes, false);
     return true;
   }
   void clear() override { pages_->clear(); }

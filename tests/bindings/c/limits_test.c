@@ -1,5 +1,5 @@
-/* Calls on a machine that gives no more: threads, bytes of a file, open files. Each is tried in a child of its own,
- * because limits stay. */
+/* Calls on a machine that gives no more: threads, bytes of a file, open files, memory. Each is tried in a child of its
+ * own, because limits stay. */
 #include "check.h"
 
 #include <pthread.h>
@@ -100,6 +100,24 @@ static void few_files(void) {
   CHECK_END(": Too many open files; raise the limit of open files (ulimit -n)", error.message);
 }
 
+/* A file larger than the address space; all values are one voxel. */
+static void little_memory(void) {
+  weir_volume large = volume;
+  large.extent[0] = large.extent[1] = large.extent[2] = 300;
+  const int64_t stride[3] = {0, 0, 0};
+  weir_convert_options options = default_options();
+  options.encoding = WEIR_ENCODING_FLOAT;
+  options.budget_kind = WEIR_BUDGET_RATE;
+  options.budget = 0.125;
+  options.threads = 1;
+  CHECK(limit(RLIMIT_AS, 800U << 20U));
+  weir_buffer* buffer = NULL;
+  CHECK_STATUS(WEIR_ERROR_INTERNAL, weir_convert_to_memory(&large, values, stride, &options, &buffer, &error));
+  CHECK_TEXT("out of memory: a file made in it needs 864002048 bytes; free some, or ask for a smaller file",
+             error.message);
+  CHECK(buffer == NULL);
+}
+
 int main(void) {
   make_directory();
   volume = pattern_volume(WEIR_FLOAT32);
@@ -108,6 +126,7 @@ int main(void) {
     in_a_child(no_threads);
     in_a_child(small_files);
     in_a_child(few_files);
+    in_a_child(little_memory);
   }
   free(values);
   return finish();
