@@ -14,7 +14,8 @@
  * with the smallest number of threads that one of them was given. Conversions compute in a floating-point mode of
  * their own, whatever the caller's mode is (-ffast-math, rounding), and restore the caller's mode afterwards. A child
  * that is forked while a conversion runs can convert only after exec, and gets WEIR_ERROR_USAGE before; any other
- * child may convert. oneTBB's threads go on after a conversion, so dlclose leaves the library loaded.
+ * child may convert. oneTBB's threads go on after a conversion, so dlclose leaves the library loaded. A thread that
+ * makes a call needs a stack of at least 256 KiB, besides what its callbacks take.
  *
  * Signals: the library changes no signal's action. A file that would grow beyond the limit of file size (ulimit -f) is
  * WEIR_ERROR_IO, without the signal SIGXFSZ.

@@ -1,5 +1,5 @@
-/* Calls on a machine that gives no more: threads, bytes of a file, open files, memory. Each is tried in a child of its
- * own, because limits stay. */
+/* Calls on a machine that gives no more: threads, bytes of a file, open files, memory, stack. Each is tried in a child
+ * of its own, because limits stay. */
 #include "check.h"
 
 #include <pthread.h>
@@ -118,6 +118,48 @@ static void little_memory(void) {
   CHECK(buffer == NULL);
 }
 
+/* What weir.h asks for. */
+enum { STACK_BYTES = 256 << 10 };
+
+static void* convert_all(void* unused) {
+  static const int32_t kEncodings[] = {WEIR_ENCODING_AUTO, WEIR_ENCODING_FLOAT, WEIR_ENCODING_FPN,
+                                       WEIR_ENCODING_PACKED};
+  weir_convert_options options = default_options();
+  options.overwrite = 1;
+  options.threads = 1; /* so that this thread does all of it */
+  for (size_t i = 0; i < sizeof kEncodings / sizeof *kEncodings; ++i) {
+    options.encoding = kEncodings[i];
+    CHECK_OK(weir_convert(&volume, values, NULL, &options, path_of("d.nvdb"), &error));
+    weir_buffer* buffer = NULL;
+    CHECK_OK(weir_convert_to_memory(&volume, values, NULL, &options, &buffer, &error));
+    weir_buffer_free(buffer);
+    weir_push* push = NULL;
+    CHECK_OK(weir_push_begin(&volume, &options, path_of("e.nvdb"), &push, &error));
+    CHECK_OK(weir_push_slab(push, 0, NZ, values, NULL, &error));
+    CHECK_OK(weir_push_end(push, &error));
+    weir_push_free(push);
+    CHECK(same_files(path_of("d.nvdb"), path_of("e.nvdb")));
+    CHECK_OK(weir_convert_file(path_of("d.nvdb"), NULL, &options, path_of("f.nvdb"), &error));
+    weir_grid* grid = NULL;
+    CHECK_OK(weir_open(path_of("d.nvdb"), &grid, &error));
+    const float position[3] = {NX / 2, NY / 2, NZ / 2};
+    float value = 0;
+    CHECK_OK(weir_sample(grid, WEIR_FILTER_TRILINEAR, position, 1, &value, &error));
+    weir_close(grid);
+  }
+  return unused;
+}
+
+static void small_stack(void) {
+  pthread_attr_t attributes;
+  pthread_t thread;
+  CHECK(pthread_attr_init(&attributes) == 0);
+  CHECK(pthread_attr_setstacksize(&attributes, STACK_BYTES) == 0);
+  CHECK(pthread_create(&thread, &attributes, convert_all, NULL) == 0);
+  CHECK(pthread_join(thread, NULL) == 0);
+  pthread_attr_destroy(&attributes);
+}
+
 int main(void) {
   make_directory();
   volume = pattern_volume(WEIR_FLOAT32);
@@ -127,6 +169,7 @@ int main(void) {
     in_a_child(small_files);
     in_a_child(few_files);
     in_a_child(little_memory);
+    in_a_child(small_stack);
   }
   free(values);
   return finish();
