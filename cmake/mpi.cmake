@@ -23,7 +23,7 @@ target_compile_definitions(weir-mpi PRIVATE WEIR_VERSION="${PROJECT_VERSION}")
 
 # libweir_mpi.so, target weir_mpi, also called weir::mpi: pushes by all processes, with bindings/mpi/weir_mpi.h.
 add_library(weir_mpi SHARED bindings/mpi/push.cpp bindings/mpi/pushed_boxes.cpp bindings/c/conversion_options.cpp
-                            bindings/c/status.cpp bindings/c/wording.cpp)
+                            bindings/c/short_text.cpp bindings/c/status.cpp bindings/c/wording.cpp)
 add_library(weir::mpi ALIAS weir_mpi)
 target_link_libraries(weir_mpi PRIVATE weir_mpi_team PUBLIC weir_c MPI::MPI_C)
 target_include_directories(weir_mpi PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/bindings/mpi>)

@@ -1,9 +1,9 @@
 #include "bindings/c/status.h"
 
-#include <cstring>
 #include <exception>
 #include <new>
 
+#include "bindings/c/short_text.h"
 #include "bindings/c/wording.h"
 #include "format/base/printable.h"
 #include "format/process/fault.h"
@@ -20,9 +20,7 @@ static_assert(WEIR_INTERRUPTED == static_cast<int>(ErrorKind::interrupted));
 weir_status end_call(weir_error* error, weir_status status, const char* message) noexcept {
   if (error == nullptr) return status;
   error->status = status;
-  const std::size_t length = strnlen(message, sizeof error->message - 1);
-  std::memcpy(error->message, message, length);
-  error->message[length] = '\0';
+  copy_shortened(message, error->message);
   return status;
 }
 

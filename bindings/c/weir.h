@@ -61,7 +61,7 @@ enum {
 #define WEIR_MESSAGE_BYTES 2044
 typedef struct weir_error {
   weir_status status;
-  char message[WEIR_MESSAGE_BYTES]; /* ends with a zero, cut if it is too long; "" after a success */
+  char message[WEIR_MESSAGE_BYTES]; /* ends with a zero; "..." for its middle if it is too long; "" after a success */
 } weir_error;
 
 /* Returns "0.2.0". The library owns the string. */

@@ -252,13 +252,16 @@ static void grids(void) {
   weir_buffer_free(buffer);
 }
 
-/* A message that is longer than its place. */
+/* A message that is longer than its place keeps its end, with the cause and what to do. */
 static void long_messages(void) {
+  static const char kEnd[] = "aaa: cannot open: File name too long; choose a shorter name";
   static char path[5000];
   memset(path, 'a', sizeof path - 1);
   weir_grid* grid = NULL;
   CHECK_STATUS(WEIR_ERROR_INPUT, weir_open(path, &grid, &error));
   CHECK(strlen(error.message) == WEIR_MESSAGE_BYTES - 1);
+  CHECK(strncmp(error.message, path, 500) == 0 && strstr(error.message, "a...a") != NULL);
+  CHECK_TEXT(kEnd, error.message + strlen(error.message) - strlen(kEnd));
 }
 
 int main(void) {
