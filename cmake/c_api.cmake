@@ -61,7 +61,8 @@ function(weir_c_tests)
     add_dependencies(weir_tests_c ${target})
   endforeach()
   file(GLOB parts CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/bindings/c/*_test.cpp)
-  add_executable(weir_c_parts_test ${parts} ${PROJECT_SOURCE_DIR}/bindings/c/short_text.cpp
+  add_executable(weir_c_parts_test ${parts} ${PROJECT_SOURCE_DIR}/bindings/c/conversion_options.cpp
+                                   ${PROJECT_SOURCE_DIR}/bindings/c/short_text.cpp
                                    ${PROJECT_SOURCE_DIR}/bindings/c/status.cpp
                                    ${PROJECT_SOURCE_DIR}/bindings/c/wording.cpp)
   target_compile_definitions(weir_c_parts_test PRIVATE WEIR_VERSION="${PROJECT_VERSION}"

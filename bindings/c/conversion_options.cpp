@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <exception>
 #include <filesystem>
 #include <string_view>
 #include <system_error>
@@ -114,6 +115,21 @@ std::optional<StoredValue> missing_of(const char* text) {
   if (text == nullptr) return std::nullopt;
   if (*text == '\0') throw wrong_option("missing", text, "a number or nan");  // NULL means that there is none
   return read_conversion_request({{"missing", text}}).source.missing;
+}
+
+/// Runs `call` of the callback `name`. An exception of the program becomes an Error that does not read as weir's own.
+template <typename Call>
+void call_back(std::string_view name, const Call& call) {
+  const auto let_out = [&](std::string_view text) {
+    return Error(ErrorKind::internal, cat("the callback ", name, " let an exception out, which none may", text));
+  };
+  try {
+    call();
+  } catch (const std::exception& thrown) {
+    throw let_out(cat(": ", thrown.what()));
+  } catch (...) {
+    throw let_out("");
+  }
 }
 
 void give_index(const weir_input_options& o, GivenOptions& given) {
@@ -244,7 +260,8 @@ ConversionControl Callbacks::control() {
   if (options_.notice != nullptr) {
     control.notice = [this](const Message& line) {
       const std::scoped_lock lock(mutex_);
-      options_.notice(options_.user, one_line(line.worded(c_wording)).c_str());
+      const std::string text = one_line(line.worded(c_wording));
+      call_back("notice", [&] { options_.notice(options_.user, text.c_str()); });
     };
   }
   return control;
@@ -254,16 +271,14 @@ void Callbacks::start(const std::string& pass, std::uint64_t total_bytes) {
   const std::scoped_lock lock(mutex_);
   pass_ = pass;
   total_bytes_ = total_bytes;
-  if (options_.progress != nullptr) options_.progress(options_.user, pass_.c_str(), 0, total_bytes_);
+  tell_progress(0);
   ask_cancel();
 }
 
 void Callbacks::advance(std::uint64_t done_bytes) {
   const std::scoped_lock lock(mutex_);
   // A push has no survey pass of its own, but may still read its spooled data to find the background.
-  if (options_.progress != nullptr && !pass_.empty()) {
-    options_.progress(options_.user, pass_.c_str(), std::min(done_bytes, total_bytes_), total_bytes_);
-  }
+  if (!pass_.empty()) tell_progress(std::min(done_bytes, total_bytes_));
   ask_cancel();
 }
 
@@ -272,8 +287,16 @@ void Callbacks::look_for_cancel() {
   ask_cancel();
 }
 
+void Callbacks::tell_progress(std::uint64_t done_bytes) {
+  if (options_.progress == nullptr) return;
+  call_back("progress", [&] { options_.progress(options_.user, pass_.c_str(), done_bytes, total_bytes_); });
+}
+
 void Callbacks::ask_cancel() {
-  if (options_.cancel != nullptr && options_.cancel(options_.user) != 0) cancelled_ = true;
+  if (options_.cancel == nullptr) return;
+  call_back("cancel", [&] {
+    if (options_.cancel(options_.user) != 0) cancelled_ = true;
+  });
 }
 
 }  // namespace weir::c

@@ -48,6 +48,7 @@ class Callbacks {
  private:
   void start(const std::string& pass, std::uint64_t total_bytes);
   void advance(std::uint64_t done_bytes);
+  void tell_progress(std::uint64_t done_bytes);
   void ask_cancel();
 
   weir_convert_options options_;

@@ -50,7 +50,7 @@ extern "C" {
 typedef int32_t weir_status;
 enum {
   WEIR_OK = 0,
-  WEIR_ERROR_INTERNAL = 1, /* a fault of weir itself, or no memory left */
+  WEIR_ERROR_INTERNAL = 1, /* a fault of weir itself, an exception of a callback, or no memory left */
   WEIR_ERROR_USAGE = 2,    /* a wrong argument or option, or a call out of order */
   WEIR_ERROR_INPUT = 3,    /* bad input, or none */
   WEIR_ERROR_BUDGET = 4,   /* the requested size cannot be met; the message names the smallest */
