@@ -34,10 +34,13 @@ bool supported(std::uint32_t type) {
 }
 
 void check_version(const NvdbBytes& bytes, std::uint64_t offset, std::uint32_t version) {
-  if (version >> 21U != nvdb::kMajorVersion) {
-    bytes.fail(offset, "NanoVDB version ", nvdb_version_text(version), " but only major version ", nvdb::kMajorVersion,
-               " can be read; write the file again with a current NanoVDB");
-  }
+  const std::uint32_t major = version >> 21U;
+  if (major == nvdb::kMajorVersion) return;
+  const std::string remedy = major > nvdb::kMajorVersion ? cat("read it with a newer weir, or write it with NanoVDB ",
+                                                               nvdb::kMajorVersion, ".x")
+                                                         : "write the file again with a current NanoVDB";
+  bytes.fail(offset, "NanoVDB version ", nvdb_version_text(version), " but only major version ", nvdb::kMajorVersion,
+             " can be read; ", remedy);
 }
 
 void check_codec(const NvdbBytes& file, std::uint64_t offset, std::uint16_t codec) {

@@ -90,6 +90,9 @@ TEST(NvdbCorruption, FileHeader) {
       message([](Bytes& f) { put<std::uint32_t>(f, 8, 31U << 21U | 5U << 10U | 7U); }),
       "a.nvdb: at byte 8: NanoVDB version 31.5.7 but only major version 32 can be read; write the file again with "
       "a current NanoVDB");
+  EXPECT_EQ(message([](Bytes& f) { put<std::uint32_t>(f, 8, 33U << 21U | 1U << 10U); }),
+            "a.nvdb: at byte 8: NanoVDB version 33.1.0 but only major version 32 can be read; read it with a newer "
+            "weir, or write it with NanoVDB 32.x");
   EXPECT_EQ(message([](Bytes& f) { put<std::uint16_t>(f, 12, 0); }), "a.nvdb: at byte 12: the file holds 0 grids");
   const std::string remedy =
       "; write it uncompressed with nanovdb_convert (to .vdb and back, without --zip and --blosc)";
@@ -130,8 +133,8 @@ TEST(NvdbCorruption, GridHead) {
             "a.nvdb: at byte 199: grid magic number 0x7 is not NanoVDB0 or NanoVDB1");
   EXPECT_EQ(message([](Bytes& f) { f[kGrid + 7] = std::byte{'1'}; }), "no error");
   EXPECT_EQ(message([](Bytes& f) { put<std::uint32_t>(f, kGrid + nvdb::grid::kVersion, 33U << 21U); }),
-            "a.nvdb: at byte 215: NanoVDB version 33.0.0 but only major version 32 can be read; write the file again "
-            "with a current NanoVDB");
+            "a.nvdb: at byte 215: NanoVDB version 33.0.0 but only major version 32 can be read; read it with a newer "
+            "weir, or write it with NanoVDB 32.x");
   const std::string bytes = std::to_string(stock(GridType::float32).size() - kGrid);
   EXPECT_EQ(message([](Bytes& f) { put<std::uint64_t>(f, kGrid + nvdb::grid::kGridSize, 5); }),
             "a.nvdb: at byte 231: the grid says 5 bytes, the file's meta data " + bytes);
