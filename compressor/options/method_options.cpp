@@ -11,6 +11,7 @@ using Request = ConversionRequest;
 
 void read_size(const OptionRow& row, const std::string& text, Request& request) {
   const auto bytes = parse_bytes(text);
+  if (is_too_many_bytes(text)) throw wrong_option(row.key, text, "a size of at most 2^62 bytes");
   if (!bytes || *bytes == 0) throw wrong_option(row.key, text, "a size such as 1048577, 64MiB or 1.5GB");
   request.conversion.budget.kind = Budget::Kind::size;
   request.conversion.budget.bytes = *bytes;

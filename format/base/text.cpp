@@ -33,6 +33,20 @@ constexpr std::array<std::pair<std::string_view, double>, 13> kUnits{{{"KiB", 10
                                                                       {"G", 1073741824.0},
                                                                       {"T", 1099511627776.0}}};
 
+/// Takes the unit from the end of `text`, and returns its bytes.
+double cut_unit(std::string_view& text) {
+  double unit = 1.0;
+  for (const auto& [name, factor] : kUnits) {
+    if (text.ends_with(name)) {
+      unit = factor;
+      text.remove_suffix(name.size());
+      break;
+    }
+  }
+  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+  return unit;
+}
+
 }  // namespace
 
 TextPiece::TextPiece(long long value)
@@ -59,15 +73,7 @@ std::optional<std::int64_t> parse_int(std::string_view text) { return parse_whol
 std::optional<double> parse_double(std::string_view text) { return parse_whole<double>(text); }
 
 std::optional<std::uint64_t> parse_bytes(std::string_view text) {
-  double unit = 1.0;
-  for (const auto& [name, factor] : kUnits) {
-    if (text.ends_with(name)) {
-      unit = factor;
-      text.remove_suffix(name.size());
-      break;
-    }
-  }
-  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+  const double unit = cut_unit(text);
   if (const auto whole = parse_whole<std::uint64_t>(text)) {
     const auto scale = static_cast<std::uint64_t>(unit);
     if (*whole > (std::uint64_t{1} << 62U) / scale) return std::nullopt;
@@ -78,6 +84,11 @@ std::optional<std::uint64_t> parse_bytes(std::string_view text) {
   const double bytes = *number * unit;
   if (bytes != std::floor(bytes) || bytes >= 0x1p62) return std::nullopt;
   return static_cast<std::uint64_t>(bytes);
+}
+
+bool is_too_many_bytes(std::string_view text) {
+  const double unit = cut_unit(text);
+  return parse_double(text).value_or(0) * unit > 0x1p62;
 }
 
 std::string format_bytes(std::uint64_t bytes) {

@@ -50,6 +50,8 @@ std::string cat(const Args&... args) {
 /// K M G T mean KiB ... TiB). Returns nullopt if the text is not a size, is negative, is not a whole number of bytes,
 /// or is above 2^62.
 std::optional<std::uint64_t> parse_bytes(std::string_view text);
+/// Returns whether the text is a size above 2^62 bytes, which parse_bytes() refuses for that alone.
+bool is_too_many_bytes(std::string_view text);
 /// Returns "512.0 MiB" or "17 B", for people; it is never parsed back.
 std::string format_bytes(std::uint64_t bytes);
 /// Parse the whole text as an integer or a double; nullopt if anything is left over or out of range.

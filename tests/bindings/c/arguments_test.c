@@ -140,6 +140,8 @@ static void options(void) {
   REFUSE_OPTIONS("budget is 8, and budget_kind is not WEIR_BUDGET_RATE, _PSNR or _MAX_ERROR; set one or the other",
                  o.budget = 8);
   REFUSE_OPTIONS("size (WEIR_BUDGET_SIZE) is \"0\", it must be a size such as 1048577, 64MiB or 1.5GB", o.budget_kind = WEIR_BUDGET_SIZE);
+  REFUSE_OPTIONS("size (WEIR_BUDGET_SIZE) is \"18446744073709551615\", it must be a size of at most 2^62 bytes",
+                 (o.budget_kind = WEIR_BUDGET_SIZE, o.size = UINT64_MAX));
   REFUSE_OPTIONS("size is 4096, and budget_kind is not WEIR_BUDGET_SIZE; set one or the other", o.size = 4096);
   REFUSE_OPTIONS("encoding is 7, it must be 0 to 6", o.encoding = 7);
   REFUSE_OPTIONS("preview is 3, it must be 0 to 2", o.preview = 3);
