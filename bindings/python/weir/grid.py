@@ -61,6 +61,7 @@ class Grid:
         self._core = _core.Grid(name)
 
     def __enter__(self) -> Grid:
+        self._refuse_closed()
         return self
 
     def __exit__(
@@ -85,6 +86,11 @@ class Grid:
     def closed(self) -> bool:
         """Whether close was called."""
         return self._core.closed
+
+    def _refuse_closed(self) -> None:
+        """Raises UsageError if the grid is closed."""
+        if self.closed:
+            raise UsageError(f"{self._path}: is closed; open it again with weir.open")
 
     @property
     def path(self) -> str:
@@ -175,6 +181,7 @@ class Grid:
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickles the grid as its path. Unpickling in another process opens the file there."""
+        self._refuse_closed()
         return Grid, (self._absolute,)
 
     @property

@@ -99,8 +99,7 @@ class RemoteGrid(Grid):
 
         Raises InputError if the sidecar is damaged or belongs to another file.
         """
-        if self.closed:
-            raise UsageError(f"{self._path}: is closed; open it again with weir.open")
+        self._refuse_closed()
         if not self._sidecar_read:
             url = sidecar_url(self._url)
             text = self._file.read_beside(url)
@@ -111,4 +110,5 @@ class RemoteGrid(Grid):
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickles the grid as its whole URL, with cache and storage_options, secrets too. Unpickling opens the URL."""
+        self._refuse_closed()
         return RemoteGrid, (self._url, self._cache, self._storage_options)

@@ -1,8 +1,10 @@
 """Tests weir.open: a grid's properties, all values and parts of them, levels, bounds, lifetime."""
 
+import copy
 import gc
 import json
 import os
+import pickle
 import shutil
 import unittest
 
@@ -299,6 +301,9 @@ class Lifetime(FolderTest):
             grid.verify,
             grid.render,
             lambda: grid.sample([[1, 1, 1]]),
+            grid.__enter__,
+            lambda: pickle.dumps(grid),
+            lambda: copy.copy(grid),
         ):
             self.assertEqual(
                 self.refused(weir.UsageError, use), "a.nvdb: is closed; open it again with weir.open"

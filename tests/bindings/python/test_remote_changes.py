@@ -1,5 +1,6 @@
 """Tests remote files over time: files that change, closed grids, and the ways in which xarray opens remote files."""
 
+import pickle
 import unittest
 
 import numpy
@@ -50,7 +51,7 @@ class Remote(FolderTest):
         requests = other.requests
         for grid in (read, other):
             grid.close()
-            for use in (lambda: grid.sidecar, lambda: grid.certificate, grid.to_numpy):
+            for use in (lambda: grid.sidecar, lambda: grid.certificate, grid.to_numpy, lambda: pickle.dumps(grid)):
                 self.assertEqual(
                     self.refused(weir.UsageError, use), f"{url}: is closed; open it again with weir.open"
                 )
