@@ -14,7 +14,17 @@ from . import _core
 from .device import DeviceArray, array_of, is_array_elsewhere
 from .errors import UsageError
 from .labelled import is_data_array, take_apart
-from .options import box_text, given_options, input_bytes, is_url, path_bytes, shown_url, text_of
+from .options import (
+    box_text,
+    checked_progress,
+    described,
+    given_options,
+    input_bytes,
+    is_url,
+    path_bytes,
+    shown_url,
+    text_of,
+)
 from .undecoded import missing_number
 
 if TYPE_CHECKING:
@@ -182,7 +192,8 @@ def convert(
     "weir", for example that the smallest possible file is larger than rate asks for.
 
     Raises UsageError (a ValueError), InputError, BudgetError or IoError. The error for a missing or unreadable file
-    is also a FileNotFoundError or PermissionError. Raises TypeError if source is anything else.
+    is also a FileNotFoundError or PermissionError. Raises TypeError if source is anything else,
+    and if output, dataset or progress is of a wrong type.
     """
     meaning: dict[str, Any] = {}
     if is_data_array(source):
@@ -195,8 +206,10 @@ def convert(
     ranges = index is not None and any(letter in text_of(index) for letter in ":*")
     listed = dataset is not None and not isinstance(dataset, (str, bytes))
     several = ranges or listed or levels == "separate"
-    if listed and not dataset:
+    names = _dataset_names(dataset) if listed else []
+    if listed and not names:
         raise UsageError("dataset is an empty list; name a dataset in it")
+    checked_progress(progress)
     options = given_options(
         rate=rate,
         size=size,
@@ -220,7 +233,7 @@ def convert(
         missing_policy=missing_policy,
         roi=None if roi is None else box_text(roi),
         ghost=ghost,
-        dataset="\n".join(map(text_of, dataset)) if listed else dataset,
+        dataset="\n".join(map(text_of, names)) if listed else dataset,
         index=index,
         component=component,
         magnitude=magnitude,
@@ -242,7 +255,7 @@ def convert(
         save_interval=save_interval,
         overwrite=overwrite,
     )
-    target = b"" if output is None else path_bytes(output)
+    target = b"" if output is None else path_bytes(output, "output")
     if is_url(source):
         shown = shown_url(source)
         raise UsageError(f"source is {shown!r}: weir.convert reads files of this machine; copy it here first")
@@ -264,6 +277,17 @@ def convert(
     return records if several else records[0]
 
 
+def _dataset_names(dataset: Any) -> list[Union[str, bytes]]:
+    """Returns the names in a list of datasets. Raises TypeError for anything else."""
+    try:
+        names = list(dataset)
+    except TypeError:
+        names = [dataset]
+    if not all(isinstance(name, (str, bytes)) for name in names):
+        raise TypeError(f"dataset is {described(dataset)}, it must be a text or a list of texts")
+    return names
+
+
 def _remedy(source: Any) -> str:
     """Returns the end of a message: what to give instead of `source`. Empty if that is not known."""
     if hasattr(source, "data_vars"):
@@ -271,7 +295,8 @@ def _remedy(source: Any) -> str:
     if source.__class__.__module__.partition(".")[0] in ("h5py", "zarr"):
         array = ", or numpy.asarray(source)" if hasattr(source, "__array__") else ""
         return f"; give the path of its file with dataset=NAME, which is streamed{array}"
-    return "; give numpy.asarray(source)" if hasattr(source, "__array__") else ""
+    for_numpy = hasattr(source, "__array__") or hasattr(source, "__array_interface__")
+    return "; give numpy.asarray(source)" if for_numpy else ""
 
 
 def _refuse_what_is_for_files(options: dict[str, bytes]) -> None:

@@ -14,7 +14,7 @@ from . import _core
 from .conversion import Numbers, Path, Progress
 from .errors import UsageError
 from .indexing import select
-from .options import LONGEST_BOX, described, given_options, input_bytes, is_url, size_text
+from .options import LONGEST_BOX, checked_progress, described, given_options, input_bytes, is_url, size_text
 
 if TYPE_CHECKING:
     import xarray
@@ -313,7 +313,7 @@ class Grid:
         Reads the whole file. The file is intact if all(check.ok for check in grid.verify()). progress is called with
         the pass, its bytes done and their total. Raises InputError if another file is now at `path`.
         """
-        return [Check(*check) for check in self._core.verify(progress)]
+        return [Check(*check) for check in self._core.verify(checked_progress(progress))]
 
     def render(
         self,
@@ -367,6 +367,7 @@ class Grid:
         """
         if linear and colorbar:
             raise UsageError("linear asks for radiance, colorbar for colours as a screen shows them; give one of them")
+        checked_progress(progress)
         options = given_options(
             mode=mode,
             size=size_text(size),
@@ -405,7 +406,7 @@ def open(path: Path, *, cache: Union[int, str] = "256MiB", storage_options: Opti
         other than "headers".
 
     Raises InputError if the file is not valid. The error for a missing or unreadable file is also a FileNotFoundError
-    or PermissionError. Raises UsageError for an empty path.
+    or PermissionError. Raises UsageError for an empty path, and TypeError for what is no path.
     """
     from .remote import RemoteGrid
 

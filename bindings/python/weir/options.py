@@ -43,9 +43,15 @@ def text_of(value: Any) -> str:
     return str(value)
 
 
-def path_bytes(path: Any) -> bytes:
-    """Returns `path` as the system takes it. Raises UsageError for a null byte, which would silently end the name."""
-    found = os.fsencode(path)
+def path_bytes(path: Any, name: str = "path") -> bytes:
+    """Returns `path`, the argument `name`, as the system takes it. Raises TypeError if it is no path, and UsageError for
+    a null byte, which would silently end the name, and for a text that no file system can hold."""
+    try:
+        found = os.fsencode(path)
+    except TypeError:
+        raise TypeError(f"{name} is {described(path)}, it must be a path") from None
+    except UnicodeEncodeError:
+        raise UsageError(f"{name} is {path!r}, which no file system can hold; correct it") from None
     if b"\0" in found:
         raise UsageError(f"path is {found!r}, and no path has a null byte; correct it")
     return found
@@ -114,6 +120,13 @@ def size_text(size: Any) -> str:
         raise UsageError(
             f"size is {described(size)}, it must be (width, height), two whole numbers of pixels, or a text, '960x720'"
         ) from None
+
+
+def checked_progress(progress: Any) -> Any:
+    """Returns `progress`. Raises TypeError if it is neither a function nor None."""
+    if progress is not None and not callable(progress):
+        raise TypeError(f"progress is {described(progress)}, it must be a function, progress(pass, done, total)")
+    return progress
 
 
 _FLAGS = {"at_most", "colorbar", "lossless", "stack", "overwrite"}

@@ -107,6 +107,35 @@ class Errors(FolderTest):
         message = self.refused(TypeError, weir.convert, ramp(9, 9, 9), "a.nvdb", rte=8)
         self.assertEqual(message, "convert() got an unexpected keyword argument 'rte'")
 
+    def test_arguments_of_other_types(self):
+        self.lossless(ramp(9, 9, 9)).close()
+        values, output = ramp(9, 9, 9), self.folder / "out.nvdb"
+        before = self.names()
+        for message, call in {
+            "dataset is 5, it must be a text or a list of texts": lambda: weir.convert(values, output, dataset=5),
+            "dataset is [5], it must be a text or a list of texts": lambda: weir.convert(values, output, dataset=[5]),
+            "progress is 5, it must be a function, progress(pass, done, total)": (
+                lambda: weir.convert(values, output, progress=5)
+            ),
+            "output is 5, it must be a path": lambda: weir.convert(values, 5),
+            "path is 5, it must be a path": lambda: weir.open(5),
+            "path is None, it must be a path": lambda: weir.open(None),
+        }.items():
+            with self.subTest(message):
+                self.assertEqual(self.refused(TypeError, call), message)
+        with weir.open(self.folder / "a.nvdb") as grid:
+            for call in (grid.verify, grid.render):
+                message = self.refused(TypeError, call, progress=5)
+                self.assertEqual(message, "progress is 5, it must be a function, progress(pass, done, total)")
+        message = self.refused(weir.UsageError, weir.convert, values, "a\ud800.nvdb")
+        self.assertEqual(message, "output is 'a\\ud800.nvdb', which no file system can hold; correct it")
+        self.assertEqual(self.names(), before)
+
+    def test_an_array_with_the_older_interface_of_numpy(self):
+        source = type("Array", (), {"__array_interface__": ramp(9, 9, 9).__array_interface__})()
+        message = self.refused(TypeError, weir.convert, source, self.folder / "out.nvdb")
+        self.assertEqual(message.split("; ")[1], "give numpy.asarray(source)")
+
     def test_a_missing_input(self):
         message = self.refused(InputNotFoundError, weir.convert, self.folder / "no.nrrd")
         self.assertEqual(message, "no.nrrd: cannot open for reading: No such file or directory")
