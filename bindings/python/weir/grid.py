@@ -367,6 +367,8 @@ class Grid:
         """
         if linear and colorbar:
             raise UsageError("linear asks for radiance, colorbar for colours as a screen shows them; give one of them")
+        if isinstance(devices, (Sequence, numpy.ndarray)) and numpy.size(devices) == 0:
+            raise UsageError("devices is an empty list; name a device in it, or leave it out")
         checked_progress(progress)
         options = given_options(
             mode=mode,
@@ -391,7 +393,9 @@ class Grid:
         return self._core.render(options, linear, progress)
 
 
-def open(path: Path, *, cache: Union[int, str] = "256MiB", storage_options: Optional[dict[str, Any]] = None) -> Grid:
+def open(
+    path: Path, *, cache: Optional[Union[int, str]] = None, storage_options: Optional[dict[str, Any]] = None
+) -> Grid:
     """Opens a NanoVDB file. If the file holds several grids, opens the first.
 
     path
@@ -399,8 +403,8 @@ def open(path: Path, *, cache: Union[int, str] = "256MiB", storage_options: Opti
         "memory://..."). A URL must name a packed file and returns a RemoteGrid, which reads only the head and the
         requested blocks.
     cache
-        For a URL: how many bytes of the file are kept, or a text such as "256MiB". Beyond this size, blocks that were
-        read are forgotten when other blocks are requested.
+        For a URL: how many bytes of the file are kept, or a text such as "256MiB", the default. Beyond this size,
+        blocks that were read are forgotten when other blocks are requested.
     storage_options
         For a URL: the options of fsspec's file system. http and https also go through fsspec if there are options
         other than "headers".
@@ -411,9 +415,10 @@ def open(path: Path, *, cache: Union[int, str] = "256MiB", storage_options: Opti
     from .remote import RemoteGrid
 
     if is_url(path):
-        return RemoteGrid(str(path), cache=cache, storage_options=storage_options)
-    if storage_options:
-        raise UsageError(f"storage_options are for URLs, and {os.fspath(path)!r} is a path")
+        return RemoteGrid(str(path), "256MiB" if cache is None else cache, storage_options)
+    for option, given in (("storage_options are", bool(storage_options)), ("cache is", cache is not None)):
+        if given:
+            raise UsageError(f"{option} for URLs, and {os.fspath(path)!r} is a path")
     return Grid(path)
 
 

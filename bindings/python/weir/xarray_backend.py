@@ -211,7 +211,7 @@ class WeirBackendEntrypoint(BackendEntrypoint):  # type: ignore[misc]
         decode_times: bool = True,
         level: int = 0,
         storage_options: Optional[dict[str, Any]] = None,
-        remote_cache: Union[int, str] = "256MiB",
+        remote_cache: Optional[Union[int, str]] = None,
     ) -> xarray.Dataset:
         """Opens a file for xarray. `level` is as for Grid.to_numpy: means over cubes of 2^level voxels along an edge.
         `storage_options` is as for weir.open. `remote_cache` is the `cache` of weir.open; xarray's own `cache` says

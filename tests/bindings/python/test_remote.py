@@ -515,6 +515,8 @@ class Remote(FolderTest):
         self.assertIn("cannot be opened", self.refused(weir.UsageError, weir.open, "nonsense://a/b.nvdb"))
         message = self.refused(weir.UsageError, weir.open, self.path, storage_options={"a": 1})
         self.assertEqual(message, f"storage_options are for URLs, and '{self.path}' is a path")
+        message = self.refused(weir.UsageError, weir.open, self.path, cache="1MiB")
+        self.assertEqual(message, f"cache is for URLs, and '{self.path}' is a path")
 
     def test_xarray_opens_a_url(self):
         try:

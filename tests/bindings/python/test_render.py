@@ -65,6 +65,10 @@ class Render(FolderTest):
             logs.output,
             ["WARNING:weir:backend cpu was chosen, and devices and device_memory have no effect"],
         )
+        self.assertEqual(
+            self.refused(weir.UsageError, grid.render, devices=[]),
+            "devices is an empty list; name a device in it, or leave it out",
+        )
 
     def test_linear_is_radiance(self):
         picture = self.lossless(ball()).render(size=(30, 20), mode="dvr", linear=True)
