@@ -93,7 +93,8 @@ std::set<std::string> headers() {
                            "nanovdb/packed_chunk",
                            "nanovdb/packed_data",
                            "nanovdb/packed_header",
-                           "packed/packed_layout"}) {
+                           "packed/packed_layout",
+                           "packed/stream_length"}) {
     files.insert(cat("include/weir/format/", name, ".h"));
   }
   for (const char* name : {"image/colormap",
@@ -360,6 +361,16 @@ TEST_F(Installation, AnotherBuildFindsTheDeviceLibrary) {
   const EmbeddedExample example({"-DWEIR_INSTALLED=ON", "-DCMAKE_PREFIX_PATH=" + prefix(),
                                  "-DCMAKE_CUDA_COMPILER=" WEIR_NVCC, "-DCMAKE_CUDA_ARCHITECTURES=90"});
   EXPECT_TRUE(example.has("sample_device"));
+}
+
+TEST_F(Installation, HeadersOfWeirInInstalledOnes_AreInstalledToo) {
+  const std::regex include("#include \"([^\"]+)\"");
+  for (const std::string& header : headers()) {
+    const std::string text = read_file(cat(prefix(), "/", header));
+    for (std::sregex_iterator found(text.begin(), text.end(), include), end; found != end; ++found) {
+      EXPECT_TRUE(fs::exists(cat(prefix(), "/include/weir/", found->str(1)))) << header << ": " << found->str(1);
+    }
+  }
 }
 
 // Each header is compiled alone, so that no header relies on the includes of another one.
